@@ -1,0 +1,1 @@
+"""Accuracy: what a solution is worth, checked on its dense output."""

@@ -1,0 +1,69 @@
+"""A posteriori error of the answer: one Newton step of the next higher scheme, from the solution.
+
+The dense output is put into the same problem collocated with one degree more (or, at the highest
+degree, on halved elements). Its defect is the local error; the Newton step carries it through the
+boundary conditions to every unknown. The improved solution minus the solution is the estimate.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from ribbonopt.arrays import Array
+from ribbonopt.solution import Solution
+from ribbonopt.solvers.condense import CondensedSystem
+from ribbonopt.transcription.blocks import ElementBlocks
+from ribbonopt.transcription.dense import DenseOutput
+
+ROUNDING = 1e-15
+
+
+def estimate_error(solution: Solution) -> dict[str, float]:
+    """Estimated absolute errors of `n0`, `m0`, `u0`, `H0`, `energy` and `states`.
+
+    Vectors by their largest component; states: positions and directors at the nodes. None of them
+    is below rounding.
+    """
+    better = improved(solution)
+    result = {
+        name: _gap(getattr(better, name), getattr(solution, name)) for name in ("n0", "m0", "u0")
+    }
+    result["H0"] = _gap(better.start["H"], solution.start["H"])
+    result["energy"] = _gap(np.array(better.energy), np.array(solution.energy))
+    ours, theirs = (s.outputs(solution.nodes) for s in (solution, better))
+    result["states"] = max(_gap(theirs[name], ours[name]) for name in ("r", "d1", "d2", "d3"))
+    return result
+
+
+def improved(solution: Solution) -> Solution:
+    """Solution after one Newton step of the next higher scheme; LinAlgError if singular."""
+    dense = solution.dense
+    blocks, split = dense.blocks.finer()
+    widths = np.repeat(dense.blocks.widths(dense.p) / split, split)
+    p = np.concatenate([dense.theta, widths])
+    w = blocks.layout.pack(*_sampled(dense, blocks, p))
+    residuals, derivatives = blocks.linearize(w, p)
+    w = w + CondensedSystem(blocks, derivatives, p).solve(residuals)
+    return replace(solution, dense=DenseOutput(blocks, w, p))
+
+
+def _sampled(dense: DenseOutput, blocks: ElementBlocks, p: Array) -> tuple[Array, Array, Array]:
+    """Nodes, stages and constants of a solution on another mesh or scheme."""
+    slices = blocks.layout.phase_slices()
+    positions = blocks.stage_positions(p)
+    nodes, stages = [], []
+    for phase, s in enumerate(slices):
+        flat = positions[s].ravel()
+        v = np.hstack([dense.states(phase, flat), dense.algebraic(phase, flat)])
+        stages.append(v.reshape(*positions[s].shape, -1))
+        ends = np.append(0.0, np.cumsum(blocks.widths(p)[s]))
+        x = dense.states(phase, ends)
+        nodes.append(x if phase == len(slices) - 1 else x[:-1])
+    return np.concatenate(nodes), np.concatenate(stages), dense.constants
+
+
+def _gap(a: Array, b: Array) -> float:
+    size = float(np.abs(b).max())
+    return max(float(np.abs(a - b).max()), ROUNDING * max(1.0, size))

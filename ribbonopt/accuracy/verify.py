@@ -1,0 +1,84 @@
+"""Verification: whether this is the solution of the problem that the scene states.
+
+Every condition is evaluated again on the dense output, by expressions that have no other roots than
+the condition itself; directors must be orthonormal and |eta| <= 1 where the law demands it.
+"""
+
+from __future__ import annotations
+
+import casadi as ca
+import numpy as np
+
+from ribbonopt.arrays import Array
+from ribbonopt.problem import Ribbon
+from ribbonopt.solution import Solution, Verification
+
+TOLERANCE = 1e-8
+
+
+def verify(solution: Solution, ribbon: Ribbon) -> Verification:
+    """Check a solution against its scene."""
+    worst_name, worst = _worst_condition(solution, ribbon)
+    residual = float(solution.dense.residual_between_nodes().max())
+    nodes = solution.outputs(solution.nodes)
+    drift = {
+        "n": _drift(nodes["n"]),
+        "n_dot_m": _drift(nodes["n_dot_m"], np.linalg.norm(solution.n0) * _size(nodes["m"])),
+        "H": _drift(nodes["H"]),
+        "orthonormality": float(nodes["orthonormality"].max()),
+    }
+    problems = []
+    # Gauss keeps orthonormality to rounding, other schemes only to their own accuracy.
+    allowed = TOLERANCE + (0.0 if solution.dense.blocks.tableau.symplectic else residual)
+    if not worst <= allowed:
+        problems.append(f"{worst_name} is off by {worst:.2g}")
+    if not drift["orthonormality"] <= allowed:
+        problems.append(
+            f"the directors are not orthonormal (off by {drift['orthonormality']:.2g}); refine the "
+            "mesh or use scheme: gauss"
+        )
+    if ribbon.law.bounds_eta:
+        eta = np.abs(nodes["eta"])
+        if not eta.max() <= 1 + TOLERANCE:
+            s = solution.nodes[int(eta.argmax())]
+            problems.append(
+                f"|eta| = {eta.max():.4g} at s = {s:.4g}, beyond 1: eq. (4.1) forbids it; the "
+                "ribbon wants to switch sheets there (law: sadowsky, regularized or variational)"
+            )
+    return Verification(tuple(problems), worst, residual, drift)
+
+
+def unverified() -> Verification:
+    """Return the verification of a solve that did not converge: nothing is known."""
+    nan = float("nan")
+    drift = {name: nan for name in ("n", "n_dot_m", "H", "orthonormality")}
+    return Verification((), nan, nan, drift)
+
+
+def _worst_condition(solution: Solution, ribbon: Ribbon) -> tuple[str, float]:
+    """Name and size of the condition that is furthest from what was asked."""
+    x = solution.problem.state
+    start, end = ca.SX.sym("start", x.numel()), ca.SX.sym("end", x.numel())
+    c, theta = solution.problem.constants, solution.problem.parameters
+    verdicts = ribbon.verdicts(start, end, c)
+    function = ca.Function("verdicts", [start, end, c, theta], [ca.vertcat(*verdicts.values())])
+    ends = solution.dense.states(0, np.array([0.0, 1.0]))
+    values = function(ends[0], ends[1], solution.dense.constants, solution.dense.theta)
+    # Relative to the loads, absolute in lengths and directors (L = 1).
+    scale = 1 + max(np.linalg.norm(solution.n0), np.linalg.norm(solution.m0))
+    sizes = np.abs(np.array(values).ravel())
+    loads = np.array(["force" in n or "moment" in n or "also" in n for n in verdicts])
+    sizes = np.where(np.isfinite(sizes), sizes / np.where(loads, scale, 1.0), np.inf)
+    index = int(sizes.argmax())
+    return list(verdicts)[index], float(sizes[index])
+
+
+def _drift(values: Array, scale: float | None = None) -> float:
+    """Largest change along the ribbon, relative to the size of the quantity."""
+    size = _size(values) if scale is None else scale
+    change = np.abs(values - values[0]).max()
+    return float(change / size) if size > 0 else float(change)
+
+
+def _size(values: Array) -> float:
+    return float(np.abs(values).max())

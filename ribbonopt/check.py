@@ -1,0 +1,38 @@
+"""What `ribbonopt check` says of a scene before anything is solved."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import numpy as np
+
+from ribbonopt.problem import pose, theta_of
+from ribbonopt.problem.examine import examine, unknown_names
+from ribbonopt.scene import Scene
+from ribbonopt.solve import refuse_unreachable, skipped
+from ribbonopt.transcription import Collocation
+
+
+def check_scene(scene: Scene) -> dict[str, Any]:
+    """Count unknowns and conditions, and say what solving would skip.
+
+    Raises
+    ------
+    ModelError
+        If conditions and unknowns do not fit.
+    ConvergenceError
+        If the prescribed ends cannot be reached.
+    """
+    ribbon, problem = pose(scene)
+    examine(ribbon, problem, np.array(list(theta_of(scene).values())))
+    refuse_unreachable(scene)
+    settings = scene.transcription
+    collocation = Collocation.named(settings.scheme, settings.degree)
+    nlp = collocation.transcribe(problem, (settings.intervals,))
+    return {
+        "name": scene.name,
+        "unknowns": unknown_names(ribbon),
+        "conditions": list(problem.conditions),
+        "size": nlp.unknowns,
+        "skipped": list(skipped(scene)),
+    }

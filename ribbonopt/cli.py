@@ -1,0 +1,190 @@
+"""The command line: `ribbonopt solve | check | schema | plot`. The only place that prints.
+
+Exit status: 0 done, 2 bad input (nothing written), 3 not converged or not the problem asked for
+(what there is is kept beside the wanted folder). Heavy imports happen in the verb that needs them.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import sys
+import time
+from collections.abc import Sequence
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
+
+from ribbonopt.errors import ConvergenceError, RibbonoptError
+from ribbonopt.version import VERSION
+
+if TYPE_CHECKING:
+    from ribbonopt.scene import Scene
+    from ribbonopt.solution import Solution
+
+BAD_INPUT = 2
+NOT_CONVERGED = 3
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Run one command and return its exit status."""
+    options = _parser().parse_args(arguments)
+    try:
+        status: int = options.run(options)
+        return status
+    except ConvergenceError as error:
+        return _fail(options, error, error.status, NOT_CONVERGED)
+    except RibbonoptError as error:
+        return _fail(options, error, "bad_input", BAD_INPUT)
+
+
+def _parser() -> argparse.ArgumentParser:
+    parser = argparse.ArgumentParser(
+        prog="ribbonopt", description="Equilibria of elastic ribbons from YAML scenes."
+    )
+    parser.add_argument("--version", action="version", version=f"ribbonopt {VERSION}")
+    verbs = parser.add_subparsers(dest="verb", required=True, metavar="COMMAND")
+
+    solve = verbs.add_parser("solve", help="solve a scene and report its numbers")
+    _scene_arguments(solve)
+    solve.add_argument("--out", metavar="DIR", help="folder for the result (default: none written)")
+    solve.add_argument(
+        "--plot", action="store_true", help="draw pictures (into --out, or results/NAME)"
+    )
+    solve.set_defaults(run=_solve)
+
+    check = verbs.add_parser("check", help="validate a scene and count unknowns and conditions")
+    _scene_arguments(check)
+    check.set_defaults(run=_check)
+
+    schema = verbs.add_parser("schema", help="print the JSON schema of scenes, for editors")
+    schema.set_defaults(run=_schema)
+
+    plot = verbs.add_parser("plot", help="draw the pictures of a saved result")
+    plot.add_argument("result", metavar="RESULT", help="folder written by solve --out")
+    plot.add_argument("--out", metavar="DIR", help="folder for the pictures (default: RESULT)")
+    plot.set_defaults(run=_plot)
+    return parser
+
+
+def _scene_arguments(parser: argparse.ArgumentParser) -> None:
+    parser.add_argument("scene", metavar="SCENE", help="YAML file")
+    parser.add_argument(
+        "--set",
+        action="append",
+        default=[],
+        metavar="KEY=VALUE",
+        help="override one value, such as law.epsilon=1e-3 (may be repeated)",
+    )
+    parser.add_argument("--json", action="store_true", help="print exactly one JSON object")
+    parser.add_argument("--quiet", action="store_true", help="print nothing unless it fails")
+
+
+def _solve(options: argparse.Namespace) -> int:
+    scene, import_seconds = _load(options)
+    from ribbonopt.solve import solve
+
+    if not (options.out or options.plot):
+        return _tell(options, solve(scene), import_seconds, None)
+    from ribbonopt.results import save_solution, staged_result
+
+    # Claimed before solving, so that a folder that cannot be written costs no solve.
+    with staged_result(options.out or Path("results") / scene.name) as stage:
+        solution = solve(scene)
+        save_solution(solution, stage.folder)
+        if options.plot:
+            from ribbonopt.views import save_figures
+
+            save_figures(solution, stage.folder)
+        written = stage.commit(complete=solution.verified)
+    return _tell(options, solution, import_seconds, written)
+
+
+def _load(options: argparse.Namespace) -> tuple[Scene, float]:
+    """Read the scene; also return the seconds that imports took."""
+    start = time.perf_counter()
+    from ribbonopt.scene import load_scene
+
+    reading = time.perf_counter()
+    scene = load_scene(options.scene, options.set)
+    # The heavy import comes after the scene is known to be good.
+    read = time.perf_counter()
+    import ribbonopt.solve  # noqa: F401
+
+    return scene, (reading - start) + (time.perf_counter() - read)
+
+
+def _tell(
+    options: argparse.Namespace, solution: Solution, import_seconds: float, written: Path | None
+) -> int:
+    from ribbonopt.report import report
+    from ribbonopt.summary import summarize
+
+    summary = summarize(solution)
+    summary["timings"] = {"import": import_seconds} | summary["timings"]
+    if options.json:
+        print(json.dumps(summary, allow_nan=False))
+    elif not options.quiet:
+        print(report(summary))
+        if written:
+            names = ", ".join(sorted(p.name for p in written.iterdir()))
+            print(f"  written: {written}: {names}")
+    if solution.verified:
+        return 0
+    kept = f"; kept in {written}" if written else ""
+    print(f"ribbonopt: {solution.scene.name}: {solution.message}{kept}", file=sys.stderr)
+    return NOT_CONVERGED
+
+
+def _check(options: argparse.Namespace) -> int:
+    scene, _ = _load(options)
+    from ribbonopt.check import check_scene
+
+    found = check_scene(scene)
+    if options.json:
+        print(json.dumps(found))
+    elif not options.quiet:
+        print(_checked(found))
+    return 0
+
+
+def _checked(found: dict[str, Any]) -> str:
+    unknowns = ", ".join(f"{name} {count}" for name, count in found["unknowns"].items())
+    lines = [
+        f"{found['name']}: valid",
+        f"  {sum(found['unknowns'].values())} unknown numbers: {unknowns}",
+        f"  {len(found['conditions'])} conditions:",
+        *(f"    {name}" for name in found["conditions"]),
+        f"  {found['size']} unknowns once discretised",
+        "  will be skipped:",
+        *(f"    {reason}" for reason in found["skipped"]),
+    ]
+    return "\n".join(lines)
+
+
+def _schema(options: argparse.Namespace) -> int:
+    from ribbonopt.scene import json_schema
+
+    print(json.dumps(json_schema(), indent=2))
+    return 0
+
+
+def _plot(options: argparse.Namespace) -> int:
+    from ribbonopt.results import load_solution, picture_folder
+    from ribbonopt.views import save_figures
+
+    solution = load_solution(options.result)
+    folder = picture_folder(options.out or options.result)
+    for path in save_figures(solution, folder):
+        print(path)
+    return 0
+
+
+def _fail(options: argparse.Namespace, error: Exception, status: str, code: int) -> int:
+    if getattr(options, "json", False):
+        print(json.dumps({"status": status, "verified": False, "message": str(error)}))
+    print(f"ribbonopt: {error}", file=sys.stderr)
+    return code
+
+
+if __name__ == "__main__":
+    sys.exit(main())

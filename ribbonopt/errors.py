@@ -1,0 +1,36 @@
+"""The errors ribbonopt raises, one class for each kind of fault.
+
+`SceneError` and `ModelError` mean that the input must change (exit status 2 on the command
+line); `ConvergenceError` means that the mathematics resisted (exit status 3).
+"""
+
+
+class RibbonoptError(Exception):
+    """Base of every error raised on purpose by ribbonopt."""
+
+
+class SceneError(RibbonoptError, ValueError):
+    """A scene file or override that cannot be read: names the file, line, key and remedy."""
+
+
+class ModelError(RibbonoptError, ValueError):
+    """A readable scene whose mechanics does not hold together (counts, ranks, frames)."""
+
+
+class TranscriptionError(RibbonoptError, ValueError):
+    """A discretisation that cannot be formed, such as a scheme of degree 0."""
+
+
+class OutputError(RibbonoptError, OSError):
+    """A place where results cannot be written or from which they cannot be read."""
+
+
+class ConvergenceError(RibbonoptError, RuntimeError):
+    """No equilibrium can be, or was, found: says which condition resists and the remedy.
+
+    `status` is the name of the failure, as summaries give it.
+    """
+
+    def __init__(self, message: str, status: str) -> None:
+        super().__init__(message)
+        self.status = status

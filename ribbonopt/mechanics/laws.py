@@ -1,0 +1,273 @@
+"""Constitutive laws: relations between the strains (u2, u3) and the moments (m2, m3).
+
+Components along the directors d2 (across the width) and d3 (tangent), units Dw = L = 1, u1 = 0.
+A law gives `strain(m)` (what the inverted formulation needs) and `moment(u)`; laws that derive from
+an energy also give `energy(u)` and `complementary_energy(m)`, else these are None and
+`variational` is False. Arguments are CasADi symbols, numbers too.
+
+With M = |m| and mu = |m2|, lambda* of eq. (4.2) is written (M - mu)/(M + mu), which neither divides
+by zero at m3 = 0 nor cancels. All laws are positively homogeneous of degree one and not
+differentiable at m = 0, so M is guarded: M = sqrt(m2^2 + m3^2 + GUARD^2). The guard is below half a
+unit in the last place of M^2 for M > 1e-42 and so changes no bit of any result there; at m = 0
+strains and derivatives are finite.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable
+from dataclasses import dataclass
+
+import casadi as ca
+
+GUARD = 1e-50
+TINY = 1e-150  # stands for an exact zero in a denominator; its square is still a normal number
+
+Pair = tuple[ca.SX, ca.SX]
+
+
+class ConstitutiveLaw(ABC):
+    """A relation between strains and moments; see the module for frame and units."""
+
+    #: strain energy exists, so that H = W_Leg + n3 is an invariant (section 7)
+    variational: bool = True
+    #: the law demands |eta| <= 1 of a solution, eq. (4.1)
+    bounds_eta: bool = False
+
+    @abstractmethod
+    def strain(self, m2: ca.SX, m3: ca.SX) -> Pair:
+        """Strains (u2, u3) at the moments (m2, m3)."""
+
+    @abstractmethod
+    def moment(self, u2: ca.SX, u3: ca.SX) -> Pair:
+        """Moments (m2, m3) at the strains (u2, u3)."""
+
+    @abstractmethod
+    def energy(self, u2: ca.SX, u3: ca.SX) -> ca.SX | None:
+        """Strain energy W(u2, u3) per length, or None."""
+
+    @abstractmethod
+    def complementary_energy(self, m2: ca.SX, m3: ca.SX) -> ca.SX | None:
+        """Legendre transform W_Leg(m2, m3) of the energy, eq. (7.1), or None."""
+
+
+@dataclass(frozen=True)
+class Kirchhoff(ConstitutiveLaw):
+    """Linear rod of section 2: m2 = B2 u2, m3 = B3 u3."""
+
+    B2: ca.SX
+    B3: ca.SX
+
+    def strain(self, m2: ca.SX, m3: ca.SX) -> Pair:
+        return m2 / self.B2, m3 / self.B3
+
+    def moment(self, u2: ca.SX, u3: ca.SX) -> Pair:
+        return self.B2 * u2, self.B3 * u3
+
+    def energy(self, u2: ca.SX, u3: ca.SX) -> ca.SX:
+        return (self.B2 * u2**2 + self.B3 * u3**2) / 2
+
+    def complementary_energy(self, m2: ca.SX, m3: ca.SX) -> ca.SX:
+        return (m2**2 / self.B2 + m3**2 / self.B3) / 2
+
+
+@dataclass(frozen=True)
+class Sadowsky(ConstitutiveLaw):
+    """Sadowsky's law with |eta| <= 1, eqs. (4.3)-(4.4); energy W_F, the convexified W_S.
+
+    At m2 = 0 the strain u2 jumps between -|m3|/4 and |m3|/4; `strain` returns 0 there, which
+    is the mixture of both for which W_F was made.
+    """
+
+    bounds_eta = True
+
+    def strain(self, m2: ca.SX, m3: ca.SX) -> Pair:
+        M, mu = _norm(m2, m3), ca.fabs(m2)
+        return ca.sign(m2) * (M + mu) ** 2 / (4 * M), m3 * (M + mu) / (4 * M)
+
+    def moment(self, u2: ca.SX, u3: ca.SX) -> Pair:
+        allowed = ca.fabs(u2) >= ca.fabs(u3)
+        m2, m3 = _sheet_moment(ca.if_else(allowed, u2, 1), u3)
+        return ca.if_else(allowed, m2, 0) * (u2 != 0), ca.if_else(allowed, m3, 4 * u3)
+
+    def energy(self, u2: ca.SX, u3: ca.SX) -> ca.SX:
+        return convexified_energy(u2, u3)
+
+    def complementary_energy(self, m2: ca.SX, m3: ca.SX) -> ca.SX:
+        return sadowsky_complementary_energy(m2, m3)
+
+
+@dataclass(frozen=True)
+class SingleSheet(ConstitutiveLaw):
+    """The sheet chi = sign(u2) of eqs. (2.4)-(2.5): (B 1) with the sign of m2 chi mended.
+
+    Analytic across m2 = 0; beyond it (chi m2 < 0) |eta| exceeds 1.
+    """
+
+    chi: ca.SX
+    bounds_eta = True
+
+    def strain(self, m2: ca.SX, m3: ca.SX) -> Pair:
+        M = _norm(m2, m3)
+        p = self._sum(M, m2, m3)
+        return self.chi * p**2 / (4 * M), m3 * p / (4 * M)
+
+    def moment(self, u2: ca.SX, u3: ca.SX) -> Pair:
+        return _sheet_moment(u2, u3)
+
+    def energy(self, u2: ca.SX, u3: ca.SX) -> ca.SX:
+        return sadowsky_energy(u2, u3)
+
+    def complementary_energy(self, m2: ca.SX, m3: ca.SX) -> ca.SX:
+        return self._sum(_norm(m2, m3), m2, m3) ** 2 / 8
+
+    def _sum(self, M: ca.SX, m2: ca.SX, m3: ca.SX) -> ca.SX:
+        """Chi m2 + M, without cancellation where chi m2 < 0."""
+        a = self.chi * m2
+        return ca.if_else(a >= 0, M + a, (m3**2 + GUARD**2) / (M + ca.fabs(a)))
+
+
+@dataclass(frozen=True)
+class Regularized(ConstitutiveLaw):
+    """Sadowsky's law smoothed by epsilon, eq. (6.1); not the gradient of an energy."""
+
+    epsilon: ca.SX
+    variational = False
+
+    def strain(self, m2: ca.SX, m3: ca.SX) -> Pair:
+        return _blended_strain(m2, m3, 1, self.epsilon)
+
+    def moment(self, u2: ca.SX, u3: ca.SX) -> Pair:
+        return _inverse(self.strain, u2, u3)
+
+    def energy(self, u2: ca.SX, u3: ca.SX) -> None:
+        return None
+
+    def complementary_energy(self, m2: ca.SX, m3: ca.SX) -> None:
+        return None
+
+
+@dataclass(frozen=True)
+class Homotopy(ConstitutiveLaw):
+    """From rod (rho = 0) to regularised ribbon (rho = 1), eq. (C 1); no energy in between."""
+
+    rho: ca.SX
+    epsilon: ca.SX
+    variational = False
+
+    def strain(self, m2: ca.SX, m3: ca.SX) -> Pair:
+        return _blended_strain(m2, m3, self.rho, self.epsilon)
+
+    def moment(self, u2: ca.SX, u3: ca.SX) -> Pair:
+        return _inverse(self.strain, u2, u3)
+
+    def energy(self, u2: ca.SX, u3: ca.SX) -> None:
+        return None
+
+    def complementary_energy(self, m2: ca.SX, m3: ca.SX) -> None:
+        return None
+
+
+@dataclass(frozen=True)
+class Variational(ConstitutiveLaw):
+    """Smooth law with an energy: W_Leg = (q + M)^2 / 8, q = sqrt(m2^2 + delta^2 m3^2).
+
+    delta = 1 is a rod with B2 = B3 = 1, delta -> 0 is Sadowsky. Not in the paper.
+    """
+
+    delta: ca.SX
+
+    def strain(self, m2: ca.SX, m3: ca.SX) -> Pair:
+        M, q = _norm(m2, m3), _norm(m2, self.delta * m3)
+        common = (q + M) / (4 * q * M)
+        return m2 * (q + M) * common, m3 * (q + self.delta**2 * M) * common
+
+    def moment(self, u2: ca.SX, u3: ca.SX) -> Pair:
+        return _inverse(self.strain, u2, u3)
+
+    def energy(self, u2: ca.SX, u3: ca.SX) -> ca.SX:
+        # W and its transform are equal where they correspond, both being 2-homogeneous.
+        return self.complementary_energy(*self.moment(u2, u3))
+
+    def complementary_energy(self, m2: ca.SX, m3: ca.SX) -> ca.SX:
+        return (_norm(m2, m3) + _norm(m2, self.delta * m3)) ** 2 / 8
+
+
+def sadowsky_energy(u2: ca.SX, u3: ca.SX) -> ca.SX:
+    """W_S of eq. (2.8): (u2^2 + u3^2)^2 / (2 u2^2)."""
+    return (u2 + u3 * (u3 / _nonzero(u2))) ** 2 / 2
+
+
+def convexified_energy(u2: ca.SX, u3: ca.SX) -> ca.SX:
+    """W_F: W_S where |eta| <= 1 and 2 u3^2 beyond (section 4)."""
+    allowed = ca.fabs(u2) >= ca.fabs(u3)
+    return ca.if_else(allowed, sadowsky_energy(ca.if_else(allowed, u2, 1), u3), 2 * u3**2)
+
+
+def sadowsky_complementary_energy(m2: ca.SX, m3: ca.SX) -> ca.SX:
+    """W_Leg of eq. (7.2) with its first root mended: (|m2| + M)^2 / 8."""
+    return (ca.fabs(m2) + _norm(m2, m3)) ** 2 / 8
+
+
+def _norm(a: ca.SX, b: ca.SX) -> ca.SX:
+    return ca.sqrt(a**2 + b**2 + GUARD**2)
+
+
+def _nonzero(a: ca.SX) -> ca.SX:
+    return ca.if_else(a == 0, TINY, a)
+
+
+def _sheet_moment(u2: ca.SX, u3: ca.SX) -> Pair:
+    """Eqs. (2.4)-(2.5), the first factored so that it does not cancel near |eta| = 1."""
+    eta = u3 / _nonzero(u2)
+    return (u2 - u3) * (1 + eta) * (1 + eta**2), 2 * u3 * (1 + eta**2)
+
+
+def _blended_strain(m2: ca.SX, m3: ca.SX, rho: ca.SX | float, epsilon: ca.SX) -> Pair:
+    """Eq. (C 1) with numerators and denominators multiplied by M + mu."""
+    M, mu = _norm(m2, m3), ca.fabs(m2)
+    s = M + mu
+    torsion = s + rho * (m3**2 / s)
+    bending = (1 - rho) * s + rho * (2 * mu + epsilon * s) + GUARD
+    return m2 * s**2 / (bending * torsion), m3 * s / (2 * torsion)
+
+
+def _inverse(strain: Callable[[ca.SX, ca.SX], Pair], u2: ca.SX, u3: ca.SX) -> Pair:
+    """Moments at given strains for a 1-homogeneous, sign-preserving, monotone law.
+
+    Homogeneity leaves one unknown, t = log |m2 / m3|, found by bisection on the ratio of the
+    strains and two Newton steps (through which derivatives flow); |u| then gives the scale.
+    """
+
+    def direction(t: ca.SX) -> Pair:
+        return ca.exp(ca.fmin(t, 0)), ca.exp(ca.fmin(-t, 0))
+
+    def log_ratio(t: ca.SX) -> ca.SX:
+        a, b = strain(*direction(t))
+        return ca.log(a / b)
+
+    target = ca.log((ca.fabs(u2) + TINY) / (ca.fabs(u3) + TINY))
+    t, step = ca.SX(0), 64.0
+    while step > 1e-10:
+        t = t + step * ca.sign(target - log_ratio(t))
+        step /= 2
+    x = ca.SX.sym("x")
+    newton_step = (target - log_ratio(x)) / ca.gradient(log_ratio(x), x)
+    for _ in range(2):
+        # The bracket's width bounds the step where the law is flat (|eta| > 1, epsilon = 0).
+        t = t + ca.fmax(-step, ca.fmin(step, ca.substitute(newton_step, x, t)))
+    e2, e3 = direction(t)
+    a, b = strain(e2, e3)
+    scale = _norm(u2, u3) / _norm(a, b)
+    return ca.sign(u2) * e2 * scale, ca.sign(u3) * e3 * scale
+
+
+#: laws by the name a scene gives them; their fields are those of the scene's classes
+LAWS: dict[str, type[ConstitutiveLaw]] = {
+    "kirchhoff": Kirchhoff,
+    "sadowsky": Sadowsky,
+    "single_sheet": SingleSheet,
+    "regularized": Regularized,
+    "homotopy": Homotopy,
+    "variational": Variational,
+}

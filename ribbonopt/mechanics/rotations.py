@@ -1,0 +1,59 @@
+"""Unit quaternions and rotation matrices, as numbers and as CasADi expressions.
+
+A quaternion q = (q0, q1, q2, q3), scalar first, stands for the rotation that takes the lab axes to
+the directors; column i of its matrix is d_i in the lab frame.
+"""
+
+from __future__ import annotations
+
+from typing import Any
+
+import casadi as ca
+import numpy as np
+
+from ribbonopt.arrays import Array
+
+
+def directors_of(q: ca.SX) -> tuple[ca.SX, ca.SX, ca.SX]:
+    """Directors d1, d2, d3 (lab frame) of the quaternion q (4,), quadratic in q."""
+    a, b, c, d = q[0], q[1], q[2], q[3]
+    d1 = ca.vertcat(a * a + b * b - c * c - d * d, 2 * (b * c + a * d), 2 * (b * d - a * c))
+    d2 = ca.vertcat(2 * (b * c - a * d), a * a - b * b + c * c - d * d, 2 * (c * d + a * b))
+    d3 = ca.vertcat(2 * (b * d + a * c), 2 * (c * d - a * b), a * a - b * b - c * c + d * d)
+    return d1, d2, d3
+
+
+def product(p: Any, q: Any) -> list[Any]:
+    """Components of the Hamilton product p q."""
+    return [
+        p[0] * q[0] - p[1] * q[1] - p[2] * q[2] - p[3] * q[3],
+        p[0] * q[1] + p[1] * q[0] + p[2] * q[3] - p[3] * q[2],
+        p[0] * q[2] - p[1] * q[3] + p[2] * q[0] + p[3] * q[1],
+        p[0] * q[3] + p[1] * q[2] - p[2] * q[1] + p[3] * q[0],
+    ]
+
+
+def quaternions_from(frames: Array) -> Array:
+    """Return the unit quaternions (n, 4) of the frames (n, 3, 3), whose columns are the directors.
+
+    The sign of each is the one nearer to its predecessor, so that a continuous frame gives a
+    continuous quaternion; the first has a positive scalar part (or, at half a turn, whatever
+    the largest component gives).
+    """
+    R = np.asarray(frames, dtype=float)
+    # Of the four columns of the matrix 4 q q^T, the one of largest diagonal is safe to divide by.
+    trace = np.trace(R, axis1=1, axis2=2)
+    K = np.empty((len(R), 4, 4))
+    K[:, 0, 0] = 1 + trace
+    for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
+        K[:, i + 1, i + 1] = 1 - trace + 2 * R[:, i, i]
+        K[:, 0, i + 1] = K[:, i + 1, 0] = R[:, k, j] - R[:, j, k]
+        K[:, i + 1, j + 1] = K[:, j + 1, i + 1] = R[:, i, j] + R[:, j, i]
+    best = np.argmax(np.einsum("nii->ni", K), axis=1)
+    q = K[np.arange(len(R)), best]
+    q /= np.linalg.norm(q, axis=1, keepdims=True)
+    if q[0, 0] < 0:
+        q[0] = -q[0]
+    flips = np.where(np.einsum("ni,ni->n", q[1:], q[:-1]) < 0, -1.0, 1.0)
+    q[1:] *= np.cumprod(flips)[:, None]
+    return np.asarray(q)

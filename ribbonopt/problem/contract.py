@@ -1,0 +1,122 @@
+"""The contract between mechanics and transcription: a multi-phase boundary-value problem.
+
+Semi-explicit differential-algebraic optimal control: states x(s), algebraic variables or controls
+z(s), unknown constants c, numeric parameters theta,
+
+    x' = f(s, x, z, c, theta)      0 = g(s, x, z, c, theta)      h(s, x, z, c, theta) <= 0
+    b(x at the ends of all phases, c, theta) = 0                 minimise  integral of l(...)
+
+on consecutive phases. States are continuous from one phase to the next; a phase's length may hold
+unknown constants. No cost and as many conditions as unknowns is a square problem. Every formulation
+is an instance, every transcription consumes it, none asks which it is.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import casadi as ca
+
+from ribbonopt.errors import ModelError
+
+
+@dataclass(frozen=True)
+class Phase:
+    """One interval with its own equations.
+
+    Attributes
+    ----------
+    dynamics : SX (nx,)
+        f, derivatives of the states with respect to arclength.
+    algebraic : SX (ng,)
+        g, zero along the phase.
+    path : SX (nh,)
+        h, not positive along the phase.
+    cost : SX scalar or None
+        l, density of the cost per length.
+    length : SX scalar
+        Length of the phase, from constants and parameters.
+    outputs : mapping of str to SX
+        Expressions to sample on a solution.
+    """
+
+    dynamics: ca.SX
+    length: ca.SX
+    outputs: Mapping[str, ca.SX]
+    algebraic: ca.SX = field(default_factory=lambda: ca.SX(0, 1))
+    path: ca.SX = field(default_factory=lambda: ca.SX(0, 1))
+    cost: ca.SX | None = None
+
+
+@dataclass(frozen=True, eq=False)
+class BoundaryValueProblem:
+    """Symbols, equations and names of one problem; see the module for the mathematics.
+
+    Attributes
+    ----------
+    position : SX scalar symbol
+        Arclength s.
+    state, algebraic, constants, parameters : SX column symbols
+        x, z, c and theta; `*_names` name their entries in order.
+    start : SX scalar
+        Arclength of the start of the first phase, from constants and parameters.
+    points : tuple of SX symbols
+        States at the start, at the interior phase boundaries and at the end.
+    conditions : mapping of str to SX scalar
+        b, by the name a user knows the condition under.
+    """
+
+    position: ca.SX
+    state: ca.SX
+    algebraic: ca.SX
+    constants: ca.SX
+    parameters: ca.SX
+    start: ca.SX
+    phases: tuple[Phase, ...]
+    points: tuple[ca.SX, ...]
+    conditions: Mapping[str, ca.SX]
+    state_names: tuple[str, ...]
+    constant_names: tuple[str, ...]
+    parameter_names: tuple[str, ...]
+
+    def __post_init__(self) -> None:
+        """Refuse a problem whose parts do not fit together."""
+        if len(self.points) != len(self.phases) + 1:
+            raise ModelError(
+                f"{len(self.phases)} phases need {len(self.phases) + 1} points, "
+                f"found {len(self.points)}"
+            )
+        for i, phase in enumerate(self.phases):
+            if phase.dynamics.shape != self.state.shape:
+                raise ModelError(
+                    f"phase {i}: dynamics are expected to have shape {self.state.shape}, "
+                    f"found {phase.dynamics.shape}"
+                )
+            if self.square and phase.algebraic.numel() != self.algebraic.numel():
+                raise ModelError(
+                    f"phase {i}: {self.algebraic.numel()} algebraic variables need as many "
+                    f"algebraic equations, found {phase.algebraic.numel()}"
+                )
+
+    @property
+    def square(self) -> bool:
+        """Whether there is nothing to minimise and no inequality: equations only."""
+        return all(p.cost is None and p.path.numel() == 0 for p in self.phases)
+
+    @property
+    def unknown_count(self) -> int:
+        """Numbers that the conditions must determine: states at one point and constants."""
+        return int(self.state.numel() + self.constants.numel())
+
+    @cached_property
+    def output_functions(self) -> tuple[tuple[ca.Function, dict[str, int]], ...]:
+        """For each phase: function (x, z, c, theta, s) of its outputs in one column, and sizes."""
+        inputs = [self.state, self.algebraic, self.constants, self.parameters, self.position]
+        result = []
+        for phase in self.phases:
+            column = ca.densify(ca.vertcat(*phase.outputs.values()))
+            sizes = {name: int(value.numel()) for name, value in phase.outputs.items()}
+            result.append((ca.Function("outputs", inputs, [column]), sizes))
+        return tuple(result)

@@ -1,0 +1,122 @@
+"""Before anything is solved: whether the conditions fit the unknowns, by number and by rank."""
+
+from __future__ import annotations
+
+import casadi as ca
+import numpy as np
+
+from ribbonopt.arrays import Array
+from ribbonopt.errors import ModelError
+from ribbonopt.mechanics import RodFields
+
+from .contract import BoundaryValueProblem
+from .ribbon import Ribbon
+
+Linearized = tuple[Array, Array]
+PARALLEL = 1e-10
+
+
+def examine(ribbon: Ribbon, problem: BoundaryValueProblem, theta: Array) -> None:
+    """Refuse a problem whose conditions are too many, too few, repeated or dependent.
+
+    Raises
+    ------
+    ModelError
+        With counts, names and remedy.
+    """
+    names = list(problem.conditions)
+    samples = _linearized(ribbon, problem, theta)
+    _refuse_repeated(names, samples)
+    found, expected = len(names), problem.unknown_count
+    if found != expected:
+        raise ModelError(_count_message(ribbon, names, found - expected))
+    jacobian = samples[0][1]
+    scaled = jacobian / np.linalg.norm(jacobian, axis=1, keepdims=True)
+    left, singular, _ = np.linalg.svd(scaled)
+    if singular[-1] < PARALLEL * singular[0]:
+        involved = [n for n, v in zip(names, left[:, -1], strict=True) if abs(v) > 1e-6]
+        raise ModelError(
+            "boundary: these conditions are not independent of one another: "
+            + ", ".join(involved)
+            + "; remove one of them and prescribe something else instead"
+        )
+
+
+def unknown_names(ribbon: Ribbon) -> dict[str, int]:
+    """Unknown numbers that the conditions must determine, by what they stand for."""
+    model = ribbon.model
+    counts = {"position": 3, "directors": len(model.orientation.names), "force": 3, "moment": 3}
+    return counts
+
+
+def _count_message(ribbon: Ribbon, names: list[str], excess: int) -> str:
+    unknowns = ", ".join(f"{name} {count}" for name, count in unknown_names(ribbon).items())
+    own = [name for name in names if name.startswith("start: ")]
+    listed = "\n  ".join(name for name in names if name not in own)
+    remedy = (
+        f"{excess} too many: remove {excess} of them"
+        if excess > 0
+        else f"{-excess} missing: prescribe {-excess} more at the ends (position, directors, force "
+        "or moment; a free end has force and moment zero), or add equations under boundary.also"
+    )
+    return (
+        f"boundary: {len(names)} conditions for {len(names) - excess} unknowns ({unknowns}); "
+        f"{remedy}\nconditions of the scene ({len(names) - len(own)}):\n  {listed}\n"
+        f"and {len(own)} that make the start's directors orthonormal"
+    )
+
+
+def _refuse_repeated(names: list[str], samples: list[Linearized]) -> None:
+    lengths = [np.linalg.norm(jacobian, axis=1) for _, jacobian in samples]
+    for i, name in enumerate(names):
+        if min(length[i] for length in lengths) == 0:
+            raise ModelError(
+                f"{name}: does not depend on any unknown, so it prescribes nothing; remove it"
+            )
+    units = [j / length[:, None] for (_, j), length in zip(samples, lengths, strict=True)]
+    for j in range(len(names)):
+        for i in range(j):
+            cosines = [float(u[i] @ u[j]) for u in units]
+            if min(abs(c) for c in cosines) < 1 - PARALLEL or cosines[0] * cosines[1] < 0:
+                continue
+            # Parallel everywhere: the same condition if the residuals agree too.
+            sign = np.sign(cosines[0])
+            gaps = [
+                r[i] / length[i] - sign * r[j] / length[j]
+                for (r, _), length in zip(samples, lengths, strict=True)
+            ]
+            if max(abs(g) for g in gaps) < 1e-8:
+                raise ModelError(
+                    f"{names[i]} and {names[j]} are the same condition twice; remove one"
+                )
+            raise ModelError(
+                f"{names[i]} and {names[j]} prescribe different values for the same thing; "
+                "remove one"
+            )
+
+
+def _linearized(ribbon: Ribbon, problem: BoundaryValueProblem, theta: Array) -> list[Linearized]:
+    """Residuals (nb,) and Jacobians (nb, unknowns of both ends and constants) at two rods."""
+    points = ca.vertcat(*problem.points)
+    conditions = ca.vertcat(*problem.conditions.values())
+    jacobian = ca.densify(ca.jacobian(conditions, ca.vertcat(points, problem.constants)))
+    inputs = [points, problem.constants, problem.parameters]
+    function = ca.Function("conditions", inputs, [conditions, jacobian])
+    result = []
+    for seed in (0.3, 0.8):
+        residuals, matrix = function(*_generic_rod(ribbon, seed), theta)
+        result.append((np.array(residuals).ravel(), np.array(matrix)))
+    return result
+
+
+def _generic_rod(ribbon: Ribbon, seed: float) -> tuple[Array, Array]:
+    """States of both ends and constants of a rod without any symmetry.
+
+    A Weyl sequence instead of `numpy.random`, whose import costs more than all of this module.
+    """
+    values = 2 * np.modf(seed + np.arange(1, 37) * 0.6180339887498949)[0] - 1
+    frames = np.linalg.qr(values[:18].reshape(2, 3, 3))[0]
+    frames *= np.linalg.det(frames)[:, None, None]
+    r, n, m = values[18:].reshape(3, 2, 3)
+    x, c = ribbon.model.pack(RodFields(r, frames, n, m), np.zeros(3))
+    return x.ravel(), c

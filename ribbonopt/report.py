@@ -1,0 +1,83 @@
+"""The readable report of a solve, from its summary: text only, printed by the command line."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+
+def report(summary: Mapping[str, Any]) -> str:
+    """Return the report of a summary; digits beyond the estimated error are left out."""
+    s = summary
+    law = ", ".join(f"{k} = {v:g}" for k, v in s["law"].items() if k != "type")
+    head = f"{s['name']}: {s['status'].replace('_', ' ')}"
+    lines = [
+        head + (", verified" if s["verified"] else f"\n  {s['message']}"),
+        f"  law {s['law']['type']}{f' ({law})' if law else ''}, {s['formulation']} formulation, "
+        f"{s['states']} states",
+        f"  {s['transcription']}, {s['scheme']} {s['degree']} on {s['intervals']} intervals, "
+        f"{s['unknowns']} unknowns",
+        "",
+    ]
+    errors = s["error_estimate"]
+    lines += [
+        _row("force n(0), lab frame", s["n0"], errors["n0"]),
+        _row("moment m(0), lab frame", s["m0"], errors["m0"]),
+        _row("strains u(0), directors", s["u0"], errors["u0"]),
+        _row("energy", s["energy"], errors["energy"]),
+        _row("invariant H(0)", s["H0"], errors["H0"]),
+        "",
+        f"  drift along the ribbon   {_drifts(s['invariant_drift'])}",
+        f"  conditions hold to {_short(s['worst_condition'])}, equations between the stages to "
+        f"{_short(s['residual_between_nodes'])} (relative)",
+        f"  {_steps(s['path'])}",
+        f"  {_times(s['timings'])}",
+        f"  skipped: {'; '.join(s['skipped'])}",
+        f"  units {s['units']}",
+    ]
+    return "\n".join(lines)
+
+
+def _row(label: str, value: float | Sequence[float] | None, error: float | None) -> str:
+    values = value if isinstance(value, Sequence) else [value]
+    numbers = ", ".join(_number(v, error) for v in values)
+    text = f"({numbers})" if isinstance(value, Sequence) else numbers
+    bar = "" if error is None else f"  +- {error:.0e}"
+    return f"  {label:<25}{text}{bar}"
+
+
+def _number(value: float | None, error: float | None) -> str:
+    """Fixed-point number down to the last digit that the error leaves standing."""
+    if value is None:
+        return "unknown"
+    if error is None:
+        return f"{value:.6g}"
+    if abs(value) <= error:
+        return "0"
+    # Twice the bar, so that the last digit printed still stands after rounding.
+    decimals = max(0, min(15, -math.ceil(math.log10(4 * error))))
+    return f"{value:.{decimals}f}"
+
+
+def _drifts(drift: Mapping[str, float | None]) -> str:
+    words = {"n": "n", "n_dot_m": "n.m", "H": "H", "orthonormality": "orthonormality"}
+    return ", ".join(f"{words[k]} {_short(v)}" for k, v in drift.items())
+
+
+def _steps(path: Sequence[Mapping[str, Any]]) -> str:
+    texts = []
+    for step in path:
+        count = f", {step['iterations']} iterations" if "iterations" in step else ""
+        texts.append(f"{step['step']}{count} ({1e3 * step['seconds']:.1f} ms)")
+    return "; ".join(texts)
+
+
+def _times(timings: Mapping[str, float]) -> str:
+    names = [k for k in timings if k != "total"]
+    parts = ", ".join(f"{k} {1e3 * timings[k]:.1f}" for k in names)
+    return f"time in ms: {parts}; total {1e3 * timings['total']:.1f}"
+
+
+def _short(value: float | None) -> str:
+    return "unknown" if value is None else f"{value:.1e}"

@@ -1,0 +1,53 @@
+"""What a user writes: one scene as frozen data, read from YAML or built in Python."""
+
+from __future__ import annotations
+
+from .laws import (
+    Homotopy,
+    Kirchhoff,
+    Law,
+    Regularized,
+    Sadowsky,
+    SingleSheet,
+    Variational,
+)
+from .model import (
+    AnyVector,
+    Boundary,
+    Collocation,
+    Directors,
+    End,
+    Ipopt,
+    LabVector,
+    LoadGuess,
+    Newton,
+    Scene,
+    SolutionGuess,
+)
+from .yamlio import dump_scene, json_schema, load_scene, loads_scene, validate_scene
+
+__all__ = [
+    "AnyVector",
+    "Boundary",
+    "Collocation",
+    "Directors",
+    "End",
+    "Homotopy",
+    "Ipopt",
+    "Kirchhoff",
+    "LabVector",
+    "Law",
+    "LoadGuess",
+    "Newton",
+    "Regularized",
+    "Sadowsky",
+    "Scene",
+    "SingleSheet",
+    "SolutionGuess",
+    "Variational",
+    "dump_scene",
+    "json_schema",
+    "load_scene",
+    "loads_scene",
+    "validate_scene",
+]

@@ -1,0 +1,116 @@
+"""What is wrong with a scene, as data, and how it is told: one message for all problems of a file.
+
+A problem knows the path of its key; only the reader of a file knows lines, so the two meet here.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import NamedTuple
+
+Path = tuple[str | int, ...]
+
+_LONGEST = 60
+
+
+class Problem(NamedTuple):
+    """One fault of a scene.
+
+    Attributes
+    ----------
+    path
+        Keys and list indices that lead to the faulty value.
+    message
+        What was expected, or what is wrong, and the remedy where it is not obvious.
+    found
+        The faulty value as shown to the user; empty where nothing was found or it does not help.
+    """
+
+    path: Path
+    message: str
+    found: str = ""
+
+    def __str__(self) -> str:
+        """Return what was found and what is wrong with it."""
+        return f"found {self.found}, {self.message}" if self.found else self.message
+
+
+class InvalidSceneError(Exception):
+    """Carries all problems of a scene to the reader that can name their lines."""
+
+    def __init__(self, problems: Iterable[Problem]) -> None:
+        self.problems = tuple(problems)
+        super().__init__("; ".join(f"{dotted(p.path)}: {p}" for p in self.problems))
+
+
+class Place(NamedTuple):
+    """Where a value was written: a line of the file, or an override on the command line."""
+
+    line: int = 0
+    override: str = ""
+
+    def __str__(self) -> str:
+        """Return the place as messages cite it."""
+        return f"--set {self.override}" if self.override else f"line {self.line}"
+
+
+def dotted(path: Path) -> str:
+    """Return a path in the notation of overrides, such as `boundary.end.position.2`."""
+    return ".".join(str(key) for key in path)
+
+
+def shown(value: object) -> str:
+    """Return a value as a YAML user knows it, on one line and not too long."""
+    words = {"None": "null", "True": "true", "False": "false"}
+    text = repr(value)
+    text = words.get(text, text)
+    return text if len(text) <= _LONGEST else f"{text[: _LONGEST - 4]} ..."
+
+
+def suggestion(word: str, known: Iterable[str]) -> str:
+    """Return "; did you mean 'x'?" for the known word nearest to `word`, or an empty text."""
+    # Imported late: only a mistake pays for it.
+    from difflib import get_close_matches
+
+    # Of two letters, one in common must do: d4 for d1.
+    near = get_close_matches(word, list(known), n=1, cutoff=0.5 if len(word) < 4 else 0.6)
+    return f"; did you mean {near[0]!r}?" if near else ""
+
+
+def report(source: str, problems: Iterable[Problem], places: Mapping[Path, Place]) -> str:
+    """Return the one message that names every problem with its line or override.
+
+    Parameters
+    ----------
+    source
+        Name of the file, or another word for where the scene came from.
+    problems
+        What is wrong; told in the order of the file.
+    places
+        Where values were written; a missing key is placed at the key of what lacks it.
+    """
+    placed = sorted(
+        ((_place(problem.path, places), problem) for problem in problems),
+        key=lambda pair: (bool(pair[0].override), pair[0].line),
+    )
+    lines = [_line(place, problem) for place, problem in placed]
+    if len(lines) == 1:
+        separator = ", " if placed[0][0] != Place() else ": "
+        return f"{source}{separator}{lines[0]}"
+    return "\n  ".join([f"{source}: {len(lines)} problems", *lines])
+
+
+def _place(path: Path, places: Mapping[Path, Place]) -> Place:
+    for length in range(len(path), 0, -1):
+        if path[:length] in places:
+            return places[path[:length]]
+    return Place()
+
+
+def _line(place: Place, problem: Problem) -> str:
+    key = dotted(problem.path)
+    where = [] if place == Place() else [str(place)]
+    # An override that sets this very key has already named it.
+    if key and not (place.override and place.override.split("=")[0].strip() == key):
+        where.append(key)
+    return ": ".join(part for part in (", ".join(where), str(problem)) if part)

@@ -1,0 +1,137 @@
+"""Scenes in and out: YAML files with line numbers in every message, and the JSON schema."""
+
+from __future__ import annotations
+
+import os
+from collections.abc import Sequence
+from typing import Any
+
+from ..errors import SceneError
+from .checks import check
+from .laws import Sadowsky
+from .model import Boundary, Scene, SolutionGuess
+from .problems import InvalidSceneError, Problem, report
+from .validation import validate
+from .yamltext import YamlTextError, read
+
+
+def load_scene(path: str | os.PathLike[str], overrides: Sequence[str] = ()) -> Scene:
+    """Read a scene file.
+
+    Parameters
+    ----------
+    path
+        A YAML file in UTF-8.
+    overrides
+        Values to put in place of those of the file, such as "law.epsilon=1e-3".
+
+    Returns
+    -------
+    Scene
+        The validated scene. Relative paths in it stay as they are written.
+
+    Raises
+    ------
+    SceneError
+        If the file cannot be read, or for all problems of the scene together, each with its line.
+    """
+    source = os.fspath(path)
+    try:
+        with open(path, "rb") as file:
+            text = file.read().decode("utf-8-sig")
+    except FileNotFoundError:
+        raise SceneError(f"{source}: no such file") from None
+    except IsADirectoryError:
+        raise SceneError(f"{source}: is a directory; expected a scene file in it") from None
+    except UnicodeDecodeError as error:
+        raise SceneError(f"{source}: not a text in UTF-8 (byte {error.start})") from None
+    except (OSError, ValueError) as error:
+        reason = getattr(error, "strerror", None) or error
+        raise SceneError(f"{source}: cannot be read: {reason}") from None
+    return loads_scene(text, source, overrides)
+
+
+def loads_scene(text: str, source: str = "<string>", overrides: Sequence[str] = ()) -> Scene:
+    """Read a scene from YAML text; `source` names it in messages. See `load_scene`."""
+    try:
+        written = read(text)
+    except YamlTextError as error:
+        where = f"{source}, line {error.line}" if error.line else source
+        raise SceneError(f"{where}: {error}") from None
+    if written.data is None:
+        raise SceneError(f"{source}: is empty; expected a scene with name, law, boundary, guess")
+    if not isinstance(written.data, dict):
+        kind = "a list" if isinstance(written.data, list) else "a single value"
+        raise SceneError(f"{source}: is {kind}; expected keys such as name, law, boundary, guess")
+    plain = written
+    if overrides:
+        from .overrides import override  # only scenes that are overridden pay for it
+
+        plain = override(written, overrides)
+    try:
+        scene = _validated(plain.data)
+    except InvalidSceneError as error:
+        problems = [*plain.problems, *error.problems]
+        raise SceneError(report(source, problems, plain.places)) from None
+    if plain.problems:
+        raise SceneError(report(source, plain.problems, plain.places))
+    return scene
+
+
+def validate_scene(scene: Scene) -> Scene:
+    """Check a scene built in Python as strictly as one read from a file.
+
+    Returns
+    -------
+    Scene
+        An equal scene, with tuples in place of lists and floats in place of whole numbers.
+
+    Raises
+    ------
+    SceneError
+        For all problems of the scene together, each with the path of its field.
+    """
+    try:
+        return _validated(scene)
+    except InvalidSceneError as error:
+        raise SceneError(report("scene", error.problems, {})) from None
+
+
+def dump_scene(scene: Scene) -> str:
+    """Write a scene as YAML text that loads back to an equal scene.
+
+    Fields equal to their default are left out, except the law and every `type`.
+    """
+    from .dump import dump  # needed by no other function
+
+    return dump(validate_scene(scene))
+
+
+def json_schema() -> dict[str, Any]:
+    """Return the JSON schema of scene files, for editors to complete and check them."""
+    from .schema import json_schema_of  # imports pydantic itself, slower than all of this room
+
+    return json_schema_of(Scene)
+
+
+def _validated(data: object) -> Scene:
+    try:
+        scene = validate(Scene, data)
+    except InvalidSceneError as error:
+        raise InvalidSceneError([*error.problems, *_further(data, error.problems)]) from None
+    if problems := check(scene):
+        raise InvalidSceneError(problems)
+    return scene
+
+
+def _further(data: object, problems: Sequence[Problem]) -> list[Problem]:
+    """Return what is wrong with the sound parts of a scene whose other parts are not."""
+    if not isinstance(data, dict):
+        return []
+    faulty = {problem.path[0] for problem in problems}
+    if "parameters" in faulty:
+        faulty.add("boundary")  # its formulas would seem to use unknown names
+    parts = {"interval", "parameters", "boundary"} - faulty
+    sound = {key: value for key, value in data.items() if key in parts}
+    blank = {"name": "", "law": Sadowsky(), "boundary": Boundary(), "guess": SolutionGuess("")}
+    return check(validate(Scene, blank | sound))

@@ -1,0 +1,229 @@
+"""A solution: the frozen result of one solve, to sample, summarise, verify, or use as a guess."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import Any
+
+import casadi as ca
+import numpy as np
+
+from ribbonopt.arrays import Array
+from ribbonopt.mechanics import RodFields
+from ribbonopt.problem import BoundaryValueProblem
+from ribbonopt.scene import Scene
+from ribbonopt.scene.expressions import Shape, evaluate
+from ribbonopt.scene.formulas import parse_expression
+from ribbonopt.solvers import Status
+from ribbonopt.transcription.dense import DenseOutput
+
+
+@dataclass(frozen=True)
+class Verification:
+    """What was checked on the dense output after the solve.
+
+    Attributes
+    ----------
+    problems : tuple of str
+        One sentence for each thing that is not as the scene asked; empty if verified.
+    worst_condition : float
+        Largest departure from a prescribed condition.
+    residual_between_nodes : float
+        Largest relative defect of the differential equations between the stages.
+    drift : mapping
+        Drift of the invariants `n`, `n_dot_m`, `H` (relative) and `orthonormality` at the nodes.
+    """
+
+    problems: tuple[str, ...]
+    worst_condition: float
+    residual_between_nodes: float
+    drift: Mapping[str, float]
+
+
+@dataclass(frozen=True)
+class Solution:
+    """Equilibrium of one ribbon.
+
+    Lab-frame vectors, units Dw = L = 1, arclength s as in the scene's interval.
+
+    Attributes
+    ----------
+    scene : Scene
+        What was asked.
+    problem : BoundaryValueProblem
+        The equations that were solved.
+    dense : DenseOutput
+        The numbers.
+    status, message : Status, str
+        How the solve ended.
+    multipliers : (ng,) array
+        Lagrange multipliers of the discretised equations.
+    iterations : int
+        Iterations of the solver.
+    timings : mapping of str to float
+        Seconds by kind of work.
+    path : tuple of mappings
+        The steps that led here, with their cost.
+    skipped : tuple of str
+        What this scene did not need.
+    verification : Verification
+        What was checked afterwards.
+    """
+
+    scene: Scene
+    problem: BoundaryValueProblem
+    dense: DenseOutput
+    status: Status
+    message: str
+    iterations: int
+    verification: Verification
+    multipliers: Array = field(default_factory=lambda: np.empty(0))
+    timings: Mapping[str, float] = field(default_factory=dict)
+    path: tuple[Mapping[str, Any], ...] = ()
+    skipped: tuple[str, ...] = ()
+
+    @property
+    def verified(self) -> bool:
+        """Whether the solve converged and everything checked is as the scene asked."""
+        return self.status is Status.CONVERGED
+
+    @cached_property
+    def nodes(self) -> Array:
+        """Arclengths (N + 1,) of the mesh nodes."""
+        start, end = self.scene.interval
+        return start + (end - start) * self.dense.nodes(0)
+
+    def sample(self, s: Any, expression: str) -> Array:
+        """Return a named output, or a formula of named outputs, at arclengths s.
+
+        Parameters
+        ----------
+        s
+            Arclength or array (k,) of arclengths inside the scene's interval.
+        expression
+            A name (`r`, `d1`, `d2`, `d3`, `n`, `m` in the lab frame; `u` along the directors;
+            `u2`, `u3`, `eta`, `n1` ... `m3`, `energy`, `H`) or a formula such as "m2 / m3" or
+            "dot(d1, ex)".
+
+        Returns
+        -------
+        array
+            (k,) for scalars, (k, 3) for vectors; without the first axis for a single arclength.
+
+        Raises
+        ------
+        FormulaError
+            If the expression does not parse; a ValueError.
+        ValueError
+            If an arclength is outside the interval.
+        """
+        points = np.atleast_1d(np.asarray(s, dtype=float))
+        values = self.outputs(points)
+        result = values.get(expression)
+        if result is None:
+            shapes: dict[str, Shape] = {
+                k: "scalar" if v.ndim == 1 else "vector" for k, v in values.items()
+            }
+            node = parse_expression(expression, shapes)
+            result = np.asarray(evaluate(node, _ArrayEnv(values)))
+            result = np.broadcast_to(result, (len(points), result.shape[1]))
+            result = result[:, 0] if node.shape == "scalar" else result
+        return np.asarray(result[0] if np.ndim(s) == 0 else result)
+
+    def outputs(self, s: Array) -> dict[str, Array]:
+        """All named outputs at arclengths s (k,): (k,) for scalars, (k, 3) for vectors."""
+        start, end = self.scene.interval
+        sigma = (s - start) / (end - start)
+        if not ((sigma >= -1e-12) & (sigma <= 1 + 1e-12)).all():
+            raise ValueError(f"arclengths are expected in [{start}, {end}], found {s}")
+        return self._named(self.dense.states(0, sigma), self.dense.algebraic(0, sigma), s)
+
+    def integral(self, name: str) -> float:
+        """Integral over s of a scalar named output, by the scheme's own quadrature."""
+        start, end = self.scene.interval
+        v, sigma, weights = self.dense.stages(0)
+        nx = self.dense.blocks.layout.nx
+        values = self._named(v[:, :nx], v[:, nx:], start + (end - start) * sigma)[name]
+        return float((end - start) * weights @ values)
+
+    def fields(self, fraction: Array) -> RodFields:
+        """Fields at fractions (k,) of the length: a solution is a guess."""
+        start, end = self.scene.interval
+        o = self.outputs(start + (end - start) * fraction)
+        return RodFields(o["r"], np.stack([o["d1"], o["d2"], o["d3"]], axis=2), o["n"], o["m"])
+
+    @cached_property
+    def start(self) -> dict[str, Array]:
+        """Named outputs at the start of the ribbon."""
+        return {k: v[0] for k, v in self.outputs(np.array([self.scene.interval[0]])).items()}
+
+    @property
+    def n0(self) -> Array:
+        """Force (3,) at the start, lab frame."""
+        return self.start["n"]
+
+    @property
+    def m0(self) -> Array:
+        """Moment (3,) at the start, lab frame."""
+        return self.start["m"]
+
+    @property
+    def u0(self) -> Array:
+        """Strains (u1, u2, u3) at the start, along the directors."""
+        return self.start["u"]
+
+    @property
+    def energy(self) -> float:
+        """Strain energy of the ribbon."""
+        return self.integral("energy")
+
+    @property
+    def twist(self) -> float:
+        """Twist of the directors about the centre line, in turns."""
+        return self.integral("u3") / (2 * np.pi)
+
+    def _named(self, x: Array, z: Array, s: Array) -> dict[str, Array]:
+        function, names = self.problem.output_functions[0]
+        count = len(s)
+        c = ca.repmat(ca.DM(self.dense.constants), 1, count)
+        theta = ca.repmat(ca.DM(self.dense.theta), 1, count)
+        values = np.array(function(x.T, z.T, c, theta, s[None])).T
+        ends = np.cumsum(list(names.values()))
+        parts = np.split(values, ends[:-1], axis=1)
+        return {
+            name: part[:, 0] if part.shape[1] == 1 else part
+            for name, part in zip(names, parts, strict=True)
+        }
+
+
+@dataclass(frozen=True)
+class _ArrayEnv:
+    """Evaluates formulas on arrays: scalars as columns (k, 1), vectors (k, 3)."""
+
+    values: Mapping[str, Array]
+
+    def number(self, value: float, key: str | None) -> Array:
+        return np.array([[value]])
+
+    def name(self, name: str) -> Array:
+        value = self.values[name]
+        return value[:, None] if value.ndim == 1 else value
+
+    def quantity(self, name: str, end: str) -> Array:
+        raise KeyError(f"{name}({end})")
+
+    def vector(self, components: Sequence[Array]) -> Array:
+        return np.concatenate(np.broadcast_arrays(*components), axis=1)
+
+    def component(self, vector: Array, axis: str) -> Array:
+        i = "xyz".index(axis)
+        return np.asarray(vector[:, i : i + 1])
+
+    def call(self, function: str, arguments: Sequence[Array]) -> Array:
+        if function == "dot":
+            return np.asarray(np.sum(arguments[0] * arguments[1], axis=1, keepdims=True))
+        if function == "norm":
+            return np.asarray(np.linalg.norm(arguments[0], axis=1, keepdims=True))
+        return np.asarray(getattr(np, function)(*arguments))

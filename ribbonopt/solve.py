@@ -1,0 +1,191 @@
+"""The path: scene, boundary-value problem, NLP, solver, solution, checks.
+
+`solve(scene)` walks it once. `prepare(scene)` keeps what depends on the structure of a scene only,
+so that other numbers (epsilon, loads, prescribed values, meshes) are solved without building again.
+"""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass, fields, replace
+from typing import Any
+
+import numpy as np
+
+from ribbonopt.accuracy.resistance import where_it_resists
+from ribbonopt.accuracy.verify import unverified, verify
+from ribbonopt.errors import ConvergenceError, ModelError
+from ribbonopt.guess import Guess, IntegratedLoads, initial_unknowns
+from ribbonopt.mechanics.boundary import gap_between_ends
+from ribbonopt.problem import BoundaryValueProblem, Ribbon, pose, theta_of
+from ribbonopt.problem.examine import examine
+from ribbonopt.results import load_solution
+from ribbonopt.scene import LoadGuess, Scene
+from ribbonopt.solution import Solution
+from ribbonopt.solvers import SOLVERS, Solver, Status
+from ribbonopt.transcription import NLP, Collocation, Mesh
+from ribbonopt.transcription.dense import DenseOutput
+
+
+@dataclass(frozen=True)
+class Prepared:
+    """A scene's structure, built: solves any scene that differs from it in numbers only."""
+
+    scene: Scene
+    ribbon: Ribbon
+    problem: BoundaryValueProblem
+    collocation: Collocation
+    nlp: NLP
+    solver: Solver
+    seconds: float
+
+    def solve(self, scene: Scene | None = None, guess: Guess | None = None) -> Solution:
+        """Solve a scene of this structure (default: the prepared one).
+
+        Parameters
+        ----------
+        scene
+            Numbers; must agree with the prepared scene in everything else.
+        guess
+            Where to start, instead of the scene's own guess.
+
+        Raises
+        ------
+        ModelError
+            If the scene has another structure.
+        ConvergenceError
+            If the prescribed ends are further apart than the ribbon is long.
+        """
+        started = time.perf_counter()
+        scene = scene or self.scene
+        theta = self._theta(scene)
+        refuse_unreachable(scene)
+        mesh = Mesh.uniform(scene.transcription.intervals)
+        source = guess or _guess(scene, self.ribbon)
+        reference = theta[[self.problem.parameter_names.index(f"reference.{a}") for a in "xyz"]]
+        w = initial_unknowns(
+            source, self.ribbon, self.collocation, self.nlp.layout, mesh, reference
+        )
+        guessed = time.perf_counter()
+        p = np.concatenate([theta, mesh.widths])
+        report = self.solver.solve(w, p)
+        solved = time.perf_counter()
+        solution = Solution(
+            scene=scene,
+            problem=self.problem,
+            dense=DenseOutput(self.nlp.blocks, report.w, p),
+            status=report.status,
+            message=report.status.value,
+            iterations=report.iterations,
+            verification=unverified(),
+            multipliers=report.multipliers,
+            path=(
+                {"step": f"guess: {_words(scene.guess)}", "seconds": guessed - started},
+                {
+                    "step": f"{scene.solver.type}, {self.collocation.tableau.name} on "
+                    f"{scene.transcription.intervals} intervals",
+                    "iterations": report.iterations,
+                    "seconds": solved - guessed,
+                },
+            ),
+            skipped=skipped(scene),
+        )
+        if report.status.converged:
+            solution = _verified(solution, self.ribbon)
+        else:
+            where = where_it_resists(report.residuals, self.nlp.layout, solution)
+            solution = replace(solution, message=f"{report.status.value}. {where}")
+        total = time.perf_counter() - started + self.seconds
+        timings = {
+            "build": self.seconds,
+            "evaluate": report.evaluate,
+            "linear": report.linear,
+            "rest": total - self.seconds - report.evaluate - report.linear,
+            "total": total,
+        }
+        return replace(solution, timings=timings)
+
+    def _theta(self, scene: Scene) -> np.ndarray:
+        values = theta_of(scene)
+        same = tuple(values) == self.problem.parameter_names and all(
+            getattr(scene, f.name) == getattr(self.scene, f.name)
+            for f in fields(Scene)
+            if f.name in ("formulation", "states", "transcription", "solver")
+        )
+        if not same or scene.law.type != self.scene.law.type:
+            raise ModelError("this scene differs from the prepared one in more than its numbers")
+        return np.array(list(values.values()))
+
+
+def solve(scene: Scene) -> Solution:
+    """Solve a scene: the whole path once.
+
+    Raises
+    ------
+    ModelError
+        If the conditions do not fit the unknowns.
+    ConvergenceError
+        If the prescribed ends cannot be reached. A solve that merely fails to converge returns a
+        Solution whose status and message say so.
+    """
+    return prepare(scene).solve()
+
+
+def prepare(scene: Scene) -> Prepared:
+    """Build everything of a scene that does not depend on its numbers."""
+    started = time.perf_counter()
+    ribbon, problem = pose(scene)
+    examine(ribbon, problem, np.array(list(theta_of(scene).values())))
+    collocation = Collocation.named(scene.transcription.scheme, scene.transcription.degree)
+    nlp = collocation.transcribe(problem, (scene.transcription.intervals,))
+    options = {f.name: getattr(scene.solver, f.name) for f in fields(scene.solver)}
+    solver = SOLVERS[options.pop("type")](nlp, **options)
+    solver.build()
+    seconds = time.perf_counter() - started
+    return Prepared(scene, ribbon, problem, collocation, nlp, solver, seconds)
+
+
+def skipped(scene: Scene) -> tuple[str, ...]:
+    """Say what a scene does not need and what is therefore not made, each with its reason."""
+    result = []
+    if scene.states == "reduced":
+        result.append("force and moment as states (no loads: n is constant, m follows from r)")
+        result.append("nine director components (a unit quaternion carries the frame)")
+    result.append("second derivatives (square equations, nothing is minimised)")
+    if scene.solver.type == "newton":
+        result.append("IPOPT and the sparse Jacobian (elements are condensed one by one)")
+    result.append("mesh refinement and further formulations (not asked for)")
+    return tuple(result)
+
+
+def _verified(solution: Solution, ribbon: Ribbon) -> Solution:
+    verification = verify(solution, ribbon)
+    solution = replace(solution, verification=verification)
+    if not verification.problems:
+        return solution
+    message = f"{Status.WRONG_SOLUTION.value}. " + "; ".join(verification.problems)
+    return replace(solution, status=Status.WRONG_SOLUTION, message=message)
+
+
+def _guess(scene: Scene, ribbon: Ribbon) -> Guess:
+    if isinstance(scene.guess, LoadGuess):
+        return IntegratedLoads(ribbon, scene, scene.guess)
+    return load_solution(scene.guess.solution)
+
+
+def _words(guess: Any) -> str:
+    if isinstance(guess, LoadGuess):
+        return "force and moment integrated from the start"
+    return f"saved solution {guess.solution}"
+
+
+def refuse_unreachable(scene: Scene) -> None:
+    """Raise ConvergenceError if the prescribed ends are further apart than the ribbon is long."""
+    gap, length = gap_between_ends(scene), scene.interval[1] - scene.interval[0]
+    if gap > length * (1 + 1e-12):
+        raise ConvergenceError(
+            f"unreachable: the prescribed positions of the ends are {gap:.6g} apart "
+            f"(boundary.start.position, boundary.end.position), the ribbon is {length:.6g} long "
+            "(interval); bring them together or lengthen the ribbon",
+            status=Status.UNREACHABLE.name.lower(),
+        )

@@ -1,0 +1,181 @@
+"""Linear algebra of a collocation system: stages eliminated by element, nodes by cyclic reduction.
+
+1. Stages. Each element's stage equations are solved for the stages, all elements in one batched
+   LAPACK call; what is left couples neighbouring nodes: A_e x_e + B_e x_{e+1} + C_e c = d_e.
+2. Nodes. Pairs of neighbours are merged by orthogonal elimination of the node they share, all pairs
+   of a level at once (structured orthogonal factorisation, Wright 1992): stable for growing and
+   decaying modes alike, cost linear in the number of elements, few numpy calls.
+3. When few nodes are left, they, the constants and the conditions make one small dense system.
+
+The factors are kept: a new right-hand side costs matrix-vector products only.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from ribbonopt.arrays import Array
+from ribbonopt.transcription.blocks import Derivatives, ElementBlocks, Residuals
+
+DENSE = 80  # nodes of a phase are no longer reduced when their unknowns number less than this
+
+
+@dataclass(frozen=True)
+class _Level:
+    """One level of the reduction: factors that eliminate the middle node of each pair."""
+
+    QT: Array  # (pairs, 2 nx, 2 nx)
+    R_inverse: Array  # (pairs, nx, nx)
+    left: Array  # (pairs, nx, nx), coefficient of the left node in the eliminated rows
+    right: Array
+    constants: Array
+
+
+@dataclass(frozen=True)
+class _Chain:
+    """Factors of the elements of one phase."""
+
+    levels: tuple[_Level, ...]
+
+    def reduce(self, d: Array) -> tuple[list[Array], Array]:
+        """Carry a right-hand side (n, nx) down the levels: eliminated parts and what is left.
+
+        A last element without a partner goes to the next level as it is.
+        """
+        eliminated = []
+        nx = d.shape[1]
+        for level in self.levels:
+            pairs = len(level.QT)
+            merged = (level.QT @ d[: 2 * pairs].reshape(pairs, 2 * nx, 1))[:, :, 0]
+            eliminated.append(merged[:, :nx])
+            d = np.concatenate([merged[:, nx:], d[2 * pairs :]])
+        return eliminated, d
+
+    def expand(self, nodes: Array, c: Array, eliminated: list[Array]) -> Array:
+        """Nodes (n + 1, nx) of the phase from those that were not eliminated."""
+        for level, d in zip(reversed(self.levels), reversed(eliminated), strict=True):
+            pairs = len(level.QT)
+            left, right = nodes[:pairs], nodes[1 : pairs + 1]
+            known = _times(level.left, left) + _times(level.right, right) + level.constants @ c
+            middle = _times(level.R_inverse, d - known)
+            wider = np.empty((len(nodes) + pairs, nodes.shape[1]))
+            wider[0 : 2 * pairs : 2], wider[1 : 2 * pairs : 2] = left, middle
+            wider[2 * pairs :] = nodes[pairs:]
+            nodes = wider
+        return nodes
+
+
+class CondensedSystem:
+    """Factored Newton matrix of a collocation system; `solve` gives the Newton step."""
+
+    def __init__(self, blocks: ElementBlocks, derivatives: Derivatives, p: Array) -> None:
+        lay = self._layout = blocks.layout
+        self._widths = blocks.widths(p)
+        self._eliminate_stages(blocks, derivatives.stages)
+        A, B, C = self._node_blocks
+        chains, rest = zip(
+            *(_factor_chain(A[s], B[s], C[s]) for s in lay.phase_slices()), strict=True
+        )
+        self._chains: tuple[_Chain, ...] = chains
+        # Nodes that remain in each phase; neighbouring phases share one.
+        self._ends = np.cumsum([0, *(len(a) for a, _, _ in rest)])
+        A, B, C = (np.concatenate(part) for part in zip(*rest, strict=True))
+        self._final_inverse = np.linalg.inv(self._final(A, B, C, derivatives.conditions))
+
+    def solve(self, residuals: Residuals) -> Array:
+        """Newton step (nw,): minus the inverse of the Jacobian times the residuals."""
+        lay = self._layout
+        count = lay.element_count
+        local = _times(self._stage_inverse, -residuals.stages.reshape(count, -1))
+        d = -residuals.nodes + _times(self._step, local)
+        reduced = [
+            chain.reduce(d[s]) for chain, s in zip(self._chains, lay.phase_slices(), strict=True)
+        ]
+        right = np.concatenate([*(rest.ravel() for _, rest in reduced), -residuals.conditions])
+        unknowns = self._final_inverse @ right
+        remaining = unknowns[: len(unknowns) - lay.nc].reshape(-1, lay.nx)
+        c = unknowns[len(unknowns) - lay.nc :]
+        parts = [
+            chain.expand(remaining[a : b + 1], c, eliminated)
+            for chain, (eliminated, _), (a, b) in zip(
+                self._chains, reduced, pairwise(self._ends), strict=True
+            )
+        ]
+        nodes = np.concatenate([parts[0], *(part[1:] for part in parts[1:])])
+        stages = local + _times(self._to_node, nodes[:-1]) + self._to_constants @ c
+        return lay.pack(nodes, stages.reshape(count, lay.stages, lay.nv), c)
+
+    def _final(self, A: Array, B: Array, C: Array, conditions: Array) -> Array:
+        """Dense matrix of the remaining nodes and the constants."""
+        lay, count = self._layout, len(A)
+        nx, width = lay.nx, (count + 1) * lay.nx
+        final = np.zeros((width + lay.nc, width + lay.nc))
+        rows = final[: count * nx].reshape(count, nx, -1)
+        nodes = rows[:, :, :width].reshape(count, nx, count + 1, nx)
+        e = np.arange(count)
+        nodes[e, :, e] = A
+        nodes[e, :, e + 1] = B
+        rows[:, :, width:] = C
+        points = (self._ends[:, None] * nx + np.arange(nx)).ravel()
+        final[count * nx :, points] = conditions[:, : len(points)]
+        final[count * nx :, width:] = conditions[:, len(points) :]
+        return final
+
+    def _eliminate_stages(self, blocks: ElementBlocks, J: Array) -> None:
+        lay, t = self._layout, blocks.tableau
+        N, K, nx, nv = lay.element_count, lay.stages, lay.nx, lay.nv
+        h = self._widths[:, None, None, None]
+        dynamic = h * J[:, :, :nx]
+        # Rows (i, equation), columns (j, unknown): identity - h a_ij dF_j, algebraic rows as are.
+        M = np.zeros((N, K, nv, K, nv))
+        M[:, :, :nx] = -np.einsum("ij,ejxv->eixjv", t.matrix, dynamic[..., :nv])
+        i = np.arange(K)[:, None]
+        x = np.arange(nx)
+        M[:, i, x, i, x] += 1
+        if nv > nx:
+            j = np.arange(K)
+            M[:, j, nx:, j] = np.moveaxis(J[:, :, nx:, :nv], 0, 1)
+        inverse = np.asarray(np.linalg.inv(M.reshape(N, K * nv, K * nv)), dtype=float)
+        to_constants = np.zeros((N, K, nv, lay.nc))
+        to_constants[:, :, :nx] = np.einsum("ij,ejxc->eixc", t.matrix, dynamic[..., nv:])
+        to_constants[:, :, nx:] = -J[:, :, nx:, nv:]
+        to_node = np.zeros((K, nv, nx))
+        to_node[:, x, x] = 1
+        self._stage_inverse = inverse
+        self._to_node = inverse @ to_node.reshape(K * nv, nx)
+        self._to_constants = inverse @ to_constants.reshape(N, K * nv, lay.nc)
+        # x_{e+1} = x_e + h sum b_j (dF_j . stages + dF_j/dc . c).
+        weighted = t.weights[:, None, None] * dynamic
+        self._step = weighted[..., :nv].swapaxes(1, 2).reshape(N, nx, K * nv)
+        A = -(np.eye(nx) + self._step @ self._to_node)
+        C = -(weighted[..., nv:].sum(axis=1) + self._step @ self._to_constants)
+        self._node_blocks = A, np.broadcast_to(np.eye(nx), (N, nx, nx)), C
+
+
+def _factor_chain(A: Array, B: Array, C: Array) -> tuple[_Chain, tuple[Array, Array, Array]]:
+    """Reduce A_e x_e + B_e x_{e+1} + C_e c = d_e to few enough relations."""
+    nx = A.shape[1]
+    few = max(1, DENSE // nx - 1)
+    levels = []
+    while len(A) > few:
+        pairs = len(A) // 2
+        even = slice(0, 2 * pairs, 2), slice(1, 2 * pairs, 2)
+        Q, R = np.linalg.qr(np.concatenate([B[even[0]], A[even[1]]], axis=1), mode="complete")
+        QT = Q.swapaxes(1, 2)
+        left = QT[:, :, :nx] @ A[even[0]]
+        right = QT[:, :, nx:] @ B[even[1]]
+        constants = QT[:, :, :nx] @ C[even[0]] + QT[:, :, nx:] @ C[even[1]]
+        inverse = np.linalg.inv(R[:, :nx])
+        levels.append(_Level(QT, inverse, left[:, :nx], right[:, :nx], constants[:, :nx]))
+        A = np.concatenate([left[:, nx:], A[2 * pairs :]])
+        B = np.concatenate([right[:, nx:], B[2 * pairs :]])
+        C = np.concatenate([constants[:, nx:], C[2 * pairs :]])
+    return _Chain(tuple(levels)), (A, B, C)
+
+
+def _times(matrices: Array, vectors: Array) -> Array:
+    """Products of matrices (n, a, b) with vectors (n, b)."""
+    return np.asarray((matrices @ vectors[:, :, None])[:, :, 0])

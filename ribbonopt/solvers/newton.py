@@ -1,0 +1,138 @@
+"""Newton's method for square systems: damped by the natural monotonicity test, factors kept.
+
+A step dx is judged by the simplified step that the same factors give at its end (Deuflhard's
+natural test, invariant under linear changes of the equations). While simplified steps contract by
+`KEEP` or better they are taken as they are, at the price of one residual each.
+"""
+
+from __future__ import annotations
+
+import time
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from ribbonopt.arrays import Array
+from ribbonopt.transcription import NLP
+
+from .status import SolveReport, Status
+from .systems import ElementSystem, SparseSystem, System
+
+KEEP = 0.1
+SMALLEST_DAMPING = 1e-4
+
+
+@dataclass(frozen=True)
+class Newton:
+    """Newton's method on one square NLP; `tolerance` is relative to 1 + |w|, entry by entry."""
+
+    nlp: NLP
+    tolerance: float = 1e-13
+    max_iterations: int = 50
+
+    @cached_property
+    def system(self) -> System:
+        """How this NLP is evaluated and factored, built at first use and kept."""
+        structure = self.nlp.structure
+        return SparseSystem(self.nlp) if structure is None else ElementSystem(structure)
+
+    def build(self) -> None:
+        """Build the system now rather than at the first solve."""
+        self.system.build()
+
+    def solve(self, w: Array, p: Array) -> SolveReport:
+        """Solve from the guess w (nw,) for the parameters p (np,)."""
+        if not self.nlp.square:
+            return _Run(self, w, p).report(Status.NOT_SQUARE)
+        run = _Run(self, np.array(w, dtype=float), np.asarray(p, dtype=float))
+        with np.errstate(all="ignore"):
+            return run.report(run.iterate())
+
+
+class _Run:
+    """One solve: the iterate, its counters and its clock."""
+
+    def __init__(self, settings: Newton, w: Array, p: Array) -> None:
+        self.settings, self.w, self.p = settings, w, p
+        self.iterations = self.factorizations = 0
+        self.evaluate = self.linear = 0.0
+        self.started = time.perf_counter()
+
+    def iterate(self) -> Status:
+        """Iterate until an end is reached."""
+        settings, damping = self.settings, 1.0
+        while self.iterations < settings.max_iterations:
+            try:
+                step = self._newton_step()
+            except np.linalg.LinAlgError:
+                return Status.SINGULAR
+            if not np.isfinite(step).all():
+                return Status.INVALID_NUMBER
+            damping = min(1.0, 4 * damping)
+            # Inner loop: simplified steps with the factors just made.
+            while self.iterations < settings.max_iterations:
+                size = self._size(step)
+                if size <= settings.tolerance:
+                    self.w = self.w + step
+                    return Status.CONVERGED
+                self.iterations += 1
+                trial = self.w + damping * step
+                following = self._simplified_step(trial)
+                contraction = self._size(following) / size
+                if not contraction <= 1 - damping / 4:  # also where it is not a number
+                    if damping < SMALLEST_DAMPING:
+                        return self._stalled(size)
+                    damping /= 4
+                    continue
+                self.w = trial
+                if damping == 1 and contraction <= KEEP:
+                    step = following
+                    continue
+                if damping == 1 and self._size(following) <= settings.tolerance:
+                    self.w = trial + following
+                    return Status.CONVERGED
+                break
+        return Status.MAX_ITERATIONS
+
+    def _stalled(self, size: float) -> Status:
+        # At the limit of rounding no step contracts any more; the iterate is as good as it gets.
+        attainable = 1e3 * np.finfo(float).eps
+        return Status.CONVERGED if size <= attainable else Status.STALLED
+
+    def _size(self, step: Array) -> float:
+        return float(np.max(np.abs(step) / (1 + np.abs(self.w)), initial=0.0))
+
+    def _newton_step(self) -> Array:
+        start = time.perf_counter()
+        residuals, derivatives = self.settings.system.linearize(self.w, self.p)
+        middle = time.perf_counter()
+        self.factors = self.settings.system.factor(derivatives, self.p)
+        step = self.factors.solve(residuals)
+        self.evaluate += middle - start
+        self.linear += time.perf_counter() - middle
+        self.factorizations += 1
+        return step
+
+    def _simplified_step(self, w: Array) -> Array:
+        start = time.perf_counter()
+        residuals = self.settings.system.residuals(w, self.p)
+        middle = time.perf_counter()
+        step = self.factors.solve(residuals)
+        self.evaluate += middle - start
+        self.linear += time.perf_counter() - middle
+        return step
+
+    def report(self, status: Status) -> SolveReport:
+        """Return what happened."""
+        return SolveReport(
+            status=status,
+            w=self.w,
+            multipliers=np.zeros(self.settings.nlp.equations),
+            residuals=self.settings.system.vector(self.w, self.p),
+            iterations=self.iterations,
+            factorizations=self.factorizations,
+            evaluate=self.evaluate,
+            linear=self.linear,
+            total=time.perf_counter() - self.started,
+        )

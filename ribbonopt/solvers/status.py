@@ -1,0 +1,81 @@
+"""How a solve ended; the value of each member is the message a user reads, remedy included."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from enum import Enum
+
+from ribbonopt.arrays import Array
+
+
+class Status(Enum):
+    """End of a solve: name for programs, value for people."""
+
+    CONVERGED = "converged"
+    MAX_ITERATIONS = (
+        "the iterations ran out before convergence: start from a nearer guess (a saved solution "
+        "at an easier parameter), or raise solver.max_iterations"
+    )
+    STALLED = (
+        "the steps became too small to reduce the residual: start from a nearer guess, refine the "
+        "mesh (transcription.intervals), or use solver: {type: ipopt}"
+    )
+    SINGULAR = (
+        "the linearised equations are singular: the conditions leave the ribbon free to move, or "
+        "the guess sits where the law is not differentiable (m = 0); prescribe what is free, or "
+        "change the guess"
+    )
+    INFEASIBLE = (
+        "no point satisfies all the equations near the last iterate: check that the conditions can "
+        "be met together, or start from another guess"
+    )
+    INVALID_NUMBER = (
+        "the equations gave a number that is not finite: start from another guess, or regularise "
+        "the law"
+    )
+    NOT_SQUARE = (
+        "Newton's method solves equations only: use solver: {type: ipopt} for costs, bounds and "
+        "inequalities"
+    )
+    WRONG_SOLUTION = (
+        "the equations are solved, but not the problem the scene states: start from another guess, "
+        "or refine the mesh"
+    )
+    UNREACHABLE = "the ends are further apart than the ribbon is long: bring them together"
+
+    @property
+    def converged(self) -> bool:
+        """Whether the nonlinear equations are solved."""
+        return self in (Status.CONVERGED, Status.WRONG_SOLUTION)
+
+
+@dataclass(frozen=True)
+class SolveReport:
+    """What a solver returns.
+
+    Attributes
+    ----------
+    status : Status
+        How it ended.
+    w : (nw,) array
+        Last iterate, converged or not.
+    multipliers : (ng,) array
+        Lagrange multipliers of the constraints (zeros where the solver has none).
+    residuals : (ng,) array
+        Constraint values at w.
+    iterations, factorizations : int
+        Iterations, and matrices factored.
+    evaluate, linear, total : float
+        Seconds spent in function evaluation, in linear algebra (for IPOPT: everything of its own,
+        mostly linear algebra), and in all.
+    """
+
+    status: Status
+    w: Array
+    multipliers: Array
+    residuals: Array
+    iterations: int
+    factorizations: int
+    evaluate: float
+    linear: float
+    total: float

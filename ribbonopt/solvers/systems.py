@@ -1,0 +1,110 @@
+"""Two ways to evaluate and factor a square NLP: by its element blocks, or as a sparse matrix."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any, Protocol
+
+import casadi as ca
+import numpy as np
+
+from ribbonopt.arrays import Array
+from ribbonopt.transcription import NLP
+from ribbonopt.transcription.blocks import Derivatives, ElementBlocks, Residuals
+
+from .condense import CondensedSystem
+
+
+class Factors(Protocol):
+    """A factored Newton matrix."""
+
+    def solve(self, residuals: Any) -> Array:
+        """Return the Newton step (nw,)."""
+
+
+class System(Protocol):
+    """A square system: what it calls residuals and derivatives is its own business."""
+
+    def build(self) -> None:
+        """Build the functions now rather than at the first evaluation."""
+
+    def residuals(self, w: Array, p: Array) -> Any:
+        """Return the residuals at w."""
+
+    def linearize(self, w: Array, p: Array) -> tuple[Any, Any]:
+        """Return residuals and derivatives at w."""
+
+    def factor(self, derivatives: Any, p: Array) -> Factors:
+        """Return the factors of the Jacobian; LinAlgError where it is singular."""
+
+    def vector(self, w: Array, p: Array) -> Array:
+        """Return the residuals in the order of the NLP's constraints."""
+
+
+@dataclass(frozen=True)
+class ElementSystem:
+    """A collocation system, factored element by element (`ribbonopt.solvers.condense`)."""
+
+    blocks: ElementBlocks
+
+    def build(self) -> None:
+        """Build the functions now rather than at the first evaluation."""
+        self.blocks.build()
+
+    def residuals(self, w: Array, p: Array) -> Residuals:
+        """Residuals at w."""
+        return self.blocks.residuals(w, p)
+
+    def linearize(self, w: Array, p: Array) -> tuple[Residuals, Derivatives]:
+        """Residuals and derivatives at w."""
+        return self.blocks.linearize(w, p)
+
+    def factor(self, derivatives: Derivatives, p: Array) -> CondensedSystem:
+        """Factors of the Jacobian; LinAlgError where it is singular."""
+        return CondensedSystem(self.blocks, derivatives, p)
+
+    def vector(self, w: Array, p: Array) -> Array:
+        """Residuals in the order of the NLP's constraints."""
+        return self.blocks.residuals(w, p).vector()
+
+
+@dataclass(frozen=True)
+class SparseFactors:
+    """Sparse QR factors of one Jacobian."""
+
+    solver: ca.Linsol
+    matrix: ca.DM
+
+    def solve(self, residuals: Array) -> Array:
+        """Newton step (nw,)."""
+        return np.array(self.solver.solve(self.matrix, ca.DM(-residuals))).ravel()
+
+
+@dataclass(frozen=True)
+class SparseSystem:
+    """Any square NLP, by CasADi's sparse QR on its whole Jacobian."""
+
+    nlp: NLP
+
+    def build(self) -> None:
+        """Build the functions now rather than at the first evaluation."""
+        _ = self.nlp.functions
+
+    def residuals(self, w: Array, p: Array) -> Array:
+        """Constraint values at w."""
+        return np.array(self.nlp.functions.constraints(w, p)).ravel()
+
+    def linearize(self, w: Array, p: Array) -> tuple[Array, ca.DM]:
+        """Constraint values and sparse Jacobian at w."""
+        values, jacobian = self.nlp.functions.jacobian(w, p)
+        return np.array(values).ravel(), jacobian
+
+    def factor(self, derivatives: ca.DM, p: Array) -> SparseFactors:
+        """Factors of the Jacobian; LinAlgError where it is singular."""
+        solver = ca.Linsol("newton", "qr", derivatives.sparsity())
+        solver.nfact(derivatives)
+        return SparseFactors(solver, derivatives)
+
+    def vector(self, w: Array, p: Array) -> Array:
+        """Constraint values at w."""
+        return self.residuals(w, p)

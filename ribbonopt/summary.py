@@ -1,0 +1,91 @@
+"""The summary of a solution: plain numbers under keys that stay (DESIGN: `summary.json`)."""
+
+from __future__ import annotations
+
+import math
+import platform
+from dataclasses import fields
+from typing import Any
+
+import casadi as ca
+import numpy as np
+
+from ribbonopt.accuracy.estimate import estimate_error
+from ribbonopt.solution import Solution
+from ribbonopt.version import VERSION
+
+
+def summarize(solution: Solution) -> dict[str, Any]:
+    """Return the summary: lab-frame vectors at the start, units Dw = L = 1, seconds.
+
+    Numbers that are not known are None.
+    """
+    scene, dense, checks = solution.scene, solution.dense, solution.verification
+    start = solution.start
+    law = {f.name: getattr(scene.law, f.name) for f in fields(scene.law)}
+    summary = {
+        "name": scene.name,
+        "status": solution.status.name.lower(),
+        "verified": solution.verified,
+        "message": solution.message,
+        "formulation": scene.formulation,
+        "states": scene.states,
+        "transcription": scene.transcription.type,
+        "scheme": scene.transcription.scheme,
+        "solver": scene.solver.type,
+        "law": law,
+        "parameters": dict(scene.parameters),
+        "interval": list(scene.interval),
+        "n0": start["n"].tolist(),
+        "m0": start["m"].tolist(),
+        "u0": start["u"].tolist(),
+        "H0": float(start["H"]),
+        "energy": solution.energy,
+        "twist": solution.twist,
+        "length": scene.interval[1] - scene.interval[0],
+        "invariant_drift": dict(checks.drift),
+        "worst_condition": checks.worst_condition,
+        "residual_between_nodes": checks.residual_between_nodes,
+        "error_estimate": _error_estimate(solution),
+        "switch_points": [],
+        "half_twists": None,
+        "unknowns": dense.blocks.layout.unknowns,
+        "intervals": dense.blocks.layout.element_count,
+        "degree": dense.blocks.tableau.degree,
+        "iterations": solution.iterations,
+        "path": [dict(step) for step in solution.path],
+        "skipped": list(solution.skipped),
+        "timings": dict(solution.timings),
+        "versions": versions(),
+        "units": "Dw = L = 1",
+    }
+    finite: dict[str, Any] = _finite(summary)
+    return finite
+
+
+def _error_estimate(solution: Solution) -> dict[str, float | None]:
+    """Estimated absolute errors; None for a solve that did not converge."""
+    if not solution.status.converged:
+        return dict.fromkeys(("n0", "m0", "u0", "H0", "energy", "states"))
+    return dict(estimate_error(solution))
+
+
+def versions() -> dict[str, str]:
+    """Versions of what the numbers depend on."""
+    return {
+        "ribbonopt": VERSION,
+        "casadi": ca.CasadiMeta.version(),
+        "numpy": np.__version__,
+        "python": platform.python_version(),
+    }
+
+
+def _finite(value: Any) -> Any:
+    """Copy with None for every number that JSON cannot say."""
+    if isinstance(value, dict):
+        return {key: _finite(item) for key, item in value.items()}
+    if isinstance(value, list | tuple):
+        return [_finite(item) for item in value]
+    if isinstance(value, float) and not math.isfinite(value):
+        return None
+    return value

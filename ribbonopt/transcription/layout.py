@@ -1,0 +1,114 @@
+"""Where each unknown and each equation stands in the vectors of the NLP: the only index arithmetic.
+
+Unknowns w, element by element, then the last node and the constants:
+
+    w = [x_0 | X_01 Z_01 | ... | X_0K Z_0K || x_1 | ... || ... || x_N | c]
+
+Equations, element by element, then the conditions:
+
+    [defects of the stages | algebraic | path, stage by stage | next node]_e ... | conditions
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ribbonopt.arrays import Array
+
+
+@dataclass(frozen=True)
+class Layout:
+    """Sizes of a collocation NLP: states, algebraic variables, constants, stages, elements."""
+
+    nx: int
+    nz: int
+    nc: int
+    ng: int
+    nh: int
+    stages: int
+    elements: tuple[int, ...]  # in each phase
+    conditions: int
+
+    @property
+    def nv(self) -> int:
+        """Unknowns of one stage."""
+        return self.nx + self.nz
+
+    @property
+    def element_count(self) -> int:
+        """Elements of all phases."""
+        return sum(self.elements)
+
+    @property
+    def element_unknowns(self) -> int:
+        """Unknowns of one element: its first node and its stages."""
+        return self.nx + self.stages * self.nv
+
+    @property
+    def stage_equations(self) -> int:
+        """Equations of one stage: defects, algebraic, path."""
+        return self.nx + self.ng + self.nh
+
+    @property
+    def element_equations(self) -> int:
+        """Equations of one element: its stages and its end."""
+        return self.stages * self.stage_equations + self.nx
+
+    @property
+    def unknowns(self) -> int:
+        """Length of w."""
+        return self.element_count * self.element_unknowns + self.nx + self.nc
+
+    @property
+    def equations(self) -> int:
+        """Number of constraints, inequalities included."""
+        return self.element_count * self.element_equations + self.conditions
+
+    @property
+    def constants_at(self) -> int:
+        """Index in w of the first constant."""
+        return self.unknowns - self.nc
+
+    @property
+    def conditions_at(self) -> int:
+        """Index of the first condition."""
+        return self.equations - self.conditions
+
+    @property
+    def point_elements(self) -> tuple[int, ...]:
+        """Index of the node at the start, at each phase boundary and at the end."""
+        return tuple(int(i) for i in np.concatenate([[0], np.cumsum(self.elements)]))
+
+    def phase_slices(self) -> tuple[slice, ...]:
+        """Elements of each phase."""
+        p = self.point_elements
+        return tuple(slice(a, b) for a, b in pairwise(p))
+
+    def pack(self, nodes: Array, stages: Array, constants: Array) -> Array:
+        """Vector w of nodes (N+1, nx), stages (N, K, nv) and constants (nc,)."""
+        count = self.element_count
+        blocks = np.hstack([nodes[:-1], stages.reshape(count, -1)])
+        return np.concatenate([blocks.ravel(), nodes[-1], constants])
+
+    def unpack(self, w: Array) -> tuple[Array, Array, Array]:
+        """Nodes (N+1, nx), stages (N, K, nv) and constants (nc,) of w."""
+        count = self.element_count
+        end = count * self.element_unknowns
+        blocks = w[:end].reshape(count, self.element_unknowns)
+        last = w[end : end + self.nx]
+        nodes = np.vstack([blocks[:, : self.nx], last])
+        stages = blocks[:, self.nx :].reshape(count, self.stages, self.nv)
+        return nodes, stages, w[self.constants_at :]
+
+    def is_inequality(self) -> NDArray[np.bool_]:
+        """Which constraints are path inequalities (<= 0); all others are equations."""
+        mask = np.zeros(self.equations, dtype=bool)
+        if self.nh:
+            elements = mask[: self.conditions_at].reshape(self.element_count, -1)
+            stages = elements[:, : self.stages * self.stage_equations]
+            stages.reshape(self.element_count, self.stages, -1)[:, :, self.nx + self.ng :] = True
+        return mask

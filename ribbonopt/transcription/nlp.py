@@ -1,0 +1,68 @@
+"""The nonlinear program that solvers see: numbers in, numbers out, no meaning.
+
+    minimise f(w, p)   subject to   g(w, p) = 0, or <= 0 where `inequality` says so
+
+A square program (as many equations as unknowns, no cost, no inequality) may expose its element
+blocks; Newton then eliminates element by element, and the sparse functions are never built.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass
+from functools import cached_property
+
+import casadi as ca
+import numpy as np
+from numpy.typing import NDArray
+
+from ribbonopt.errors import TranscriptionError
+
+from .blocks import ElementBlocks
+from .layout import Layout
+
+
+@dataclass(frozen=True)
+class NLPFunctions:
+    """CasADi functions of the sparse program.
+
+    `cost` (w, p) -> f; `constraints` (w, p) -> g; `jacobian` (w, p) -> (g, dg/dw);
+    `hessian` (w, p, lam_f, lam_g) -> upper triangle of the Hessian of the Lagrangian.
+    """
+
+    cost: ca.Function
+    constraints: ca.Function
+    jacobian: ca.Function
+    hessian: ca.Function
+
+
+@dataclass(frozen=True)
+class NLP:
+    """One program; `build` makes its sparse functions when a solver first asks for them."""
+
+    unknowns: int
+    equations: int
+    parameters: int
+    inequality: NDArray[np.bool_]
+    has_cost: bool
+    build: Callable[[], NLPFunctions]
+    layout: Layout
+    structure: ElementBlocks | None
+
+    @property
+    def blocks(self) -> ElementBlocks:
+        """Element blocks; TranscriptionError where the transcription has no such structure."""
+        if self.structure is None:
+            raise TranscriptionError("this transcription is not made of collocation elements")
+        return self.structure
+
+    @property
+    def square(self) -> bool:
+        """Whether the program is a system of equations with as many unknowns."""
+        unconstrained = not self.has_cost and not self.inequality.any()
+        return unconstrained and self.unknowns == self.equations
+
+    @cached_property
+    def functions(self) -> NLPFunctions:
+        """The sparse functions, built at first use."""
+        return self.build()

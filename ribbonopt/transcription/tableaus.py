@@ -1,0 +1,147 @@
+"""Gauss and Radau collocation coefficients, computed in double precision for any degree.
+
+A scheme with K nodes c_j integrates f over a unit step by the polynomial of degree K - 1 through
+f(c_j). With shifted Legendre polynomials P_k, the discrete orthogonality of P_k on the nodes (both
+families integrate degree 2K - 2 exactly) gives the Lagrange basis, and so its integral, in closed
+form:
+
+    l_j(t) = b_j sum_k (2k + 1) P_k(c_j) P_k(t),      a_ij = integral of l_j from 0 to c_i.
+
+`casadi.collocation_coeff` loses digits as the degree grows; these sums do not.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import lru_cache
+
+import numpy as np
+from numpy.polynomial import legendre
+
+from ribbonopt.arrays import Array
+from ribbonopt.errors import TranscriptionError
+
+MAX_DEGREE = 10
+
+
+@dataclass(frozen=True)
+class Tableau:
+    """One collocation scheme on the unit step.
+
+    Attributes
+    ----------
+    name : str
+        Family and degree, such as "gauss 6".
+    nodes, weights : (K,) arrays
+        Abscissae c_j in (0, 1] and quadrature weights b_j.
+    matrix : (K, K) array
+        Butcher matrix a_ij.
+    order : int
+        Declared order of the values at the ends of the steps.
+    symplectic : bool
+        Whether quadratic invariants (|q| = 1, orthonormality, n . m) are kept to rounding.
+    """
+
+    name: str
+    nodes: Array
+    weights: Array
+    matrix: Array
+    order: int
+    symplectic: bool
+
+    @property
+    def degree(self) -> int:
+        """Number of nodes K, the degree of the collocation polynomial."""
+        return len(self.nodes)
+
+    @property
+    def dense_order(self) -> int:
+        """Order of the error of the collocation polynomial between the nodes."""
+        return min(self.degree + 1, self.order)
+
+    def basis(self, t: Array) -> Array:
+        """Lagrange basis l_j(t); t has shape (n,), the result (n, K)."""
+        scaled = self._scaled_legendre()
+        return np.asarray(_shifted_legendre(t, self.degree - 1) @ scaled)
+
+    def integrals(self, t: Array) -> Array:
+        """Integrals of the l_j from 0 to t; t has shape (n,), the result (n, K)."""
+        return np.asarray(_legendre_integrals(t, self.degree - 1) @ self._scaled_legendre())
+
+    def _scaled_legendre(self) -> Array:
+        return _scaled(self.nodes, self.weights)
+
+
+def gauss(degree: int) -> Tableau:
+    """Gauss-Legendre collocation, order 2K, symplectic (keeps quadratic invariants)."""
+    return _gauss(_checked(degree))
+
+
+def radau(degree: int) -> Tableau:
+    """Radau IIA collocation (last node at the end of the step), order 2K - 1, stiffly accurate."""
+    return _radau(_checked(degree))
+
+
+def next_tableau(tableau: Tableau) -> tuple[Tableau, int]:
+    """Return the next better scheme of a family, and into how many parts to split each element.
+
+    One degree more, or the same degree on halved elements where there is none.
+    """
+    if tableau.degree == MAX_DEGREE:
+        return tableau, 2
+    family = _gauss if tableau.symplectic else _radau
+    return family(tableau.degree + 1), 1
+
+
+def _checked(degree: int) -> int:
+    if not 1 <= degree <= MAX_DEGREE:
+        raise TranscriptionError(
+            f"collocation degree: found {degree}, expected a whole number from 1 to {MAX_DEGREE}"
+        )
+    return degree
+
+
+@lru_cache
+def _gauss(degree: int) -> Tableau:
+    x, w = legendre.leggauss(degree)
+    return _tableau(f"gauss {degree}", (1 + x) / 2, w / 2, 2 * degree, True)
+
+
+@lru_cache
+def _radau(degree: int) -> Tableau:
+    # Nodes: roots of P_K - P_{K-1} (x = 1 among them), each polished by one Newton step.
+    coefficients = np.zeros(degree + 1)
+    coefficients[-2:] = -1.0, 1.0
+    x = np.sort(legendre.legroots(coefficients).real)
+    x -= legendre.legval(x, coefficients) / legendre.legval(x, legendre.legder(coefficients))
+    x[-1] = 1.0
+    # Interior weights of the right Radau rule: (1 + x) / (K P_{K-1}(x))^2.
+    last = legendre.legval(x, np.eye(degree)[-1])
+    weights = (1 + x) / (2 * (degree * last) ** 2)
+    return _tableau(f"radau {degree}", (1 + x) / 2, weights, 2 * degree - 1, False)
+
+
+def _tableau(name: str, nodes: Array, weights: Array, order: int, symplectic: bool) -> Tableau:
+    matrix = _legendre_integrals(nodes, len(nodes) - 1) @ _scaled(nodes, weights)
+    return Tableau(name, nodes, weights, matrix, order, symplectic)
+
+
+def _scaled(nodes: Array, weights: Array) -> Array:
+    """(K, K) array (2k + 1) P_k(c_j) b_j: Legendre coefficients of the Lagrange basis."""
+    degree = len(nodes) - 1
+    factors = (2 * np.arange(degree + 1) + 1)[:, None]
+    return np.asarray(factors * _shifted_legendre(nodes, degree).T * weights)
+
+
+def _shifted_legendre(t: Array, degree: int) -> Array:
+    return np.asarray(legendre.legvander(2 * np.asarray(t, dtype=float) - 1, degree))
+
+
+def _legendre_integrals(t: Array, degree: int) -> Array:
+    # The integral of P_k from 0 to t is (P_{k+1} - P_{k-1}) / (2 (2k + 1)) for k >= 1.
+    values = _shifted_legendre(t, degree + 1)
+    k = np.arange(1, degree + 1)
+    result = np.empty((len(values), degree + 1))
+    result[:, 0] = t
+    result[:, 1:] = (values[:, 2:] - values[:, :-2]) / (2 * (2 * k + 1))
+    return result

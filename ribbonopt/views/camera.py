@@ -1,0 +1,81 @@
+"""An orthographic camera that finds its own place, and light.
+
+It looks so that the centre line encloses much area and the ribbon shows much of its face: about
+along the direction of least extent, raised where that would show a planar ribbon edge-on.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from .pieces import Array
+
+DIRECTIONS = 600
+LIGHT = np.array([-0.45, 0.6, 0.66])  # to the right, up, towards the viewer
+UP = np.array([1.0, 0.5, 0.8])  # up in the picture and towards the viewer, if there is a choice
+CHOICE = 0.03  # views this close to the best are as good
+AMBIENT = 0.5
+GLOSS = 0.16
+FACING = 0.5  # a face this frontal (cosine) needs not be more so
+
+
+@dataclass(frozen=True)
+class Camera:
+    """Axes of the picture in the lab frame: unit vectors (3,) to the right, up, to the viewer."""
+
+    right: Array
+    up: Array
+    towards: Array
+
+    def project(self, points: Array) -> tuple[Array, Array]:
+        """Picture coordinates (..., 2) and heights towards the viewer (...) of points (..., 3)."""
+        plane = np.stack([points @ self.right, points @ self.up], axis=-1)
+        return plane, np.asarray(points @ self.towards)
+
+    def brightness(self, normals: Array) -> tuple[Array, Array]:
+        """Diffuse light (k,), 0 to 1, and gloss (k,) of faces with unit normals (k, 3)."""
+        axes = np.stack([self.right, self.up, self.towards], axis=1)
+        seen = normals @ axes
+        seen = np.where(seen[:, 2:] < 0, -seen, seen)
+        light = LIGHT / np.linalg.norm(LIGHT)
+        diffuse = AMBIENT + (1 - AMBIENT) * np.maximum(seen @ light, 0)
+        half = light + np.array([0.0, 0.0, 1.0])
+        gloss = GLOSS * np.maximum(seen @ (half / np.linalg.norm(half)), 0) ** 24
+        return diffuse, gloss
+
+
+def place_camera(line: Array, normals: Array) -> Camera:
+    """Place the camera for a centre line (k, 3) of evenly spaced points and its normals (k, 3)."""
+    spread = np.cov(line.T)
+    towards = _directions()
+    seen = np.minimum(np.abs(towards @ normals.T), FACING).mean(axis=1)
+    # Squared area of the projected centre line's ellipse: cofactors of its covariance.
+    total, size = np.trace(spread), np.trace(spread) ** 2
+    cofactors = ((total**2 - np.sum(spread**2)) / 2) * np.eye(3) - total * spread + spread @ spread
+    area = np.sqrt(np.maximum(np.einsum("ki,ij,kj->k", towards, cofactors, towards), 0) + size / 50)
+    score = seen * area
+    good = np.flatnonzero(score > (1 - CHOICE) * score.max())
+    return max((_level(t, spread) for t in towards[good]), key=lambda c: float(c.towards @ UP))
+
+
+def _directions() -> Array:
+    """Return unit vectors spread evenly over the sphere (golden spiral)."""
+    k = np.arange(DIRECTIONS) + 0.5
+    z = 1 - 2 * k / DIRECTIONS
+    angle = np.pi * (1 + 5**0.5) * k
+    rho = np.sqrt(1 - z**2)
+    return np.stack([rho * np.cos(angle), rho * np.sin(angle), z], axis=1)
+
+
+def _level(towards: Array, spread: Array) -> Camera:
+    """Turn the picture so that the lab axis nearest to its longest extent is level."""
+    across = np.eye(3) - np.outer(towards, towards)
+    longest = np.linalg.eigh(across @ spread @ across)[1][:, -1]
+    right = across[np.argmax(np.abs(longest))]
+    right = right / np.linalg.norm(right)
+    up = np.cross(towards, right)
+    if up @ UP < 0:
+        towards, up = -towards, -up
+    return Camera(right, up, towards)

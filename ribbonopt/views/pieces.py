@@ -1,0 +1,110 @@
+"""A solution as pieces to draw: rows along s, split where u2 changes sign while u3 does not vanish.
+
+There eta = u3/u2 leaps from one sign to the other, whether u2 jumps (Sadowsky's law at m2 = 0) or
+passes through 0 (the other laws). Rows approach the ends of each piece from inside, so that a jump
+at an end shows its own side only, and they crowd there, where regularised laws change quickly.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ribbonopt.solution import Solution
+
+Array = NDArray[np.float64]
+
+ROWS = 241  # evenly spaced rows over the whole interval
+INSET = 1e-9  # of the length: distance of the outermost rows from the ends of a piece
+SHORTEST = 1e-6  # of the length: shorter pieces are left out
+NO_TWIST = 1e-9  # of the largest strain: below it u3 counts as zero
+NO_BEND = 1e-12  # of the largest strain: below it u2 counts as zero
+
+
+@dataclass(frozen=True)
+class Piece:
+    """Rows along a stretch of ribbon on which u2 keeps its sign (or u3 vanishes).
+
+    Attributes
+    ----------
+    s, u2, u3 : (k,) arrays
+        Arclength and strains.
+    eta : (k,) array
+        u3/u2, and 0 where the ribbon is straight, planar or purely twisted.
+    r, d1, d2, d3 : (k, 3) arrays
+        Centre line and directors, lab frame.
+    mirrored : bool
+        Whether these rows follow by symmetry from those that were solved.
+    """
+
+    s: Array
+    u2: Array
+    u3: Array
+    eta: Array
+    r: Array
+    d1: Array
+    d2: Array
+    d3: Array
+    mirrored: bool = False
+
+
+def sample_pieces(solution: Solution, rows: int = ROWS) -> tuple[Piece, ...]:
+    """Sample a solution along its interval, about `rows` rows in all."""
+    start, end = solution.scene.interval
+    length = end - start
+    s = _grid(start, end, rows, INSET * length)
+    values = solution.outputs(s)
+    scale = _scale(values)
+    crossings = _crossings(solution, s, values, scale)
+    if not crossings:
+        return (_piece(s, values, scale),)
+    pieces = []
+    for a, b in pairwise([start, *crossings, end]):
+        if b - a > SHORTEST * length:
+            s = _grid(a, b, max(9, round(rows * (b - a) / length)), INSET * length)
+            pieces.append(_piece(s, solution.outputs(s), scale))
+    return tuple(pieces)
+
+
+def _grid(a: float, b: float, rows: int, inset: float) -> Array:
+    """Evenly spaced rows in the open interval (a, b), and a geometric approach to both its ends."""
+    even = np.linspace(a, b, rows)
+    approach = np.geomspace(inset, (even[1] - a) / 2, 14)
+    return np.concatenate([a + approach, even[1:-1], b - approach[::-1]])
+
+
+def _piece(s: Array, values: dict[str, Array], scale: float) -> Piece:
+    u2, u3, r = values["u2"], values["u3"], values["r"]
+    return Piece(s, u2, u3, _eta(u2, u3, scale), r, values["d1"], values["d2"], values["d3"])
+
+
+def _scale(values: dict[str, Array]) -> float:
+    return float(max(np.abs(values["u2"]).max(), np.abs(values["u3"]).max()))
+
+
+def _eta(u2: Array, u3: Array, scale: float) -> Array:
+    none = (np.abs(u3) <= NO_TWIST * scale) | (np.abs(u2) <= NO_BEND * scale)
+    return np.where(none, 0.0, u3 / np.where(none, 1.0, u2))
+
+
+def _crossings(solution: Solution, s: Array, values: dict[str, Array], scale: float) -> list[float]:
+    """Arclengths at which u2 changes sign and u3 does not vanish."""
+    up = values["u2"] > NO_BEND * scale
+    twisted = np.abs(values["u3"]) > NO_TWIST * scale
+    steady = np.abs(values["u2"]) > NO_BEND * scale
+    rows = np.flatnonzero(steady & twisted)
+    return [_bisect(solution, s[i], s[j], up[i]) for i, j in pairwise(rows) if up[i] != up[j]]
+
+
+def _bisect(solution: Solution, a: float, b: float, up: bool) -> float:
+    """Arclength in (a, b) where u2 leaves the sign it has at a, to INSET."""
+    length = solution.scene.interval[1] - solution.scene.interval[0]
+    while b - a > INSET * length / 4:
+        s = np.linspace(a, b, 33)
+        left = np.flatnonzero((solution.outputs(s[1:-1])["u2"] > 0) != up)
+        i = int(left[0]) + 1 if len(left) else 32
+        a, b = s[i - 1], s[i]
+    return float(a + b) / 2

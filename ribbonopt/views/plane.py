@@ -1,0 +1,100 @@
+"""Figure: the path in the (u2, u3) plane, and the region |eta| > 1 forbidden to Sadowsky."""
+
+from __future__ import annotations
+
+from itertools import pairwise
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ribbonopt.solution import Solution
+
+from .pieces import Piece
+from .style import ALLOWED, BENDING, DASHES, FAINT, FORBIDDEN, INK, blank, head, tidy
+from .subject import Subject, subject_of
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+
+def plot_plane(solution: Solution, complete: bool = True) -> Figure:
+    """Plot u3 against u2, allowed and forbidden regions shaded, start and end marked.
+
+    Parameters
+    ----------
+    solution
+        What to draw.
+    complete
+        Add, dashed, the other half of a loop of which this solution is one half by symmetry.
+    """
+    return draw_plane(subject_of(solution, complete))
+
+
+def draw_plane(subject: Subject) -> Figure:
+    """Plot the path in the plane; a jump between them is dotted."""
+    pieces = subject.pieces
+    (left, right), (low, high) = _limits(pieces)
+    shape = (high - low) / (right - left)
+    figure = blank(6.6, (1.75 if subject.mirrored else 1.5) + 5.6 * shape)
+    axes = figure.add_subplot()
+    _shade(axes, 2 * max(-left, right, -low, high))
+    for piece in pieces:
+        line = DASHES if piece.mirrored else "-"
+        axes.plot(piece.u2, piece.u3, color=BENDING, lw=1.8, ls=line, zorder=3)
+    tolerance = 0.01 * (right - left)
+    for a, b in pairwise(pieces):
+        jump = [[a.u2[-1], b.u2[0]], [a.u3[-1], b.u3[0]]]
+        if abs(jump[0][1] - jump[0][0]) > tolerance:
+            axes.plot(*jump, color=FAINT, lw=1.3, ls=":", zorder=2)
+    start, end = subject.interval
+    for piece, row, marker, size, fill, label in (
+        (subject.solved[0], 0, "o", 6, BENDING, f"start, $s = {start:.4g}$"),
+        (subject.solved[-1], -1, "s", 10, "none", f"end, $s = {end:.4g}$"),
+    ):
+        axes.plot(
+            piece.u2[row],
+            piece.u3[row],
+            marker,
+            ms=size,
+            mfc=fill,
+            mec=BENDING,
+            mew=1.6,
+            zorder=4,
+            ls="none",
+            label=label,
+        )
+    if subject.mirrored:
+        axes.plot([], [], color=BENDING, lw=1.8, ls=DASHES, label="second half by symmetry")
+    axes.set(xlim=(left, right), ylim=(low, high), aspect="equal")
+    axes.set_xlabel(r"bending strain $u_2$")
+    axes.set_ylabel(r"twisting strain $u_3$")
+    head(axes, subject.name)
+    figure.legend(loc="outside lower center", ncols=2, frameon=False, fontsize=9)
+    tidy(axes)
+    return figure
+
+
+def _shade(axes: Axes, far: float) -> None:
+    """Two wedges each: |u3| <= |u2| allowed, |u3| > |u2| forbidden."""
+    for sign in (-1, 1):
+        x, y = [0, sign * far, sign * far], [0, far, -far]
+        for corners, colour, label in (
+            ((x, y), ALLOWED, r"$|\eta| \leq 1$, allowed"),
+            ((y, x), FORBIDDEN, r"$|\eta| > 1$, forbidden to Sadowsky's ribbon"),
+        ):
+            axes.fill(*corners, color=colour, lw=0, zorder=0, label=label if sign > 0 else None)
+        axes.plot([-far, far], [-sign * far, sign * far], color=FAINT, lw=0.6, zorder=1)
+    axes.axhline(0, color=INK, lw=0.5, zorder=1)
+    axes.axvline(0, color=INK, lw=0.5, zorder=1)
+
+
+def _limits(pieces: tuple[Piece, ...]) -> tuple[tuple[float, float], tuple[float, float]]:
+    """Limits around the path and the origin: not flatter than 1 : 2, not steeper than 1 : 1."""
+    u2 = np.concatenate([[0.0], *(p.u2 for p in pieces)])
+    u3 = np.concatenate([[0.0], *(p.u3 for p in pieces)])
+    size = max(np.ptp(u2), np.ptp(u3), 1e-12) * 1.16
+    middle = [(v.min() + v.max()) / 2 for v in (u2, u3)]
+    half = [max(size, np.ptp(u2) * 1.16) / 2, max(size / 2, np.ptp(u3) * 1.16) / 2]
+    (a, b), (p, q) = middle, half
+    return (float(a - p), float(a + p)), (float(b - q), float(b + q))

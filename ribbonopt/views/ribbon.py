@@ -1,0 +1,133 @@
+"""Figure: the ribbon in space, a shaded surface with its generatrices."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ribbonopt.solution import Solution
+
+from .camera import Camera, place_camera
+from .facets import Drawing, draw_surface
+from .style import FAINT, INK, blank, head
+from .subject import Subject, subject_of
+from .surface import ETA_BOUND, LEAP_SLOPE, Surface, sweep
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+WIDTH, HEIGHT = 7.2, 6.4  # inches, at most
+
+
+def plot_ribbon(
+    solution: Solution, half_width: float | None = None, complete: bool = True
+) -> Figure:
+    """Draw the ribbon: points r + v (d2 + eta d3), |v| <= half_width.
+
+    Parameters
+    ----------
+    solution
+        What to draw.
+    half_width
+        Default: a twentieth of the length drawn, or less so that no generatrices cross. The figure
+        states it.
+    complete
+        Add, in a lighter tone, the other half of a loop of which this solution is one half by
+        symmetry.
+    """
+    return draw_ribbon(subject_of(solution, complete), half_width)
+
+
+def draw_ribbon(subject: Subject, half_width: float | None = None) -> Figure:
+    """Draw a ribbon."""
+    pieces = subject.pieces
+    surface = sweep(pieces, half_width)
+    line = np.concatenate([p.r for p in pieces])
+    camera = place_camera(line, np.concatenate([p.d1 for p in pieces]))
+    drawing = draw_surface(surface, camera)
+    (left, low), (right, high) = drawing.corners.min(axis=(0, 1)), drawing.corners.max(axis=(0, 1))
+    size = max(right - left, (high - low) * WIDTH / HEIGHT)
+    foot = 0.11 * size
+    box = (left - 0.03 * size, right + 0.03 * size, low - foot, high + 0.03 * size)
+    page = WIDTH / (box[1] - box[0])
+    height = min(HEIGHT, page * (box[3] - box[2]))
+    figure = blank(WIDTH, max(height, 0.2 * WIDTH) + 0.7)
+    axes = figure.add_subplot()
+    _paint(axes, drawing)
+    axes.set(xlim=box[:2], ylim=box[2:], aspect="equal")
+    axes.set_axis_off()
+    head(axes, subject.name)
+    _scale_bar(axes, box, size)
+    _triad(axes, camera, box, size)
+    figure.supxlabel(_caption(subject, surface), fontsize=8.5, color=INK)
+    return figure
+
+
+def _paint(axes: Axes, drawing: Drawing) -> None:
+    from matplotlib.collections import PolyCollection
+
+    axes.add_collection(
+        PolyCollection(
+            list(drawing.corners),
+            facecolors=drawing.faces,
+            edgecolors=drawing.edges,
+            linewidths=drawing.line_widths,
+            capstyle="round",
+            joinstyle="round",
+        ),
+        autolim=False,
+    )
+
+
+def _scale_bar(axes: Axes, box: tuple[float, float, float, float], size: float) -> None:
+    exponent = np.floor(np.log10(0.25 * size))
+    length = max(k * 10**exponent for k in (1, 2, 5) if k * 10**exponent <= 0.25 * size)
+    x, y = box[0] + 0.03 * size, box[2] + 0.03 * size
+    axes.plot([x, x + length], [y, y], color=INK, lw=2, solid_capstyle="butt")
+    axes.text(x + length / 2, y + 0.012 * size, f"{length:g}", ha="center", va="bottom", fontsize=9)
+
+
+def _triad(axes: Axes, camera: Camera, box: tuple[float, float, float, float], size: float) -> None:
+    """Draw the lab's axes as seen, in the lower right corner."""
+    origin = np.array([box[1] - 0.08 * size, box[2] + 0.055 * size])
+    tips, heights = camera.project(np.eye(3))
+    for i in np.argsort(heights):
+        if np.linalg.norm(tips[i]) < 0.2:
+            continue
+        tip = 0.045 * size * tips[i]
+        axes.annotate(
+            "",
+            xy=(origin + tip).tolist(),
+            xytext=origin.tolist(),
+            arrowprops={"arrowstyle": "-|>", "color": FAINT, "lw": 1, "shrinkA": 0, "shrinkB": 0},
+        )
+        place = origin + tip * (1 + 0.25 / max(float(np.linalg.norm(tips[i])), 0.25))
+        axes.text(
+            place[0],
+            place[1],
+            "xyz"[i],
+            ha="center",
+            va="center",
+            fontsize=9,
+            color=FAINT,
+            fontstyle="italic",
+        )
+
+
+def _caption(subject: Subject, surface: Surface) -> str:
+    lines = [
+        rf"drawn to the half-width {surface.half_width:.3g} along generatrices $d_2 + \eta\, d_3$"
+    ]
+    notes = []
+    if subject.mirrored:
+        notes.append("second half (light) by symmetry")
+    if surface.bounded:
+        notes.append(rf"$|\eta|$ drawn at most {ETA_BOUND:g}")
+    if surface.crossing:
+        notes.append("generatrices cross")
+    if surface.leaps:
+        reach = ETA_BOUND * surface.half_width / LEAP_SLOPE
+        notes.append(rf"$\eta$ drawn smooth within {reach:.2g} of where $u_2$ changes sign")
+    return "\n".join([*lines, *([", ".join(notes)] if notes else [])])

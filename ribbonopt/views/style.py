@@ -1,0 +1,45 @@
+"""Colours and the blank page, common to the figures."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.figure import Figure
+
+DPI = 150
+BENDING = "#1f5fa8"
+TWIST = "#c2410c"
+RATIO = "#4a4a4a"
+ALLOWED = "#dcefdc"  # the paper's green: |eta| <= 1
+FORBIDDEN = "#fbd9b0"  # the paper's orange: |eta| > 1
+INK = "#222222"
+FAINT = "#777777"
+UNITS = r"units $Dw = L = 1$"
+DASHES = (0, (4, 2))  # what follows by symmetry
+
+
+def blank(width: float, height: float) -> Figure:
+    """Return an empty figure (inches) that renders without a display and without global state."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+    from matplotlib.layout_engine import ConstrainedLayoutEngine
+
+    layout = ConstrainedLayoutEngine(w_pad=0.1, h_pad=0.1)
+    figure = Figure(figsize=(width, height), dpi=DPI, facecolor="white", layout=layout)
+    FigureCanvasAgg(figure)
+    return figure
+
+
+def head(axes: Axes, name: str, pad: float = 6) -> None:
+    """Title: the scene's name, and the units."""
+    axes.set_title(name, loc="left", fontsize=12, fontweight="bold", pad=pad)
+    axes.set_title(UNITS, loc="right", fontsize=9, pad=pad)
+
+
+def tidy(axes: Axes) -> None:
+    """Light frame and ticks."""
+    axes.spines[["top", "right"]].set_visible(False)
+    axes.spines[["left", "bottom"]].set_color(FAINT)
+    axes.tick_params(colors=INK, labelsize=9)

@@ -1,0 +1,144 @@
+"""The ribbon as a surface: swept by its generatrices r + v (d2 + eta d3), |v| <= half_width.
+
+With u1 = 0 and b = d2 + eta d3, b' = eta' d3: along a generatrix the normal is d1 everywhere, and
+the surface is regular while half_width |eta'| < 1 (section 2 of the paper). Where u2 changes sign
+and u3 does not vanish, eta leaps from one sign to the other, which no ribbon of finite width can
+follow: there |eta| is drawn at most LEAP_SLOPE |s - s*| / half_width, so that the generatrices fan
+out from about a point of one edge, as they do on a real Moebius ribbon.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from itertools import pairwise
+
+import numpy as np
+
+from ribbonopt.errors import ModelError
+
+from .pieces import Array, Piece
+
+ETA_BOUND = 1.0  # generatrices are drawn at most this oblique: the bound (4.1) of Sadowsky's ribbon
+WIDTH_SHARE = 1 / 20  # half-width by default, of the length drawn
+REGULAR_SLOPE = 0.8  # half_width |eta'| by default at most this
+LEAP_SLOPE = 0.7  # half_width |eta'| where eta leaps
+LEAST_LEAP = 1e-3
+FINE = 1e-6  # of the length: rows closer than this do not count for eta'
+
+
+@dataclass(frozen=True)
+class Sheet:
+    """The surface along one piece.
+
+    Attributes
+    ----------
+    piece : Piece
+        Its rows (k).
+    eta : (k,) array
+        u3/u2 as drawn: within ETA_BOUND, and 0 where it leaps.
+    half_width : float
+        Of the whole ribbon.
+    """
+
+    piece: Piece
+    eta: Array
+    half_width: float
+
+    def points(self, fraction: float) -> Array:
+        """Points (k, 3) at a fraction of the half-width: -1 and 1 the edges, 0 the centre line."""
+        b = self.piece.d2 + self.eta[:, None] * self.piece.d3
+        return np.asarray(self.piece.r + fraction * self.half_width * b)
+
+
+@dataclass(frozen=True)
+class Surface:
+    """A ribbon of constant half-width.
+
+    Attributes
+    ----------
+    half_width : float
+        The length of a generatrix along d2, on either side of the centre line.
+    sheets : tuple of Sheet
+        In order of arclength.
+    bounded : bool
+        Whether |eta| exceeds ETA_BOUND somewhere.
+    leaps : bool
+        Whether eta leaps somewhere.
+    crossing : bool
+        Whether generatrices cross within the half-width (never with the default).
+    """
+
+    half_width: float
+    sheets: tuple[Sheet, ...]
+    bounded: bool
+    leaps: bool
+    crossing: bool
+
+    @property
+    def closed(self) -> bool:
+        """Whether the ribbon ends where it starts."""
+        first, last = self.sheets[0].piece, self.sheets[-1].piece
+        return float(np.linalg.norm(first.r[0] - last.r[-1])) < 1e-3 * self.half_width
+
+    @property
+    def one_sided(self) -> bool:
+        """Whether the ribbon closes with its face turned over."""
+        first, last = self.sheets[0].piece, self.sheets[-1].piece
+        return self.closed and float(first.d1[0] @ last.d1[-1]) < -0.999
+
+
+def sweep(pieces: tuple[Piece, ...], half_width: float | None = None) -> Surface:
+    """Sweep the generatrices of a ribbon.
+
+    Parameters
+    ----------
+    pieces
+        In order of arclength.
+    half_width
+        Default: a twentieth of the length, or less so that no generatrices cross.
+
+    Raises
+    ------
+    ModelError
+        If half_width is not positive.
+    """
+    if half_width is not None and not half_width > 0:
+        raise ModelError(f"half_width is expected to be positive, found {half_width}")
+    regular = _regular_half_width(pieces)
+    length = pieces[-1].s[-1] - pieces[0].s[0]
+    w = min(WIDTH_SHARE * length, REGULAR_SLOPE * regular) if half_width is None else half_width
+    leaps = [False, *(_leap(a, b) for a, b in pairwise(pieces)), False]
+    sheets = tuple(
+        Sheet(piece, _drawn_eta(piece, w, *ends), w)
+        for piece, ends in zip(pieces, pairwise(leaps), strict=True)
+    )
+    bounded = any(bool((np.abs(p.eta) > ETA_BOUND + 1e-9).any()) for p in pieces)
+    return Surface(w, sheets, bounded, any(leaps), w > regular)
+
+
+def _regular_half_width(pieces: tuple[Piece, ...]) -> float:
+    """Return the half-width up to which no generatrices cross, apart from leaps of eta."""
+    length = pieces[-1].s[-1] - pieces[0].s[0]
+    steepest = 0.0
+    for piece in pieces:
+        rows = np.diff(piece.s) > FINE * length
+        slope = np.abs(np.diff(_bounded(piece.eta))[rows]) / np.diff(piece.s)[rows]
+        steepest = max(steepest, float(slope.max()))
+    return 1 / max(steepest, 1e-300)
+
+
+def _bounded(eta: Array) -> Array:
+    return np.clip(eta, -ETA_BOUND, ETA_BOUND)
+
+
+def _leap(a: Piece, b: Piece) -> bool:
+    return bool(np.abs(_bounded(b.eta)[0] - _bounded(a.eta)[-1]) > LEAST_LEAP)
+
+
+def _drawn_eta(piece: Piece, w: float, leaps_before: bool, leaps_after: bool) -> Array:
+    eta = _bounded(piece.eta)
+    for leaps, s in ((leaps_before, piece.s[0]), (leaps_after, piece.s[-1])):
+        if leaps:
+            bound = LEAP_SLOPE * np.abs(piece.s - s) / w
+            eta = np.clip(eta, -bound, bound)
+    return eta

@@ -1,0 +1,269 @@
+"""Speed of the whole path on the half Moebius ribbon: build, solve, whole process, scaling, peer.
+
+    python scripts/bench_path.py [--out results/bench] [--repeat 11] [--quick]
+
+Medians of `repeat` runs, the contenders of each comparison interleaved in one run, so that ratios
+hold on a noisy machine. Writes `bench_path.json` and `bench_path.png`. Errors are relative to the
+28-digit reference, largest of the six numbers n(0), m(0).
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+import platform
+import resource
+import statistics
+import subprocess
+import sys
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+# Small matrices: threads of the linear algebra cost more than they bring, for all contenders.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+os.environ.setdefault("OMP_NUM_THREADS", "1")
+
+import numpy as np
+
+from ribbonopt.guess import initial_unknowns
+from ribbonopt.scene import LoadGuess, Scene, load_scene
+from ribbonopt.solve import Prepared, prepare
+from ribbonopt.summary import versions
+from ribbonopt.transcription import Mesh
+
+ROOT = Path(__file__).resolve().parent.parent
+SCENE = ROOT / "configs" / "moebius_half.yaml"
+REFERENCE = np.array(
+    [0, 43.4964080173984993703, 42.0522517129717208281]
+    + [0, 2.00545099623122820984, -8.86920396209993570631]
+)
+FORCE, MOMENT = (0.0, 40.0, 40.0), (0.0, 2.0, -9.0)
+# (solver, degree, intervals, solver tolerance): the quickest found that reach each error.
+CASES = {
+    "1e-9": [("ipopt", 6, 7, 1e-10), ("newton", 6, 7, 1e-9)],
+    "1e-12": [("ipopt", 8, 7, 1e-12), ("newton", 8, 7, 1e-12)],
+}
+TARGETS = {"ipopt 1e-9": 8.0, "newton 1e-9": 2.5, "ipopt 1e-12": 16.0, "newton 1e-12": 4.0}
+
+
+def main() -> None:
+    """Run all parts, print the tables, write JSON and figure."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--out", type=Path, default=Path("results") / "bench")
+    parser.add_argument("--repeat", type=int, default=11)
+    parser.add_argument("--quick", action="store_true", help="skip scipy's 1e-12 (seconds a run)")
+    options = parser.parse_args()
+    options.out.mkdir(parents=True, exist_ok=True)
+    result: dict[str, Any] = {
+        "machine": {"processor": platform.processor() or platform.machine(), "cpus": os.cpu_count()},
+        "versions": versions(),
+        "repeat": options.repeat,
+        "build_ms": bench_build(options.repeat),
+        "solve": bench_solve(options.repeat, options.quick),
+        "process": bench_process(options.repeat),
+        "scaling": bench_scaling(options.repeat),
+    }
+    report(result)
+    (options.out / "bench_path.json").write_text(json.dumps(result, indent=2) + "\n")
+    draw(result, options.out / "bench_path.png")
+    print(f"written: {options.out / 'bench_path.json'}, {options.out / 'bench_path.png'}")
+
+
+def scene(solver: str, degree: int, intervals: int, tolerance: float) -> Scene:
+    """Return the half Moebius scene with these settings."""
+    return load_scene(
+        SCENE,
+        [
+            f"solver={{type: {solver}, tolerance: {tolerance}}}",
+            f"transcription.degree={degree}",
+            f"transcription.intervals={intervals}",
+        ],
+    )
+
+
+def medians(repeat: int, runs: dict[str, Callable[[], Any]]) -> dict[str, float]:
+    """Median seconds of every run, interleaved, after one call of each to warm up."""
+    for run in runs.values():
+        run()
+    seconds: dict[str, list[float]] = {name: [] for name in runs}
+    for _ in range(repeat):
+        for name, run in runs.items():
+            start = time.perf_counter()
+            run()
+            seconds[name].append(time.perf_counter() - start)
+    return {name: statistics.median(values) for name, values in seconds.items()}
+
+
+def bench_build(repeat: int) -> dict[str, float]:
+    """Milliseconds from a scene file to a solver that is ready, imports excluded."""
+    runs = {
+        solver: lambda solver=solver: prepare(scene(solver, 6, 10, 1e-12))
+        for solver in ("ipopt", "newton")
+    }
+    first = {}
+    for name, run in runs.items():
+        start = time.perf_counter()
+        run()
+        first[f"{name}, first in the process"] = 1e3 * (time.perf_counter() - start)
+    return first | {name: 1e3 * value for name, value in medians(repeat, runs).items()}
+
+
+def start_vector(prepared: Prepared) -> tuple[np.ndarray, np.ndarray]:
+    """Unknowns of the guess and parameters of a prepared scene."""
+    from ribbonopt.guess import IntegratedLoads
+    from ribbonopt.problem import theta_of
+
+    mesh = Mesh.uniform(prepared.scene.transcription.intervals)
+    guess = IntegratedLoads(prepared.ribbon, prepared.scene, LoadGuess(FORCE, MOMENT))
+    w = initial_unknowns(
+        guess, prepared.ribbon, prepared.collocation, prepared.nlp.layout, mesh, np.zeros(3)
+    )
+    return w, np.concatenate([list(theta_of(prepared.scene).values()), mesh.widths])
+
+
+def bench_solve(repeat: int, quick: bool) -> list[dict[str, Any]]:
+    """Solve again in process to 1e-9 and 1e-12, beside scipy's solve_bvp at equal error."""
+    rows = []
+    for target, cases in CASES.items():
+        runs: dict[str, Callable[[], Any]] = {}
+        details = {}
+        for solver, degree, intervals, tolerance in cases:
+            prepared = prepare(scene(solver, degree, intervals, tolerance))
+            w, p = start_vector(prepared)
+            name = f"{solver} {target}"
+            runs[name] = lambda prepared=prepared, w=w, p=p: prepared.solver.solve(w, p)
+            answer = prepared.solver.solve(w, p)
+            error = np.abs(answer.w[-6:] - REFERENCE).max() / np.abs(REFERENCE).max()
+            details[name] = {
+                "mesh": f"gauss {degree} on {intervals}",
+                "error": float(error),
+                "iterations": answer.iterations,
+                "factorizations": answer.factorizations,
+                "evaluate_ms": 1e3 * answer.evaluate,
+                "linear_ms": 1e3 * answer.linear,
+            }
+        if not (quick and target == "1e-12"):
+            from peer_scipy import solve_half_moebius
+
+            # solve_bvp controls a residual: these tolerances give the errors wanted.
+            tolerance = {"1e-9": 1e-7, "1e-12": 1e-10}[target]
+            name = f"scipy solve_bvp {target}"
+            error, nodes = solve_half_moebius(tolerance, FORCE, MOMENT, REFERENCE)
+            details[name] = {"mesh": f"{nodes} nodes", "error": error}
+            runs[name] = lambda t=tolerance: solve_half_moebius(t, FORCE, MOMENT, REFERENCE)
+        few = repeat if target == "1e-9" else min(repeat, 5)
+        seconds = medians(few if "scipy solve_bvp 1e-12" in runs else repeat, runs)
+        peer = seconds.get(f"scipy solve_bvp {target}")
+        for name, value in seconds.items():
+            ratio = None if peer is None else peer / value
+            rows.append({"case": name, "ms": 1e3 * value, "peer_ratio": ratio, **details[name]})
+    return rows
+
+
+def bench_process(repeat: int) -> dict[str, float]:
+    """Whole processes: `ribbonopt solve` against importing what it needs."""
+    base = [sys.executable, "-c", "import casadi, numpy, yaml"]
+    commands = {"imports": base}
+    for solver in ("ipopt", "newton"):
+        commands[f"solve, {solver}"] = [
+            *(sys.executable, "-m", "ribbonopt", "solve", str(SCENE)),
+            *("--set", f"solver={{type: {solver}}}"),
+        ]
+    seconds: dict[str, list[float]] = {name: [] for name in commands}
+    memory: dict[str, list[float]] = {name: [] for name in commands}
+    for i in range(repeat + 1):
+        for name, command in commands.items():
+            start = time.perf_counter()
+            process = subprocess.Popen(command, stdout=subprocess.DEVNULL)
+            _, status, usage = os.wait4(process.pid, 0)
+            process.returncode = os.waitstatus_to_exitcode(status)
+            if process.returncode:
+                raise SystemExit(f"{' '.join(command)}: exit status {process.returncode}")
+            if i:  # the first run of each warms the file cache
+                seconds[name].append(time.perf_counter() - start)
+                memory[name].append(_peak(usage))
+    result = {}
+    for name in commands:
+        result[f"{name}: ms"] = 1e3 * statistics.median(seconds[name])
+        result[f"{name}: MB"] = statistics.median(memory[name])
+        ratios = [a / b for a, b in zip(seconds[name], seconds["imports"], strict=True)]
+        result[f"{name}: time ratio"] = statistics.median(ratios)
+        ratios = [a / b for a, b in zip(memory[name], memory["imports"], strict=True)]
+        result[f"{name}: memory ratio"] = statistics.median(ratios)
+    return result
+
+
+def _peak(usage: resource.struct_rusage) -> float:
+    """Peak memory in MB; Linux counts kilobytes, macOS bytes."""
+    return usage.ru_maxrss / (1024 if sys.platform == "linux" else 1024**2)
+
+
+def bench_scaling(repeat: int) -> dict[str, Any]:
+    """Cost of Newton against the number of intervals (degree 4)."""
+    counts = [50, 100, 200, 400, 800]
+    runs = {}
+    for count in counts:
+        prepared = prepare(scene("newton", 4, count, 1e-10))
+        w, p = start_vector(prepared)
+        runs[str(count)] = lambda prepared=prepared, w=w, p=p: prepared.solver.solve(w, p)
+    seconds = medians(repeat, runs)
+    slope = np.polyfit(np.log(counts), np.log([seconds[str(n)] for n in counts]), 1)[0]
+    return {"intervals": counts, "ms": [1e3 * seconds[str(n)] for n in counts], "exponent": slope}
+
+
+def report(result: dict[str, Any]) -> None:
+    """Print the tables."""
+    print("build, imports excluded (target 100 ms):")
+    for name, value in result["build_ms"].items():
+        print(f"  {name:<28} {value:8.1f} ms")
+    print("solve again in process:")
+    for row in result["solve"]:
+        target = TARGETS.get(row["case"])
+        ratio = row["peer_ratio"]
+        print(
+            f"  {row['case']:<24} {row['ms']:9.2f} ms"
+            f"{f' (target {target:g})' if target else '':<14} error {row['error']:.1e}"
+            f"  {row['mesh']}{f'  {ratio:.0f} times quicker than scipy' if ratio else ''}"
+        )
+    print("whole process (targets: time 2, memory 1.5 times the imports):")
+    for name, value in result["process"].items():
+        print(f"  {name:<28} {value:8.2f}")
+    scaling = result["scaling"]
+    pairs = ", ".join(
+        f"{n}: {ms:.1f}" for n, ms in zip(scaling["intervals"], scaling["ms"], strict=True)
+    )
+    print(f"Newton, ms by intervals: {pairs}; exponent {scaling['exponent']:.2f} (target 1.15)")
+
+
+def draw(result: dict[str, Any], path: Path) -> None:
+    """Draw time against error and time against intervals."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(10, 4.2), layout="constrained")
+    FigureCanvasAgg(figure)
+    left, right = figure.subplots(1, 2)
+    for row in result["solve"]:
+        left.loglog(row["error"], row["ms"], "o")
+        left.annotate(row["case"], (row["error"], row["ms"]), (6, 3), textcoords="offset points")
+    left.set(
+        xlabel="relative error of n(0), m(0)", ylabel="time of one solve (ms)",
+        title="half Moebius ribbon, solved again",
+    )
+    left.margins(0.25)
+    scaling = result["scaling"]
+    right.loglog(scaling["intervals"], scaling["ms"], "o-")
+    right.set(
+        xlabel="intervals", ylabel="time of one solve (ms)",
+        title=f"Newton, Gauss 4: exponent {scaling['exponent']:.2f}",
+    )
+    for axes in (left, right):
+        axes.grid(True, which="major", alpha=0.3)
+    figure.savefig(path, dpi=150)
+
+
+if __name__ == "__main__":
+    main()

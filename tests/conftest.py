@@ -1,0 +1,30 @@
+"""Fixtures of all tests: the shipped scenes, and their solutions, each solved once."""
+
+from collections.abc import Callable
+from functools import lru_cache
+from pathlib import Path
+
+import pytest
+
+from ribbonopt import Solution, load_scene, solve
+
+CONFIGS = Path(__file__).parents[1] / "configs"
+
+
+@pytest.fixture(scope="session")
+def configs() -> Path:
+    """Folder of the shipped scenes."""
+    return CONFIGS
+
+
+@pytest.fixture(scope="session")
+def solved() -> Callable[..., Solution]:
+    """Return the cached solver of shipped scenes: `solved(name, *overrides)`."""
+
+    @lru_cache(maxsize=None)
+    def solution(name: str, *overrides: str) -> Solution:
+        result = solve(load_scene(CONFIGS / f"{name}.yaml", overrides))
+        assert result.verified, f"{name} {overrides}: {result.message}"
+        return result
+
+    return solution
