@@ -27,7 +27,7 @@ class Guess(Protocol):
         """Fields at fractions (k,) of the length, increasing from 0 to 1."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class IntegratedLoads:
     """Shape that a force and a moment at the start give, by Runge-Kutta steps of order 4."""
 

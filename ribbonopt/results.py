@@ -33,7 +33,7 @@ OWN_FILES = frozenset(
 )
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Stage:
     """A folder beside the wanted one, into which a result is written first."""
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any
@@ -14,13 +14,11 @@ from ribbonopt.arrays import Array
 from ribbonopt.mechanics import RodFields
 from ribbonopt.problem import BoundaryValueProblem
 from ribbonopt.scene import Scene
-from ribbonopt.scene.expressions import Shape, evaluate
-from ribbonopt.scene.formulas import parse_expression
 from ribbonopt.solvers import Status
 from ribbonopt.transcription.dense import DenseOutput
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Verification:
     """What was checked on the dense output after the solve.
 
@@ -42,7 +40,7 @@ class Verification:
     drift: Mapping[str, float]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Solution:
     """Equilibrium of one ribbon.
 
@@ -123,13 +121,9 @@ class Solution:
         values = self.outputs(points)
         result = values.get(expression)
         if result is None:
-            shapes: dict[str, Shape] = {
-                k: "scalar" if v.ndim == 1 else "vector" for k, v in values.items()
-            }
-            node = parse_expression(expression, shapes)
-            result = np.asarray(evaluate(node, _ArrayEnv(values)))
-            result = np.broadcast_to(result, (len(points), result.shape[1]))
-            result = result[:, 0] if node.shape == "scalar" else result
+            from ribbonopt.sampling import evaluate_formula  # plain names need no parser
+
+            result = evaluate_formula(expression, values)
         return np.asarray(result[0] if np.ndim(s) == 0 else result)
 
     def outputs(self, s: Array) -> dict[str, Array]:
@@ -138,6 +132,8 @@ class Solution:
         sigma = (s - start) / (end - start)
         if not ((sigma >= -1e-12) & (sigma <= 1 + 1e-12)).all():
             raise ValueError(f"arclengths are expected in [{start}, {end}], found {s}")
+        if len(s) == 0:
+            return {name: value[:0] for name, value in self.outputs(np.array([start])).items()}
         return self._named(self.dense.states(0, sigma), self.dense.algebraic(0, sigma), s)
 
     def integral(self, name: str) -> float:
@@ -196,34 +192,3 @@ class Solution:
             name: part[:, 0] if part.shape[1] == 1 else part
             for name, part in zip(names, parts, strict=True)
         }
-
-
-@dataclass(frozen=True)
-class _ArrayEnv:
-    """Evaluates formulas on arrays: scalars as columns (k, 1), vectors (k, 3)."""
-
-    values: Mapping[str, Array]
-
-    def number(self, value: float, key: str | None) -> Array:
-        return np.array([[value]])
-
-    def name(self, name: str) -> Array:
-        value = self.values[name]
-        return value[:, None] if value.ndim == 1 else value
-
-    def quantity(self, name: str, end: str) -> Array:
-        raise KeyError(f"{name}({end})")
-
-    def vector(self, components: Sequence[Array]) -> Array:
-        return np.concatenate(np.broadcast_arrays(*components), axis=1)
-
-    def component(self, vector: Array, axis: str) -> Array:
-        i = "xyz".index(axis)
-        return np.asarray(vector[:, i : i + 1])
-
-    def call(self, function: str, arguments: Sequence[Array]) -> Array:
-        if function == "dot":
-            return np.asarray(np.sum(arguments[0] * arguments[1], axis=1, keepdims=True))
-        if function == "norm":
-            return np.asarray(np.linalg.norm(arguments[0], axis=1, keepdims=True))
-        return np.asarray(getattr(np, function)(*arguments))

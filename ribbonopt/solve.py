@@ -19,15 +19,14 @@ from ribbonopt.guess import Guess, IntegratedLoads, initial_unknowns
 from ribbonopt.mechanics.boundary import gap_between_ends
 from ribbonopt.problem import BoundaryValueProblem, Ribbon, pose, theta_of
 from ribbonopt.problem.examine import examine
-from ribbonopt.results import load_solution
-from ribbonopt.scene import LoadGuess, Scene
+from ribbonopt.scene import LoadGuess, Scene, validate_scene
 from ribbonopt.solution import Solution
-from ribbonopt.solvers import SOLVERS, Solver, Status
+from ribbonopt.solvers import SOLVERS, Solver, SolveReport, Status
 from ribbonopt.transcription import NLP, Collocation, Mesh
 from ribbonopt.transcription.dense import DenseOutput
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Prepared:
     """A scene's structure, built: solves any scene that differs from it in numbers only."""
 
@@ -69,26 +68,20 @@ class Prepared:
         guessed = time.perf_counter()
         p = np.concatenate([theta, mesh.widths])
         report = self.solver.solve(w, p)
-        solved = time.perf_counter()
         solution = Solution(
             scene=scene,
             problem=self.problem,
             dense=DenseOutput(self.nlp.blocks, report.w, p),
             status=report.status,
             message=report.status.value,
-            iterations=report.iterations,
+            iterations=sum(attempt.iterations for attempt in report.attempts),
             verification=unverified(),
             multipliers=report.multipliers,
             path=(
                 {"step": f"guess: {_words(scene.guess)}", "seconds": guessed - started},
-                {
-                    "step": f"{scene.solver.type}, {self.collocation.tableau.name} on "
-                    f"{scene.transcription.intervals} intervals",
-                    "iterations": report.iterations,
-                    "seconds": solved - guessed,
-                },
+                *(self._step(attempt) for attempt in report.attempts),
             ),
-            skipped=skipped(scene),
+            skipped=skipped(scene, tuple(attempt.solver for attempt in report.attempts)),
         )
         if report.status.converged:
             solution = _verified(solution, self.ribbon)
@@ -96,14 +89,25 @@ class Prepared:
             where = where_it_resists(report.residuals, self.nlp.layout, solution)
             solution = replace(solution, message=f"{report.status.value}. {where}")
         total = time.perf_counter() - started + self.seconds
+        evaluate = sum(attempt.evaluate for attempt in report.attempts)
+        linear = sum(attempt.linear for attempt in report.attempts)
         timings = {
             "build": self.seconds,
-            "evaluate": report.evaluate,
-            "linear": report.linear,
-            "rest": total - self.seconds - report.evaluate - report.linear,
+            "evaluate": evaluate,
+            "linear": linear,
+            "rest": total - self.seconds - evaluate - linear,
             "total": total,
         }
         return replace(solution, timings=timings)
+
+    def _step(self, attempt: SolveReport) -> dict[str, Any]:
+        tableau, count = self.collocation.tableau, self.nlp.layout.element_count
+        outcome = "" if attempt.status.converged else f" ({attempt.status.name.lower()})"
+        return {
+            "step": f"{attempt.solver}, {tableau.name} on {count} intervals{outcome}",
+            "iterations": attempt.iterations,
+            "seconds": attempt.total,
+        }
 
     def _theta(self, scene: Scene) -> np.ndarray:
         values = theta_of(scene)
@@ -134,6 +138,7 @@ def solve(scene: Scene) -> Solution:
 def prepare(scene: Scene) -> Prepared:
     """Build everything of a scene that does not depend on its numbers."""
     started = time.perf_counter()
+    scene = validate_scene(scene)
     ribbon, problem = pose(scene)
     examine(ribbon, problem, np.array(list(theta_of(scene).values())))
     collocation = Collocation.named(scene.transcription.scheme, scene.transcription.degree)
@@ -145,15 +150,18 @@ def prepare(scene: Scene) -> Prepared:
     return Prepared(scene, ribbon, problem, collocation, nlp, solver, seconds)
 
 
-def skipped(scene: Scene) -> tuple[str, ...]:
-    """Say what a scene does not need and what is therefore not made, each with its reason."""
+def skipped(scene: Scene, solvers: tuple[str, ...] = ()) -> tuple[str, ...]:
+    """Say what a scene does not need and what is therefore not made, each with its reason.
+
+    `solvers` are those that were used; before a solve, none.
+    """
     result = []
     if scene.states == "reduced":
         result.append("force and moment as states (no loads: n is constant, m follows from r)")
         result.append("nine director components (a unit quaternion carries the frame)")
     result.append("second derivatives (square equations, nothing is minimised)")
-    if scene.solver.type == "newton":
-        result.append("IPOPT and the sparse Jacobian (elements are condensed one by one)")
+    if scene.solver.type != "ipopt" and "ipopt" not in solvers:
+        result.append("IPOPT and the sparse Jacobian (Newton condenses element by element)")
     result.append("mesh refinement and further formulations (not asked for)")
     return tuple(result)
 
@@ -170,6 +178,8 @@ def _verified(solution: Solution, ribbon: Ribbon) -> Solution:
 def _guess(scene: Scene, ribbon: Ribbon) -> Guess:
     if isinstance(scene.guess, LoadGuess):
         return IntegratedLoads(ribbon, scene, scene.guess)
+    from ribbonopt.results import load_solution  # reading files costs imports
+
     return load_solution(scene.guess.solution)
 
 

@@ -37,8 +37,10 @@ from ribbonopt.transcription import Mesh
 ROOT = Path(__file__).resolve().parent.parent
 SCENE = ROOT / "configs" / "moebius_half.yaml"
 REFERENCE = np.array(
-    [0, 43.4964080173984993703, 42.0522517129717208281]
-    + [0, 2.00545099623122820984, -8.86920396209993570631]
+    [
+        *(0, 43.4964080173984993703, 42.0522517129717208281),
+        *(0, 2.00545099623122820984, -8.86920396209993570631),
+    ]
 )
 FORCE, MOMENT = (0.0, 40.0, 40.0), (0.0, 2.0, -9.0)
 # (solver, degree, intervals, solver tolerance): the quickest found that reach each error.
@@ -58,7 +60,10 @@ def main() -> None:
     options = parser.parse_args()
     options.out.mkdir(parents=True, exist_ok=True)
     result: dict[str, Any] = {
-        "machine": {"processor": platform.processor() or platform.machine(), "cpus": os.cpu_count()},
+        "machine": {
+            "processor": platform.processor() or platform.machine(),
+            "cpus": os.cpu_count(),
+        },
         "versions": versions(),
         "repeat": options.repeat,
         "build_ms": bench_build(options.repeat),
@@ -250,14 +255,16 @@ def draw(result: dict[str, Any], path: Path) -> None:
         left.loglog(row["error"], row["ms"], "o")
         left.annotate(row["case"], (row["error"], row["ms"]), (6, 3), textcoords="offset points")
     left.set(
-        xlabel="relative error of n(0), m(0)", ylabel="time of one solve (ms)",
+        xlabel="relative error of n(0), m(0)",
+        ylabel="time of one solve (ms)",
         title="half Moebius ribbon, solved again",
     )
     left.margins(0.25)
     scaling = result["scaling"]
     right.loglog(scaling["intervals"], scaling["ms"], "o-")
     right.set(
-        xlabel="intervals", ylabel="time of one solve (ms)",
+        xlabel="intervals",
+        ylabel="time of one solve (ms)",
         title=f"Newton, Gauss 4: exponent {scaling['exponent']:.2f}",
     )
     for axes in (left, right):

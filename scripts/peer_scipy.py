@@ -18,7 +18,6 @@ from scipy.integrate import solve_bvp, solve_ivp
 def _functions() -> tuple[ca.Function, ca.Function]:
     x, c = ca.SX.sym("x", 7), ca.SX.sym("c", 6)
     a, b, g, d = x[3], x[4], x[5], x[6]
-    d1 = ca.vertcat(a * a + b * b - g * g - d * d, 2 * (b * g + a * d), 2 * (b * d - a * g))
     d2 = ca.vertcat(2 * (b * g - a * d), a * a - b * b + g * g - d * d, 2 * (g * d + a * b))
     d3 = ca.vertcat(2 * (b * d + a * g), 2 * (g * d - a * b), a * a - b * b - g * g + d * d)
     m = c[3:] + ca.cross(c[:3], x[:3])

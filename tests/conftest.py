@@ -1,12 +1,14 @@
 """Fixtures of all tests: the shipped scenes, and their solutions, each solved once."""
 
 from collections.abc import Callable
-from functools import lru_cache
+from functools import cache
 from pathlib import Path
 
 import pytest
 
-from ribbonopt import Solution, load_scene, solve
+from ribbonopt.scene import load_scene
+from ribbonopt.solution import Solution
+from ribbonopt.solve import solve
 
 CONFIGS = Path(__file__).parents[1] / "configs"
 
@@ -21,7 +23,7 @@ def configs() -> Path:
 def solved() -> Callable[..., Solution]:
     """Return the cached solver of shipped scenes: `solved(name, *overrides)`."""
 
-    @lru_cache(maxsize=None)
+    @cache
     def solution(name: str, *overrides: str) -> Solution:
         result = solve(load_scene(CONFIGS / f"{name}.yaml", overrides))
         assert result.verified, f"{name} {overrides}: {result.message}"

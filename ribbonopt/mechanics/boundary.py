@@ -2,19 +2,14 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from dataclasses import fields, is_dataclass
-from typing import Any, Literal
+from typing import Any
 
-import casadi as ca
 import numpy as np
 
-from ribbonopt.scene import Boundary, End, Scene
-from ribbonopt.scene.expressions import Number, evaluate, parts
-from ribbonopt.scene.formulas import Equation as Formula
-from ribbonopt.scene.formulas import evaluate_value, parse_equation
+from ribbonopt.scene import Boundary, End, Scene, Value
 
-from .conditions import Component, Condition, Context, Direction, EndName, Equation, Frame
+from .conditions import Component, Condition, Direction, EndName, Frame
 
 DIRECTORS = ("d1", "d2", "d3")
 
@@ -26,8 +21,10 @@ def conditions_of(scene: Scene) -> tuple[Condition, ...]:
     names: tuple[EndName, EndName] = ("start", "end")
     for name in names:
         result += _at_end(name, getattr(boundary, name), parameters)
-    for i, text in enumerate(boundary.also):
-        result.append(_equation(i, parse_equation(text, parameters)))
+    if boundary.also:
+        from .equations import equation  # formulas cost imports that few scenes need
+
+        result += [equation(i, text, parameters) for i, text in enumerate(boundary.also)]
     return tuple(result)
 
 
@@ -59,7 +56,15 @@ def components(vector: Any, parameters: dict[str, float]) -> dict[str, float]:
         pairs = [(f.name, getattr(vector, f.name)) for f in fields(vector)]
     else:
         pairs = list(zip("xyz", vector, strict=True))
-    return {axis: evaluate_value(v, parameters) for axis, v in pairs if v is not None}
+    return {axis: _number(v, parameters) for axis, v in pairs if v is not None}
+
+
+def _number(value: Value, parameters: dict[str, float]) -> float:
+    if not isinstance(value, str):
+        return float(value)
+    from ribbonopt.scene.formulas import evaluate_value
+
+    return evaluate_value(value, parameters)
 
 
 def _at_end(name: EndName, end: End, parameters: dict[str, float]) -> list[Condition]:
@@ -99,49 +104,3 @@ def _frame(end: End, parameters: dict[str, float]) -> np.ndarray | None:
     # The scene was checked to be orthonormal to 1e-6; the nearest rotation removes the rest.
     left, _, right = np.linalg.svd(matrix)
     return np.asarray(left @ right)
-
-
-def _equation(index: int, formula: Formula) -> Equation:
-    def difference(context: Context, name: str) -> ca.SX:
-        env = _SymbolicEnv(context, name)
-        return ca.SX(evaluate(formula.left, env) - evaluate(formula.right, env))
-
-    nodes = [*parts(formula.left), *parts(formula.right)]
-    numbers = tuple((n.key, n.value) for n in nodes if isinstance(n, Number) and n.key is not None)
-    return Equation(index, formula.text, numbers, difference)
-
-
-class _SymbolicEnv:
-    """Evaluates a formula on CasADi expressions of both ends."""
-
-    def __init__(self, context: Context, prefix: str) -> None:
-        self._context, self._prefix = context, prefix
-
-    def number(self, value: float, key: str | None) -> ca.SX:
-        return ca.SX(value) if key is None else self._context.theta(f"{self._prefix}.{key}")
-
-    def name(self, name: str) -> ca.SX:
-        return self._context.theta(f"parameters.{name}")
-
-    def quantity(self, name: str, end: EndName) -> ca.SX:
-        section = self._context.ends[end]
-        value: ca.SX
-        if name in ("u2", "u3"):
-            value = getattr(section, name)
-        elif name[0] in "nm" and name[1:]:
-            value = section.rod.along(getattr(section.rod, name[0]))[int(name[1]) - 1]
-        else:
-            value = getattr(section.rod, name)
-        return value
-
-    def vector(self, components: Sequence[ca.SX]) -> ca.SX:
-        return ca.vertcat(*components)
-
-    def component(self, vector: ca.SX, axis: Literal["x", "y", "z"]) -> ca.SX:
-        value: ca.SX = vector["xyz".index(axis)]
-        return value
-
-    def call(self, function: str, arguments: Sequence[ca.SX]) -> ca.SX:
-        name = {"abs": "fabs", "norm": "norm_2"}.get(function, function)
-        value: ca.SX = getattr(ca, name)(*arguments)
-        return value

@@ -23,7 +23,7 @@ EndName = Literal["start", "end"]
 Named = dict[str, ca.SX]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class CrossSection:
     """The rod at one end: states x, cross section, and strains (u2, u3)."""
 
@@ -34,7 +34,7 @@ class CrossSection:
     u3: ca.SX
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Context:
     """What conditions are made of: both ends and the parameters of the problem by name."""
 
@@ -58,7 +58,7 @@ class Condition(ABC):
         return self.residuals(context)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Component(Condition):
     """One component of a vector: `quantity` is position, d1, d2, d3, force or moment.
 
@@ -89,7 +89,7 @@ class Component(Condition):
         return {self.name: found - context.theta(self.name)}
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Frame(Condition):
     """All three directors: three equations, because the rest is orthonormality."""
 
@@ -123,7 +123,7 @@ class Frame(Condition):
         return ca.vertcat(*(context.theta(f"{self.name}.q{i}") for i in range(4)))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Direction(Condition):
     """One whole director: two equations, that it has no part across the prescribed direction."""
 
@@ -163,7 +163,7 @@ class Direction(Condition):
         return ca.vertcat(*(context.theta(f"{self.name}.{key}.{axis}") for axis in "xyz"))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Equation(Condition):
     """Any equation between quantities at the ends, compiled from a formula of the scene.
 

@@ -51,7 +51,7 @@ class ConstitutiveLaw(ABC):
         """Legendre transform W_Leg(m2, m3) of the energy, eq. (7.1), or None."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Kirchhoff(ConstitutiveLaw):
     """Linear rod of section 2: m2 = B2 u2, m3 = B3 u3."""
 
@@ -71,7 +71,7 @@ class Kirchhoff(ConstitutiveLaw):
         return (m2**2 / self.B2 + m3**2 / self.B3) / 2
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Sadowsky(ConstitutiveLaw):
     """Sadowsky's law with |eta| <= 1, eqs. (4.3)-(4.4); energy W_F, the convexified W_S.
 
@@ -97,7 +97,7 @@ class Sadowsky(ConstitutiveLaw):
         return sadowsky_complementary_energy(m2, m3)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class SingleSheet(ConstitutiveLaw):
     """The sheet chi = sign(u2) of eqs. (2.4)-(2.5): (B 1) with the sign of m2 chi mended.
 
@@ -127,7 +127,7 @@ class SingleSheet(ConstitutiveLaw):
         return ca.if_else(a >= 0, M + a, (m3**2 + GUARD**2) / (M + ca.fabs(a)))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Regularized(ConstitutiveLaw):
     """Sadowsky's law smoothed by epsilon, eq. (6.1); not the gradient of an energy."""
 
@@ -147,7 +147,7 @@ class Regularized(ConstitutiveLaw):
         return None
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Homotopy(ConstitutiveLaw):
     """From rod (rho = 0) to regularised ribbon (rho = 1), eq. (C 1); no energy in between."""
 
@@ -168,7 +168,7 @@ class Homotopy(ConstitutiveLaw):
         return None
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Variational(ConstitutiveLaw):
     """Smooth law with an energy: W_Leg = (q + M)^2 / 8, q = sqrt(m2^2 + delta^2 m3^2).
 

@@ -24,7 +24,7 @@ from ribbonopt.arrays import Array
 from .rotations import directors_of, product, quaternions_from
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class RodState:
     """One cross section: position, directors, force and moment, each (3,) in the lab frame."""
 
@@ -40,7 +40,7 @@ class RodState:
         return ca.vertcat(*(ca.dot(vector, d) for d in (self.d1, self.d2, self.d3)))
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class RodFields:
     """Numbers along a ribbon, rows along s: r, n, m (k, 3) and frames (k, 3, 3), lab frame.
 
@@ -79,7 +79,7 @@ class Orientation(ABC):
         """Orientation states (k, nx) of the frames (k, 3, 3)."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class UnitQuaternion(Orientation):
     """Four states q with q' = q u / 2; Gauss collocation keeps |q| = 1 to rounding."""
 
@@ -104,7 +104,7 @@ class UnitQuaternion(Orientation):
         return quaternions_from(frames)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class DirectorTriad(Orientation):
     """Nine states, the lab components of d1, d2, d3, eq. (2.2)."""
 
@@ -157,7 +157,7 @@ class Balance(ABC):
         """States (k, nx) and constants (nc,) of given fields."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class ConstantForce(Balance):
     """No loads: constants n and m_0, with m = m_0 + n x (r - reference)."""
 
@@ -178,7 +178,7 @@ class ConstantForce(Balance):
         return np.empty((len(fields.r), 0)), np.concatenate([n, moment])
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class ForceMomentStates(Balance):
     """Six states n and m with n' = 0 and m' = n x d3, as eq. (4.5) writes them."""
 
@@ -197,7 +197,7 @@ class ForceMomentStates(Balance):
         return np.hstack([fields.n, fields.m]), np.empty(0)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class RodModel:
     """Unknowns and equations of a rod: orientation and balance together."""
 

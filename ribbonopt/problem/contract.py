@@ -22,7 +22,7 @@ import casadi as ca
 from ribbonopt.errors import ModelError
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Phase:
     """One interval with its own equations.
 

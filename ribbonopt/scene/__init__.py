@@ -13,6 +13,7 @@ from .laws import (
 )
 from .model import (
     AnyVector,
+    Auto,
     Boundary,
     Collocation,
     Directors,
@@ -23,11 +24,13 @@ from .model import (
     Newton,
     Scene,
     SolutionGuess,
+    Value,
 )
 from .yamlio import dump_scene, json_schema, load_scene, loads_scene, validate_scene
 
 __all__ = [
     "AnyVector",
+    "Auto",
     "Boundary",
     "Collocation",
     "Directors",
@@ -44,6 +47,7 @@ __all__ = [
     "Scene",
     "SingleSheet",
     "SolutionGuess",
+    "Value",
     "Variational",
     "dump_scene",
     "json_schema",

@@ -96,6 +96,13 @@ class Collocation:
 
 
 @dataclass(frozen=True)
+class Auto:
+    """Newton where it is enough (square equations), IPOPT where it is not."""
+
+    type: Literal["auto"] = "auto"
+
+
+@dataclass(frozen=True)
 class Ipopt:
     """IPOPT: globalised, bounded, able to minimise; `tolerance` is that of the nonlinear solver."""
 
@@ -126,4 +133,4 @@ class Scene:
     interval: tuple[float, float] = (0.0, 1.0)
     parameters: dict[str, float] = field(default_factory=dict)
     transcription: Collocation = Collocation()
-    solver: Ipopt | Newton = Ipopt()
+    solver: Auto | Ipopt | Newton = Auto()

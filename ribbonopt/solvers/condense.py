@@ -23,7 +23,7 @@ from ribbonopt.transcription.blocks import Derivatives, ElementBlocks, Residuals
 DENSE = 80  # nodes of a phase are no longer reduced when their unknowns number less than this
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class _Level:
     """One level of the reduction: factors that eliminate the middle node of each pair."""
 
@@ -34,7 +34,7 @@ class _Level:
     constants: Array
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class _Chain:
     """Factors of the elements of one phase."""
 

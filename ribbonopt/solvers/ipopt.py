@@ -34,7 +34,7 @@ _STATUS = {
 }
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Ipopt:
     """IPOPT with MUMPS on one NLP; `tolerance` bounds residuals and dual infeasibility."""
 
@@ -103,4 +103,5 @@ class Ipopt:
             evaluate=evaluate,
             linear=total - evaluate,
             total=total,
+            solver="ipopt",
         )

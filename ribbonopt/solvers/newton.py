@@ -23,7 +23,7 @@ KEEP = 0.1
 SMALLEST_DAMPING = 1e-4
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Newton:
     """Newton's method on one square NLP; `tolerance` is relative to 1 + |w|, entry by entry."""
 
@@ -135,4 +135,5 @@ class _Run:
             evaluate=self.evaluate,
             linear=self.linear,
             total=time.perf_counter() - self.started,
+            solver="newton",
         )

@@ -49,7 +49,7 @@ class Status(Enum):
         return self in (Status.CONVERGED, Status.WRONG_SOLUTION)
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class SolveReport:
     """What a solver returns.
 
@@ -68,6 +68,10 @@ class SolveReport:
     evaluate, linear, total : float
         Seconds spent in function evaluation, in linear algebra (for IPOPT: everything of its own,
         mostly linear algebra), and in all.
+    solver : str
+        Name of the solver.
+    earlier : tuple of SolveReport
+        Reports of solvers that were tried before this one and failed.
     """
 
     status: Status
@@ -79,3 +83,10 @@ class SolveReport:
     evaluate: float
     linear: float
     total: float
+    solver: str
+    earlier: tuple[SolveReport, ...] = ()
+
+    @property
+    def attempts(self) -> tuple[SolveReport, ...]:
+        """Reports of all solvers that were tried, in order."""
+        return (*self.earlier, self)

@@ -41,7 +41,7 @@ class System(Protocol):
         """Return the residuals in the order of the NLP's constraints."""
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class ElementSystem:
     """A collocation system, factored element by element (`ribbonopt.solvers.condense`)."""
 
@@ -68,7 +68,7 @@ class ElementSystem:
         return self.blocks.residuals(w, p).vector()
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class SparseFactors:
     """Sparse QR factors of one Jacobian."""
 
@@ -80,7 +80,7 @@ class SparseFactors:
         return np.array(self.solver.solve(self.matrix, ca.DM(-residuals))).ravel()
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class SparseSystem:
     """Any square NLP, by CasADi's sparse QR on its whole Jacobian."""
 

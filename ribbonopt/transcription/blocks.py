@@ -20,7 +20,7 @@ from .layout import Layout
 from .tableaus import Tableau, next_tableau
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Residuals:
     """Residuals of one iterate.
 
@@ -39,7 +39,7 @@ class Residuals:
         return np.concatenate([elements.ravel(), self.conditions])
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Derivatives:
     """Derivative blocks: `stages` (N, K, ne, nv + nc) and `conditions` (nb, (P+1) nx + nc)."""
 
@@ -47,7 +47,7 @@ class Derivatives:
     conditions: Array
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class ElementBlocks:
     """Evaluates a collocation system element by element; see the module for shapes."""
 

@@ -27,7 +27,7 @@ from .tableaus import Tableau, gauss, radau
 SCHEMES: dict[str, Callable[[int], Tableau]] = {"gauss": gauss, "radau": radau}
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Collocation:
     """Collocation by one tableau, the same in every phase."""
 

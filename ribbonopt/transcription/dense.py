@@ -22,7 +22,7 @@ from .buffered import Buffered, shared_map
 Index = NDArray[np.intp]
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class DenseOutput:
     """Numbers of one solution; positions are relative to their phase.
 

@@ -16,7 +16,7 @@ import casadi as ca
 from ribbonopt.problem.contract import BoundaryValueProblem, Phase
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class StageFunctions:
     """Functions of one phase, all with the inputs (v, c, theta, sigma).
 
@@ -85,7 +85,7 @@ class StageFunctions:
         return ca.Function("stage_hessian", [*self.inputs, self.weights], [nonzeros])
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class ConditionFunctions:
     """Functions of the conditions b, with the inputs (points (nx, P + 1), c, theta)."""
 

@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 from ribbonopt.arrays import Array
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Layout:
     """Sizes of a collocation NLP: states, algebraic variables, constants, stages, elements."""
 

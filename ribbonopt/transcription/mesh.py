@@ -10,7 +10,7 @@ from ribbonopt.arrays import Array
 from ribbonopt.errors import TranscriptionError
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Mesh:
     """Widths of the elements of each phase, relative to the phase (each adds up to one)."""
 

@@ -22,7 +22,7 @@ from .blocks import ElementBlocks
 from .layout import Layout
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class NLPFunctions:
     """CasADi functions of the sparse program.
 
@@ -36,7 +36,7 @@ class NLPFunctions:
     hessian: ca.Function
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class NLP:
     """One program; `build` makes its sparse functions when a solver first asks for them."""
 

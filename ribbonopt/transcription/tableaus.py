@@ -16,7 +16,6 @@ from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
-from numpy.polynomial import legendre
 
 from ribbonopt.arrays import Array
 from ribbonopt.errors import TranscriptionError
@@ -24,7 +23,7 @@ from ribbonopt.errors import TranscriptionError
 MAX_DEGREE = 10
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Tableau:
     """One collocation scheme on the unit step.
 
@@ -103,22 +102,37 @@ def _checked(degree: int) -> int:
 
 @lru_cache
 def _gauss(degree: int) -> Tableau:
-    x, w = legendre.leggauss(degree)
-    return _tableau(f"gauss {degree}", (1 + x) / 2, w / 2, 2 * degree, True)
+    # Nodes: roots of P_K, from Tricomi's approximation.
+    guess = np.cos(np.pi * (4 * np.arange(degree, 0, -1) - 1) / (4 * degree + 2))
+    x = _roots(guess, degree, 0.0)
+    weights = (1 - x**2) / (degree * _legendre(x, degree)[:, degree - 1]) ** 2
+    return _tableau(f"gauss {degree}", (1 + x) / 2, weights / weights.sum(), 2 * degree, True)
 
 
 @lru_cache
 def _radau(degree: int) -> Tableau:
-    # Nodes: roots of P_K - P_{K-1} (x = 1 among them), each polished by one Newton step.
-    coefficients = np.zeros(degree + 1)
-    coefficients[-2:] = -1.0, 1.0
-    x = np.sort(legendre.legroots(coefficients).real)
-    x -= legendre.legval(x, coefficients) / legendre.legval(x, legendre.legder(coefficients))
-    x[-1] = 1.0
-    # Interior weights of the right Radau rule: (1 + x) / (K P_{K-1}(x))^2.
-    last = legendre.legval(x, np.eye(degree)[-1])
-    weights = (1 + x) / (2 * (degree * last) ** 2)
-    return _tableau(f"radau {degree}", (1 + x) / 2, weights, 2 * degree - 1, False)
+    # Nodes: x = 1 and the other roots of P_K - P_{K-1}, interlaced with Chebyshev-like angles.
+    guess = np.cos(2 * np.pi * np.arange(degree - 1, 0, -1) / (2 * degree - 1))
+    x = np.append(_roots(guess, degree, -1.0), 1.0)
+    # Weights of the right Radau rule: (1 + x) / (K P_{K-1}(x))^2, up to a factor.
+    last = _legendre(x, degree)[:, degree - 1]
+    weights = (1 + x) / (degree * last) ** 2
+    return _tableau(f"radau {degree}", (1 + x) / 2, weights / weights.sum(), 2 * degree - 1, False)
+
+
+def _roots(x: Array, degree: int, share: float) -> Array:
+    """Roots in (-1, 1) of P_K + share P_{K-1}, by Newton's method from nearby guesses."""
+    for _ in range(20):
+        P = _legendre(x, degree)
+        below = P[:, degree - 2] if degree > 1 else np.zeros_like(x)
+        # (1 - x^2) P_k' = k (P_{k-1} - x P_k)
+        slope = degree * (P[:, degree - 1] - x * P[:, degree])
+        slope += share * (degree - 1) * (below - x * P[:, degree - 1])
+        step = (P[:, degree] + share * P[:, degree - 1]) * (1 - x**2) / slope
+        x = x - step
+        if np.abs(step).max(initial=0.0) < 1e-15:
+            break
+    return x
 
 
 def _tableau(name: str, nodes: Array, weights: Array, order: int, symplectic: bool) -> Tableau:
@@ -133,8 +147,18 @@ def _scaled(nodes: Array, weights: Array) -> Array:
     return np.asarray(factors * _shifted_legendre(nodes, degree).T * weights)
 
 
+def _legendre(x: Array, degree: int) -> Array:
+    """Values P_0 ... P_degree at x (n,), an array (n, degree + 1), by the three-term recurrence."""
+    P = np.ones((len(x), degree + 1))
+    if degree > 0:
+        P[:, 1] = x
+    for k in range(1, degree):
+        P[:, k + 1] = ((2 * k + 1) * x * P[:, k] - k * P[:, k - 1]) / (k + 1)
+    return P
+
+
 def _shifted_legendre(t: Array, degree: int) -> Array:
-    return np.asarray(legendre.legvander(2 * np.asarray(t, dtype=float) - 1, degree))
+    return _legendre(2 * t - 1, degree)
 
 
 def _legendre_integrals(t: Array, degree: int) -> Array:

@@ -18,6 +18,9 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
+STRAIGHT = 1e-9  # largest strain of a ribbon that counts as straight
+
+
 def plot_plane(solution: Solution, complete: bool = True) -> Figure:
     """Plot u3 against u2, allowed and forbidden regions shaded, start and end marked.
 
@@ -36,7 +39,7 @@ def draw_plane(subject: Subject) -> Figure:
     pieces = subject.pieces
     (left, right), (low, high) = _limits(pieces)
     shape = (high - low) / (right - left)
-    figure = blank(6.6, (1.75 if subject.mirrored else 1.5) + 5.6 * shape)
+    figure = blank(6.6, (2.05 if subject.mirrored else 1.8) + 5.6 * shape)
     axes = figure.add_subplot()
     _shade(axes, 2 * max(-left, right, -low, high))
     for piece in pieces:
@@ -93,7 +96,8 @@ def _limits(pieces: tuple[Piece, ...]) -> tuple[tuple[float, float], tuple[float
     """Limits around the path and the origin: not flatter than 1 : 2, not steeper than 1 : 1."""
     u2 = np.concatenate([[0.0], *(p.u2 for p in pieces)])
     u3 = np.concatenate([[0.0], *(p.u3 for p in pieces)])
-    size = max(np.ptp(u2), np.ptp(u3), 1e-12) * 1.16
+    size = max(np.ptp(u2), np.ptp(u3)) * 1.16
+    size = size if size > STRAIGHT else 1.0
     middle = [(v.min() + v.max()) / 2 for v in (u2, u3)]
     half = [max(size, np.ptp(u2) * 1.16) / 2, max(size / 2, np.ptp(u3) * 1.16) / 2]
     (a, b), (p, q) = middle, half

@@ -1,7 +1,7 @@
 """Energies of the laws: gradients, Legendre transforms, convexity, and the limits of families."""
 
 from collections.abc import Callable
-from functools import lru_cache
+from functools import cache
 from typing import Any
 
 import casadi as ca
@@ -40,7 +40,7 @@ convex = pytest.mark.parametrize(
 number = st.floats(-10, 10).filter(lambda x: abs(x) > 1e-6)
 
 
-@lru_cache(maxsize=None)
+@cache
 def evaluated(expression: Callable[[Any, Any], Any], gradient: bool = False) -> Any:
     """Return the numeric function of arrays (2, k) of an expression of two symbols."""
     a = ca.SX.sym("a", 2)
@@ -114,9 +114,7 @@ def test_complementary_energy_is_convex(
 
 @convex
 @given(a2=number, a3=number, b2=number, b3=number)
-def test_energy_is_convex(
-    law: ConstitutiveLaw, a2: float, a3: float, b2: float, b3: float
-) -> None:
+def test_energy_is_convex(law: ConstitutiveLaw, a2: float, a3: float, b2: float, b3: float) -> None:
     points = np.array([[a2, b2, (a2 + b2) / 2], [a3, b3, (a3 + b3) / 2]])
     a, b, middle = evaluated(law.energy)(points)[0]
     assert middle <= (a + b) / 2 * (1 + 1e-13)

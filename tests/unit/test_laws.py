@@ -21,8 +21,7 @@ CASES: dict[str, list[dict[str, float]]] = {
     "single_sheet": [{"chi": 1}, {"chi": -1}],
     "regularized": [{"epsilon": e} for e in (0, 1e-8, 1e-3, 1e-2, 0.5)],
     "homotopy": [
-        {"rho": rho, "epsilon": e}
-        for rho, e in ((0, 0), (0.3, 0), (0.7, 0.01), (1, 0), (1, 1e-3))
+        {"rho": rho, "epsilon": e} for rho, e in ((0, 0), (0.3, 0), (0.7, 0.01), (1, 0), (1, 1e-3))
     ],
     "variational": [{"delta": d} for d in (1, 0.3, 0.01, 1e-4)],
 }

@@ -77,9 +77,7 @@ def test_uniform_mesh() -> None:
         ([np.nan, 1.0], "must be positive"),
     ],
 )
-def test_meshes_that_do_not_fill_their_phase_are_refused(
-    widths: list[float], message: str
-) -> None:
+def test_meshes_that_do_not_fill_their_phase_are_refused(widths: list[float], message: str) -> None:
     with pytest.raises(TranscriptionError, match=message):
         Mesh((np.array(widths),))
 

@@ -78,9 +78,7 @@ def exact(family: Callable[[int], Tableau], degree: int) -> tuple[list[mpf], lis
 
 @each_family
 @each_degree
-def test_coefficients_are_right_to_rounding(
-    family: Callable[[int], Tableau], degree: int
-) -> None:
+def test_coefficients_are_right_to_rounding(family: Callable[[int], Tableau], degree: int) -> None:
     with mp.workdps(60):
         nodes, rows = exact(family, degree)
         found = family(degree)

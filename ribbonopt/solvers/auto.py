@@ -1,0 +1,47 @@
+"""The default: Newton where it is enough, IPOPT where it is not.
+
+Square systems are tried by Newton's method first, which costs neither IPOPT's libraries nor the
+sparse functions; what it cannot solve, and everything that is not square, goes to IPOPT.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+from ribbonopt.arrays import Array
+from ribbonopt.transcription import NLP
+
+from .ipopt import Ipopt
+from .newton import Newton
+from .status import SolveReport
+
+
+@dataclass(frozen=True, eq=False)
+class Auto:
+    """Newton, then IPOPT from the same guess if Newton did not converge."""
+
+    nlp: NLP
+
+    @cached_property
+    def newton(self) -> Newton:
+        """First choice for square programs."""
+        return Newton(self.nlp)
+
+    @cached_property
+    def ipopt(self) -> Ipopt:
+        """For everything else."""
+        return Ipopt(self.nlp)
+
+    def build(self) -> None:
+        """Build the first choice now rather than at the first solve."""
+        (self.newton if self.nlp.square else self.ipopt).build()
+
+    def solve(self, w: Array, p: Array) -> SolveReport:
+        """Solve from the guess w (nw,) for the parameters p (np,)."""
+        if not self.nlp.square:
+            return self.ipopt.solve(w, p)
+        first = self.newton.solve(w, p)
+        if first.status.converged:
+            return first
+        return replace(self.ipopt.solve(w, p), earlier=(first,))
