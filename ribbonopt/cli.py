@@ -13,7 +13,7 @@ import time
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
-from ribbonopt.errors import ConvergenceError, RibbonoptError
+from ribbonopt.errors import ConvergenceError, ModelError, RibbonoptError
 from ribbonopt.version import VERSION
 
 if TYPE_CHECKING:
@@ -36,9 +36,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
         status: int = options.run(options)
         return status
     except ConvergenceError as error:
-        return _fail(options, error, error.status, NOT_CONVERGED)
+        return _fail(options, str(error), error.status, NOT_CONVERGED)
+    except ModelError as error:
+        return _fail(options, f"{_place(options, error)}: {error}", "bad_input", BAD_INPUT)
     except RibbonoptError as error:
-        return _fail(options, error, "bad_input", BAD_INPUT)
+        return _fail(options, str(error), "bad_input", BAD_INPUT)
 
 
 def _help(prog: str) -> argparse.HelpFormatter:
@@ -204,9 +206,17 @@ def _print_json(value: dict[str, Any], indent: int | None = None) -> None:
     print(json.dumps(value, indent=indent, allow_nan=False))
 
 
-def _fail(options: argparse.Namespace, error: Exception, status: str, code: int) -> int:
+def _place(options: argparse.Namespace, error: ModelError) -> str:
+    """File and line of the key that an error blames."""
+    from ribbonopt.scene import locate
+
+    where = locate(options.scene, options.set, error.key) if error.key else ""
+    return f"{options.scene}, {where}" if where else str(options.scene)
+
+
+def _fail(options: argparse.Namespace, error: str, status: str, code: int) -> int:
     if getattr(options, "json", False):
-        _print_json({"status": status, "verified": False, "message": str(error)})
+        _print_json({"status": status, "verified": False, "message": error})
     print(f"ribbonopt: {error}", file=sys.stderr)
     return code
 

@@ -14,7 +14,14 @@ class SceneError(RibbonoptError, ValueError):
 
 
 class ModelError(RibbonoptError, ValueError):
-    """A readable scene whose mechanics does not hold together (counts, ranks, frames)."""
+    """A readable scene whose mechanics does not hold together (counts, ranks, frames).
+
+    `key` is the dotted path of the scene that is to blame, for those who know its file.
+    """
+
+    def __init__(self, message: str, key: str = "") -> None:
+        super().__init__(message)
+        self.key = key
 
 
 class TranscriptionError(RibbonoptError, ValueError):

@@ -29,7 +29,7 @@ def examine(ribbon: Ribbon, problem: BoundaryValueProblem, theta: Array) -> None
     _refuse_repeated(names, samples)
     found, expected = len(names), problem.unknown_count
     if found != expected:
-        raise ModelError(_count_message(ribbon, names, found - expected))
+        raise ModelError(_count_message(ribbon, names, found - expected), "boundary")
     jacobian = samples[0][1]
     scaled = jacobian / np.linalg.norm(jacobian, axis=1, keepdims=True)
     left, singular, _ = np.linalg.svd(scaled)
@@ -38,7 +38,8 @@ def examine(ribbon: Ribbon, problem: BoundaryValueProblem, theta: Array) -> None
         raise ModelError(
             "boundary: these conditions are not independent of one another: "
             + ", ".join(involved)
-            + "; remove one of them and prescribe something else instead"
+            + "; remove one of them and prescribe something else instead",
+            _key(involved[-1]),
         )
 
 
@@ -66,12 +67,18 @@ def _count_message(ribbon: Ribbon, names: list[str], excess: int) -> str:
     )
 
 
+def _key(name: str) -> str:
+    """Path in the scene of a condition; its name may say more in parentheses."""
+    return name.partition(" ")[0]
+
+
 def _refuse_repeated(names: list[str], samples: list[Linearized]) -> None:
     lengths = [np.linalg.norm(jacobian, axis=1) for _, jacobian in samples]
     for i, name in enumerate(names):
         if min(length[i] for length in lengths) == 0:
             raise ModelError(
-                f"{name}: does not depend on any unknown, so it prescribes nothing; remove it"
+                f"{name}: does not depend on any unknown, so it prescribes nothing; remove it",
+                _key(name),
             )
     units = [j / length[:, None] for (_, j), length in zip(samples, lengths, strict=True)]
     for j in range(len(names)):
@@ -87,11 +94,13 @@ def _refuse_repeated(names: list[str], samples: list[Linearized]) -> None:
             ]
             if max(abs(g) for g in gaps) < 1e-8:
                 raise ModelError(
-                    f"{names[i]} and {names[j]} are the same condition twice; remove one"
+                    f"{names[i]} and {names[j]} are the same condition twice; remove one",
+                    _key(names[j]),
                 )
             raise ModelError(
                 f"{names[i]} and {names[j]} prescribe different values for the same thing; "
-                "remove one"
+                "remove one",
+                _key(names[j]),
             )
 
 

@@ -26,7 +26,7 @@ from .model import (
     SolutionGuess,
     Value,
 )
-from .yamlio import dump_scene, json_schema, load_scene, loads_scene, validate_scene
+from .yamlio import dump_scene, json_schema, load_scene, loads_scene, locate, validate_scene
 
 __all__ = [
     "AnyVector",
@@ -53,5 +53,6 @@ __all__ = [
     "json_schema",
     "load_scene",
     "loads_scene",
+    "locate",
     "validate_scene",
 ]

@@ -36,9 +36,41 @@ def load_scene(path: str | os.PathLike[str], overrides: Sequence[str] = ()) -> S
         If the file cannot be read, or for all problems of the scene together, each with its line.
     """
     source = os.fspath(path)
+    return loads_scene(_text_of(path, source), source, overrides)
+
+
+def locate(path: str | os.PathLike[str], overrides: Sequence[str], key: str) -> str:
+    """Say where a key of a readable scene was written.
+
+    Parameters
+    ----------
+    path, overrides
+        As `load_scene` was given them.
+    key
+        Dotted path, such as "boundary.end.d1"; the nearest key above it stands in for one that was
+        not written.
+
+    Returns
+    -------
+    str
+        "line 7", "--set boundary.end.d1=...", or "" where nothing of it was written.
+    """
+    plain = read(_text_of(path, os.fspath(path)))
+    if overrides:
+        from .overrides import override
+
+        plain = override(plain, overrides)
+    parts = tuple(int(part) if part.isdigit() else part for part in key.split("."))
+    for length in range(len(parts), 0, -1):
+        if parts[:length] in plain.places:
+            return str(plain.places[parts[:length]])
+    return ""
+
+
+def _text_of(path: str | os.PathLike[str], source: str) -> str:
     try:
         with open(path, "rb") as file:
-            text = file.read().decode("utf-8-sig")
+            return file.read().decode("utf-8-sig")
     except FileNotFoundError:
         raise SceneError(f"{source}: no such file") from None
     except IsADirectoryError:
@@ -48,7 +80,6 @@ def load_scene(path: str | os.PathLike[str], overrides: Sequence[str] = ()) -> S
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or error
         raise SceneError(f"{source}: cannot be read: {reason}") from None
-    return loads_scene(text, source, overrides)
 
 
 def loads_scene(text: str, source: str = "<string>", overrides: Sequence[str] = ()) -> Scene:

@@ -66,12 +66,8 @@ def test_half_moebius_further_numbers(solved: Solved) -> None:
 
 
 def test_half_moebius_twist(solved: Solved) -> None:
-    # turns of the whole loop
-    assert agrees(abs(2 * found_twist(solved)), "0.3233117792")
-
-
-def found_twist(solved: Solved) -> float:
-    return solved("moebius_half", FINE).twist
+    # turns of the whole loop; digits by Runge-Kutta integration from the 28-digit n(0), m(0)
+    assert agrees(abs(2 * solved("moebius_half", FINE).twist), "0.323311779125")
 
 
 def test_half_moebius_ends_with_the_strain_jump_of_figure_4(solved: Solved) -> None:
@@ -119,10 +115,9 @@ def test_whole_moebius_with_less_smoothing(solved: Solved) -> None:
 
 
 def test_regularized_hamiltonian_drifts_as_measured(solved: Solved) -> None:
-    # (6.1) is not a gradient: H goes from 58.16 to 55.43
-    H = solved("moebius_regularized").sample(np.linspace(0, 1, 2001), "H")
-    assert agrees(H.max(), "58.16")
-    assert agrees(H.min(), "55.43")
+    # (6.1) is not a gradient
+    H = solved("moebius_regularized").sample([0.0, 0.5, 1.0], "H")
+    assert [f"{h:.2f}" for h in H] == ["58.16", "55.43", "58.16"]
 
 
 @pytest.mark.parametrize("delta", VARIATIONAL)
