@@ -24,6 +24,7 @@ if TYPE_CHECKING:
 
 BAD_INPUT = 2
 NOT_CONVERGED = 3
+INTERRUPTED = 130
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
@@ -41,6 +42,9 @@ def main(arguments: Sequence[str] | None = None) -> int:
         return _fail(options, f"{_place(options, error)}: {error}", "bad_input", BAD_INPUT)
     except RibbonoptError as error:
         return _fail(options, str(error), "bad_input", BAD_INPUT)
+    except KeyboardInterrupt:
+        print("ribbonopt: interrupted; nothing written", file=sys.stderr)
+        return INTERRUPTED
 
 
 def _help(prog: str) -> argparse.HelpFormatter:

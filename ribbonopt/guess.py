@@ -46,7 +46,7 @@ class IntegratedLoads:
         length = self.scene.interval[1] - self.scene.interval[0]
         widths = np.diff(fraction) * length
         # Steps short against the strains, which the loads bound.
-        strain = np.linalg.norm(m) + length * np.linalg.norm(n)
+        strain = np.abs(m).max() + length * np.abs(n).max()
         substeps = int(np.clip(np.ceil(widths.max() * strain), 1, 100))
         theta = np.array(list(theta_of(self.scene).values()))
         widths = np.repeat(widths / substeps, substeps)

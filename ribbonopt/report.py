@@ -33,8 +33,9 @@ def report(summary: Mapping[str, Any]) -> str:
         f"{_short(s['residual_between_nodes'])} (relative)",
         f"  {_steps(s['path'])}",
         f"  {_times(s['timings'])}",
-        f"  skipped: {'; '.join(s['skipped'])}",
         f"  units {s['units']}",
+        "  skipped:",
+        *(f"    {reason}" for reason in s["skipped"]),
     ]
     return "\n".join(lines)
 

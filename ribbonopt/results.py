@@ -78,8 +78,20 @@ def save_solution(solution: Solution, folder: str | Path) -> None:
 
     `solution.npz` holds rows along s: `s` (k,), `r`, `d1`, `d2`, `d3`, `n`, `m` (k, 3, lab frame),
     `u` (k, 3, along the directors), and the unknowns `w` and `widths` that a reload needs.
+
+    Raises
+    ------
+    OutputError
+        If they cannot be written.
     """
     folder = Path(folder)
+    try:
+        _write(solution, folder)
+    except OSError as error:
+        raise _unwritable(folder, error) from error
+
+
+def _write(solution: Solution, folder: Path) -> None:
     s = np.linspace(*solution.scene.interval, ROWS)
     rows = solution.outputs(s)
     names = ("r", "d1", "d2", "d3", "n", "m", "u")

@@ -5,10 +5,15 @@ from functools import cache
 from pathlib import Path
 
 import pytest
+from hypothesis import settings
 
 from ribbonopt.scene import load_scene
 from ribbonopt.solution import Solution
 from ribbonopt.solve import solve
+
+# The same examples in every run; a busy machine may take its time.
+settings.register_profile("tests", deadline=None, derandomize=True)
+settings.load_profile("tests")
 
 CONFIGS = Path(__file__).parents[1] / "configs"
 

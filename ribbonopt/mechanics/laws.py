@@ -15,15 +15,21 @@ strains and derivatives are finite.
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import casadi as ca
 
-GUARD = 1e-50
-TINY = 1e-150  # stands for an exact zero in a denominator; its square is still a normal number
-
-Pair = tuple[ca.SX, ca.SX]
+from .relations import (
+    GUARD,
+    Pair,
+    blended_strain,
+    convexified_energy,
+    inverse,
+    norm,
+    sadowsky_complementary_energy,
+    sadowsky_energy,
+    sheet_moment,
+)
 
 
 class ConstitutiveLaw(ABC):
@@ -82,12 +88,12 @@ class Sadowsky(ConstitutiveLaw):
     bounds_eta = True
 
     def strain(self, m2: ca.SX, m3: ca.SX) -> Pair:
-        M, mu = _norm(m2, m3), ca.fabs(m2)
+        M, mu = norm(m2, m3), ca.fabs(m2)
         return ca.sign(m2) * (M + mu) ** 2 / (4 * M), m3 * (M + mu) / (4 * M)
 
     def moment(self, u2: ca.SX, u3: ca.SX) -> Pair:
         allowed = ca.fabs(u2) >= ca.fabs(u3)
-        m2, m3 = _sheet_moment(ca.if_else(allowed, u2, 1), u3)
+        m2, m3 = sheet_moment(ca.if_else(allowed, u2, 1), u3)
         return ca.if_else(allowed, m2, 0) * (u2 != 0), ca.if_else(allowed, m3, 4 * u3)
 
     def energy(self, u2: ca.SX, u3: ca.SX) -> ca.SX:
@@ -108,18 +114,18 @@ class SingleSheet(ConstitutiveLaw):
     bounds_eta = True
 
     def strain(self, m2: ca.SX, m3: ca.SX) -> Pair:
-        M = _norm(m2, m3)
+        M = norm(m2, m3)
         p = self._sum(M, m2, m3)
         return self.chi * p**2 / (4 * M), m3 * p / (4 * M)
 
     def moment(self, u2: ca.SX, u3: ca.SX) -> Pair:
-        return _sheet_moment(u2, u3)
+        return sheet_moment(u2, u3)
 
     def energy(self, u2: ca.SX, u3: ca.SX) -> ca.SX:
         return sadowsky_energy(u2, u3)
 
     def complementary_energy(self, m2: ca.SX, m3: ca.SX) -> ca.SX:
-        return self._sum(_norm(m2, m3), m2, m3) ** 2 / 8
+        return self._sum(norm(m2, m3), m2, m3) ** 2 / 8
 
     def _sum(self, M: ca.SX, m2: ca.SX, m3: ca.SX) -> ca.SX:
         """Chi m2 + M, without cancellation where chi m2 < 0."""
@@ -135,10 +141,10 @@ class Regularized(ConstitutiveLaw):
     variational = False
 
     def strain(self, m2: ca.SX, m3: ca.SX) -> Pair:
-        return _blended_strain(m2, m3, 1, self.epsilon)
+        return blended_strain(m2, m3, 1, self.epsilon)
 
     def moment(self, u2: ca.SX, u3: ca.SX) -> Pair:
-        return _inverse(self.strain, u2, u3)
+        return inverse(self.strain, u2, u3)
 
     def energy(self, u2: ca.SX, u3: ca.SX) -> None:
         return None
@@ -156,10 +162,10 @@ class Homotopy(ConstitutiveLaw):
     variational = False
 
     def strain(self, m2: ca.SX, m3: ca.SX) -> Pair:
-        return _blended_strain(m2, m3, self.rho, self.epsilon)
+        return blended_strain(m2, m3, self.rho, self.epsilon)
 
     def moment(self, u2: ca.SX, u3: ca.SX) -> Pair:
-        return _inverse(self.strain, u2, u3)
+        return inverse(self.strain, u2, u3)
 
     def energy(self, u2: ca.SX, u3: ca.SX) -> None:
         return None
@@ -178,88 +184,19 @@ class Variational(ConstitutiveLaw):
     delta: ca.SX
 
     def strain(self, m2: ca.SX, m3: ca.SX) -> Pair:
-        M, q = _norm(m2, m3), _norm(m2, self.delta * m3)
+        M, q = norm(m2, m3), norm(m2, self.delta * m3)
         common = (q + M) / (4 * q * M)
         return m2 * (q + M) * common, m3 * (q + self.delta**2 * M) * common
 
     def moment(self, u2: ca.SX, u3: ca.SX) -> Pair:
-        return _inverse(self.strain, u2, u3)
+        return inverse(self.strain, u2, u3)
 
     def energy(self, u2: ca.SX, u3: ca.SX) -> ca.SX:
         # W and its transform are equal where they correspond, both being 2-homogeneous.
         return self.complementary_energy(*self.moment(u2, u3))
 
     def complementary_energy(self, m2: ca.SX, m3: ca.SX) -> ca.SX:
-        return (_norm(m2, m3) + _norm(m2, self.delta * m3)) ** 2 / 8
-
-
-def sadowsky_energy(u2: ca.SX, u3: ca.SX) -> ca.SX:
-    """W_S of eq. (2.8): (u2^2 + u3^2)^2 / (2 u2^2)."""
-    return (u2 + u3 * (u3 / _nonzero(u2))) ** 2 / 2
-
-
-def convexified_energy(u2: ca.SX, u3: ca.SX) -> ca.SX:
-    """W_F: W_S where |eta| <= 1 and 2 u3^2 beyond (section 4)."""
-    allowed = ca.fabs(u2) >= ca.fabs(u3)
-    return ca.if_else(allowed, sadowsky_energy(ca.if_else(allowed, u2, 1), u3), 2 * u3**2)
-
-
-def sadowsky_complementary_energy(m2: ca.SX, m3: ca.SX) -> ca.SX:
-    """W_Leg of eq. (7.2) with its first root mended: (|m2| + M)^2 / 8."""
-    return (ca.fabs(m2) + _norm(m2, m3)) ** 2 / 8
-
-
-def _norm(a: ca.SX, b: ca.SX) -> ca.SX:
-    return ca.sqrt(a**2 + b**2 + GUARD**2)
-
-
-def _nonzero(a: ca.SX) -> ca.SX:
-    return ca.if_else(a == 0, TINY, a)
-
-
-def _sheet_moment(u2: ca.SX, u3: ca.SX) -> Pair:
-    """Eqs. (2.4)-(2.5), the first factored so that it does not cancel near |eta| = 1."""
-    eta = u3 / _nonzero(u2)
-    return (u2 - u3) * (1 + eta) * (1 + eta**2), 2 * u3 * (1 + eta**2)
-
-
-def _blended_strain(m2: ca.SX, m3: ca.SX, rho: ca.SX | float, epsilon: ca.SX) -> Pair:
-    """Eq. (C 1) with numerators and denominators multiplied by M + mu."""
-    M, mu = _norm(m2, m3), ca.fabs(m2)
-    s = M + mu
-    torsion = s + rho * (m3**2 / s)
-    bending = (1 - rho) * s + rho * (2 * mu + epsilon * s) + GUARD
-    return m2 * s**2 / (bending * torsion), m3 * s / (2 * torsion)
-
-
-def _inverse(strain: Callable[[ca.SX, ca.SX], Pair], u2: ca.SX, u3: ca.SX) -> Pair:
-    """Moments at given strains for a 1-homogeneous, sign-preserving, monotone law.
-
-    Homogeneity leaves one unknown, t = log |m2 / m3|, found by bisection on the ratio of the
-    strains and two Newton steps (through which derivatives flow); |u| then gives the scale.
-    """
-
-    def direction(t: ca.SX) -> Pair:
-        return ca.exp(ca.fmin(t, 0)), ca.exp(ca.fmin(-t, 0))
-
-    def log_ratio(t: ca.SX) -> ca.SX:
-        a, b = strain(*direction(t))
-        return ca.log(a / b)
-
-    target = ca.log((ca.fabs(u2) + TINY) / (ca.fabs(u3) + TINY))
-    t, step = ca.SX(0), 64.0
-    while step > 1e-10:
-        t = t + step * ca.sign(target - log_ratio(t))
-        step /= 2
-    x = ca.SX.sym("x")
-    newton_step = (target - log_ratio(x)) / ca.gradient(log_ratio(x), x)
-    for _ in range(2):
-        # The bracket's width bounds the step where the law is flat (|eta| > 1, epsilon = 0).
-        t = t + ca.fmax(-step, ca.fmin(step, ca.substitute(newton_step, x, t)))
-    e2, e3 = direction(t)
-    a, b = strain(e2, e3)
-    scale = _norm(u2, u3) / _norm(a, b)
-    return ca.sign(u2) * e2 * scale, ca.sign(u3) * e3 * scale
+        return (norm(m2, m3) + norm(m2, self.delta * m3)) ** 2 / 8
 
 
 #: laws by the name a scene gives them; their fields are those of the scene's classes

@@ -56,6 +56,7 @@ class Ipopt:
             "calc_f": False,
             "calc_g": False,
             "error_on_fail": False,
+            "show_eval_warnings": False,
             "ipopt": {
                 "print_level": 0,
                 "sb": "yes",
@@ -92,7 +93,8 @@ class Ipopt:
         status = _STATUS.get(stats["return_status"], Status.INFEASIBLE)
         evaluate = sum(value for key, value in stats.items() if key.startswith("t_wall_nlp_"))
         solution = np.array(result["x"]).ravel()
-        residuals = np.array(result["g"]).ravel()
+        # Evaluated again: where IPOPT gave up on numbers that are not finite, it returns zeros.
+        residuals = np.array(self.nlp.functions.constraints(solution, p)).ravel()
         return SolveReport(
             status=status,
             w=solution,

@@ -11,7 +11,6 @@ that each F collects from the equations it enters.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import Any
 
 import casadi as ca
 import numpy as np
@@ -21,9 +20,8 @@ from .buffered import shared_map
 from .functions import ConditionFunctions, StageFunctions
 from .layout import Layout
 from .nlp import NLPFunctions
+from .sparse import Index, from_triplets, scatter, sparse, triplets_of
 from .tableaus import Tableau
-
-Index = NDArray[np.int64]
 
 
 class Assembler:
@@ -116,13 +114,13 @@ class Assembler:
         rates = equations[: lay.nx, :] * ca.repmat(widths, lay.nx, 1)
         rates = ca.reshape(rates, lay.stages * lay.nx, -1)
         identity = np.eye(lay.nx)
-        integral = _sparse(np.kron(self.tableau.matrix, identity)) @ rates
+        integral = sparse(np.kron(self.tableau.matrix, identity)) @ rates
         starts = ca.repmat(self.nodes[:, :-1], lay.stages, 1)
         x = ca.reshape(self.stages, lay.nv, -1)[: lay.nx, :]
         defects = ca.reshape(x, lay.stages * lay.nx, -1) - starts - integral
         stages = ca.vertcat(ca.reshape(defects, lay.nx, -1), equations[lay.nx :, :])
         stages = ca.reshape(stages, lay.stages * lay.stage_equations, -1)
-        step = _sparse(np.kron(self.tableau.weights[None], identity)) @ rates
+        step = sparse(np.kron(self.tableau.weights[None], identity)) @ rates
         ends = self.nodes[:, 1:] - self.nodes[:, :-1] - step
         return ca.vertcat(ca.vec(ca.vertcat(stages, ends)), conditions)
 
@@ -133,7 +131,7 @@ class Assembler:
         nonzeros, rows, columns = [], [], []
         slices = lay.phase_slices()
         for functions, (_, jac), s in zip(self.phases, stage_outputs, slices, strict=True):
-            row, col = _triplets(functions.jacobian.sparsity())
+            row, col = triplets_of(functions.jacobian.sparsity())
             scaled = (row < lay.nx).astype(float)[:, None]
             widths = self._repeated_widths(s)
             scale = ca.DM(scaled) @ widths + ca.DM(1 - scaled) @ ca.DM.ones(1, widths.shape[1])
@@ -149,12 +147,12 @@ class Assembler:
                 elements * lay.element_unknowns,
             )
             columns.append((shift + local_col).ravel())
-        row, col = _triplets(self.conditions.jacobian.sparsity())
+        row, col = triplets_of(self.conditions.jacobian.sparsity())
         nonzeros.append(condition_nonzeros)
         rows.append(row + lay.conditions_at)
         columns.append(self._condition_columns()[col])
         shape = (lay.equations, lay.unknowns)
-        jacobian = _scatter(nonzeros, np.concatenate(rows), np.concatenate(columns), shape)
+        jacobian = scatter(nonzeros, np.concatenate(rows), np.concatenate(columns), shape)
         return self._residuals([e for e, _ in stage_outputs], conditions), jacobian
 
     def _element_pattern(self, row: Index, col: Index) -> tuple[ca.DM, ca.DM, Index, Index]:
@@ -196,7 +194,7 @@ class Assembler:
         width = lay.element_unknowns + lay.nx + lay.nc
         keys, where = np.unique(r * width + c, return_inverse=True)
         linear = source >= 0
-        S = _sparse_triplets(where[linear], source[linear], v[linear], (len(keys), K * len(row)))
+        S = from_triplets(where[linear], source[linear], v[linear], (len(keys), K * len(row)))
         k = np.bincount(where[~linear], v[~linear], len(keys))
         return S, ca.DM(k), keys // width, keys % width
 
@@ -218,8 +216,8 @@ class Assembler:
         defects = ca.reshape(stages[: lay.nx, :], lay.stages * lay.nx, -1)
         widths = self._repeated_widths(slice(0, lay.element_count))
         identity = np.eye(lay.nx)
-        collected = _sparse(np.kron(t.matrix.T, identity)) @ defects
-        collected += _sparse(np.kron(t.weights[:, None], identity)) @ body[-lay.nx :, :]
+        collected = sparse(np.kron(t.matrix.T, identity)) @ defects
+        collected += sparse(np.kron(t.weights[:, None], identity)) @ body[-lay.nx :, :]
         rates = -ca.reshape(collected, lay.nx, -1) * ca.repmat(widths, lay.nx, 1)
         cost = sigma_f * widths * ca.DM(np.tile(t.weights, lay.element_count)).T
         slices = lay.phase_slices()
@@ -232,7 +230,7 @@ class Assembler:
         rows: list[Index] = []
         columns_of: list[Index] = []
         for f, (values,), s in zip(self.phases, self._each("hessian", extra), slices, strict=True):
-            row, col = _triplets(f.lagrangian_hessian.sparsity())
+            row, col = triplets_of(f.lagrangian_hessian.sparsity())
             stage = np.arange(s.start * lay.stages, s.stop * lay.stages)[:, None]
             element, j = np.divmod(stage, lay.stages)
             base = element * lay.element_unknowns + lay.nx + j * lay.nv
@@ -240,45 +238,9 @@ class Assembler:
             for index, out in ((row, rows), (col, columns_of)):
                 constant = lay.constants_at + index - lay.nv
                 out.append(np.where(index < lay.nv, base + index, constant).ravel())
-        row, col = _triplets(self.conditions.lagrangian_hessian.sparsity())
+        row, col = triplets_of(self.conditions.lagrangian_hessian.sparsity())
         nonzeros.append(self.conditions.hessian(*self._condition_inputs(), rest))
         where = self._condition_columns()
         rows.append(where[row])
         columns_of.append(where[col])
-        return _scatter(nonzeros, np.concatenate(rows), np.concatenate(columns_of), shape)
-
-
-def _scatter(nonzeros: list[ca.MX], rows: Index, cols: Index, shape: tuple[int, int]) -> ca.MX:
-    """Sparse matrix of the given nonzeros; entries at one place are added up."""
-    values = ca.vertcat(*nonzeros)
-    keys, where = np.unique(cols * shape[0] + rows, return_inverse=True)
-    if len(keys) == len(rows):
-        values = values[np.argsort(where).tolist()]
-    else:
-        ones = np.ones(len(rows))
-        values = (
-            _sparse_triplets(where, np.arange(len(rows)), ones, (len(keys), len(rows))) @ values
-        )
-    return ca.MX(_sparsity(keys % shape[0], keys // shape[0], shape), values)
-
-
-def _sparsity(rows: Index, cols: Index, shape: tuple[int, int]) -> ca.Sparsity:
-    """Sparsity of unique entries sorted by columns."""
-    starts = np.searchsorted(cols, np.arange(shape[1] + 1))
-    return ca.Sparsity(*shape, starts.tolist(), rows.tolist())
-
-
-def _sparse_triplets(
-    rows: Index, cols: Index, values: NDArray[np.float64], shape: tuple[int, int]
-) -> ca.DM:
-    order = np.lexsort((rows, cols))
-    return ca.DM(_sparsity(rows[order], cols[order], shape), values[order])
-
-
-def _sparse(matrix: NDArray[np.floating[Any]]) -> ca.DM:
-    return ca.sparsify(ca.DM(matrix))
-
-
-def _triplets(sparsity: ca.Sparsity) -> tuple[Index, Index]:
-    rows, cols = sparsity.get_triplet()
-    return np.array(rows, dtype=np.int64), np.array(cols, dtype=np.int64)
+        return scatter(nonzeros, np.concatenate(rows), np.concatenate(columns_of), shape)

@@ -134,6 +134,23 @@ def test_failure_while_writing_leaves_the_old_result(
     assert [path.name for path in saved.parent.iterdir()] == ["half"]
 
 
+def test_failure_while_replacing_leaves_the_old_result(
+    solved: Solved, saved: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    before, replace = contents(saved), Path.replace
+
+    def full_disk(source: Path, target: Path) -> Path:
+        if target == saved and (source / "summary.json").read_text().find("helix") > 0:
+            raise OSError(28, "No space left on device")
+        return replace(source, target)
+
+    monkeypatch.setattr(Path, "replace", full_disk)
+    with pytest.raises(OutputError, match="No space left"):
+        store(solved("helix"), saved)
+    assert saved.is_dir()
+    assert contents(saved) == before
+
+
 def test_foreign_files_are_never_touched(half: Solution, saved: Path) -> None:
     (saved / "thesis.tex").write_text("mine")
     before = contents(saved)

@@ -1,0 +1,199 @@
+"""The house rules: who imports whom, who prints, and what a command does not load."""
+
+import ast
+import os
+import re
+import subprocess
+import sys
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+
+import ribbonopt
+
+ROOT = Path(__file__).parents[2]
+PACKAGE = ROOT / "ribbonopt"
+FILES = sorted(PACKAGE.rglob("*.py"))
+each_file = pytest.mark.parametrize("path", FILES, ids=lambda p: str(p.relative_to(PACKAGE)))
+#: longest file that can be read at one sitting
+LONGEST = 250
+
+
+def layers() -> list[set[str]]:
+    """Return the rooms of `pyproject.toml`, those that may import the most first."""
+    text = (ROOT / "pyproject.toml").read_text(encoding="utf-8")
+    block = re.search(r'type = "layers"\nlayers = (\[.*?\n\])', text, re.DOTALL)
+    assert block
+    return [set(level.split(" | ")) for level in ast.literal_eval(block.group(1))]
+
+
+def module_of(path: Path) -> str:
+    parts = path.relative_to(ROOT).with_suffix("").parts
+    return ".".join(parts[:-1] if parts[-1] == "__init__" else parts)
+
+
+def imports_of(path: Path) -> Iterator[str]:
+    """Yield full names of the modules that a file imports, in functions too."""
+    module = module_of(path)
+    package = module if path.name == "__init__.py" else module.rpartition(".")[0]
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Import):
+            yield from (alias.name for alias in node.names)
+        elif isinstance(node, ast.ImportFrom):
+            base = package.split(".")[: len(package.split(".")) - node.level + 1]
+            prefix = ".".join(base) if node.level else ""
+            name = ".".join(part for part in (prefix, node.module) if part)
+            yield name
+            # `from ribbonopt import version` names a module by an alias.
+            yield from (f"{name}.{alias.name}" for alias in node.names)
+
+
+def level_of(module: str) -> int | None:
+    for level, rooms in enumerate(layers()):
+        if any(module == room or module.startswith(f"{room}.") for room in rooms):
+            return level
+    return None
+
+
+def room_of(module: str) -> str:
+    return ".".join(module.split(".")[:2])
+
+
+def test_every_room_has_its_place() -> None:
+    rooms = {room_of(module_of(path)) for path in FILES}
+    placed = set().union(*layers())
+    assert rooms - {"ribbonopt", "ribbonopt.__main__"} == placed
+
+
+@each_file
+def test_rooms_import_only_rooms_above_them(path: Path) -> None:
+    module = module_of(path)
+    own = level_of(module)
+    if own is None:
+        assert module in ("ribbonopt", "ribbonopt.__main__")
+        return
+    for name in imports_of(path):
+        level = level_of(name)
+        if level is not None and room_of(name) != room_of(module):
+            assert level > own, f"{module} imports {name}"
+
+
+@pytest.mark.parametrize("room", ["transcription", "solvers"])
+def test_transcription_and_solvers_know_no_ribbons(room: str) -> None:
+    ribbons = ("mechanics", "scene", "problem.ribbon", "problem.inverted")
+    for path in (PACKAGE / room).rglob("*.py"):
+        for name in imports_of(path):
+            assert not name.startswith(tuple(f"ribbonopt.{r}" for r in ribbons)), path.name
+
+
+def test_views_know_no_solver() -> None:
+    for path in (PACKAGE / "views").rglob("*.py"):
+        for name in imports_of(path):
+            assert not name.startswith(("ribbonopt.solvers", "ribbonopt.transcription")), path.name
+
+
+def calls_of(path: Path) -> Iterator[str]:
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.Call) and isinstance(node.func, ast.Name):
+            yield node.func.id
+
+
+@each_file
+def test_only_the_command_line_prints(path: Path) -> None:
+    if path.name != "cli.py":
+        assert "print" not in set(calls_of(path))
+
+
+@each_file
+def test_nothing_is_evaluated_from_text(path: Path) -> None:
+    assert not {"eval", "exec", "compile", "__import__"} & set(calls_of(path))
+
+
+@each_file
+def test_files_are_short(path: Path) -> None:
+    assert len(path.read_text(encoding="utf-8").splitlines()) <= LONGEST
+
+
+@each_file
+def test_files_say_what_they_are_for(path: Path) -> None:
+    assert ast.get_docstring(ast.parse(path.read_text(encoding="utf-8")))
+
+
+@each_file
+def test_no_error_is_swallowed(path: Path) -> None:
+    for node in ast.walk(ast.parse(path.read_text(encoding="utf-8"))):
+        if isinstance(node, ast.ExceptHandler):
+            assert node.type is not None
+            assert not (len(node.body) == 1 and isinstance(node.body[0], ast.Pass)), node.lineno
+        if isinstance(node, ast.Raise) and isinstance(node.exc, ast.Call):
+            assert getattr(node.exc.func, "id", "") != "Exception", node.lineno
+
+
+def python(code: str) -> subprocess.CompletedProcess[str]:
+    path = os.pathsep.join(filter(None, [str(ROOT), os.environ.get("PYTHONPATH", "")]))
+    return subprocess.run(
+        [sys.executable, "-c", code],
+        capture_output=True,
+        text=True,
+        check=False,
+        env=os.environ | {"PYTHONPATH": path},
+    )
+
+
+def loaded_by(code: str) -> set[str]:
+    """Return the top-level modules that a fresh interpreter has loaded after some code."""
+    tail = "\nimport sys\nprint(*{name.partition('.')[0] for name in sys.modules})"
+    done = python(code + tail)
+    assert done.returncode == 0, done.stderr
+    return set(done.stdout.split())
+
+
+def test_import_alone_is_light() -> None:
+    heavy = {"casadi", "numpy", "matplotlib", "scipy", "pydantic", "pydantic_core", "yaml"}
+    assert not heavy & loaded_by("import ribbonopt")
+
+
+@pytest.mark.parametrize("scene", ["moebius_half", "helix"])
+def test_solving_without_pictures_loads_no_more_than_it_needs(scene: str) -> None:
+    path = str(ROOT / "configs" / f"{scene}.yaml")
+    loaded = loaded_by(
+        f"from ribbonopt.cli import main\nassert main(['solve', {path!r}, '--quiet']) == 0"
+    )
+    assert {"casadi", "numpy", "yaml"} <= loaded
+    assert not {"matplotlib", "scipy", "pydantic"} & loaded
+
+
+def test_bad_scenes_are_refused_without_casadi() -> None:
+    loaded = loaded_by("from ribbonopt.cli import main\nassert main(['check', 'none.yaml']) == 2")
+    assert not {"casadi", "matplotlib", "scipy"} & loaded
+
+
+def test_scene_room_knows_no_casadi() -> None:
+    assert "casadi" not in loaded_by("import ribbonopt.scene")
+
+
+@pytest.mark.parametrize("name", ribbonopt.__all__)
+def test_public_names_exist(name: str) -> None:
+    assert getattr(ribbonopt, name) is not None
+
+
+def test_public_names_are_those_of_the_design() -> None:
+    promised = {"Scene", "Solution", "load_scene", "dump_scene", "json_schema", "solve"}
+    assert promised <= set(ribbonopt.__all__)
+
+
+def test_other_names_do_not_exist() -> None:
+    with pytest.raises(AttributeError, match="no attribute 'slove'"):
+        _ = ribbonopt.slove
+
+
+def test_solve_is_a_function_however_often_it_is_asked_for() -> None:
+    done = python("import ribbonopt\n" + 2 * "assert callable(ribbonopt.solve)\n")
+    assert done.returncode == 0, done.stderr
+
+
+@pytest.mark.parametrize("first", ["ribbonopt.solve", "ribbonopt.cli", "ribbonopt.check"])
+def test_solve_is_a_function_whatever_was_imported_before(first: str) -> None:
+    done = python(f"import {first}\nfrom ribbonopt import solve\nassert callable(solve)")
+    assert done.returncode == 0, done.stderr
