@@ -12,10 +12,10 @@ from typing import TYPE_CHECKING, Any
 from ribbonopt import version
 
 if TYPE_CHECKING:
+    from ribbonopt.pipeline import prepare, solve
     from ribbonopt.results import load_solution, save_solution
     from ribbonopt.scene import Scene, dump_scene, json_schema, load_scene, loads_scene
     from ribbonopt.solution import Solution
-    from ribbonopt.solve import prepare, solve
     from ribbonopt.summary import summarize
 
 __version__ = version.VERSION
@@ -43,9 +43,9 @@ _HOMES = {
     "load_scene": "scene",
     "load_solution": "results",
     "loads_scene": "scene",
-    "prepare": "solve",
+    "prepare": "pipeline",
     "save_solution": "results",
-    "solve": "solve",
+    "solve": "pipeline",
     "summarize": "summary",
 }
 

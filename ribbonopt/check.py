@@ -6,10 +6,10 @@ from typing import Any
 
 import numpy as np
 
+from ribbonopt.pipeline import refuse_unreachable, skipped
 from ribbonopt.problem import pose, theta_of
 from ribbonopt.problem.examine import examine, unknown_names
 from ribbonopt.scene import Scene
-from ribbonopt.solve import refuse_unreachable, skipped
 from ribbonopt.transcription import Collocation
 
 

@@ -15,6 +15,7 @@ from contextlib import contextmanager
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
+from zipfile import BadZipFile
 
 import numpy as np
 
@@ -131,10 +132,10 @@ def load_solution(path: str | Path) -> Solution:
     scene = load_scene(folder / "scene.yaml")
     try:
         summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
-        with np.load(folder / "solution.npz") as data:
+        with open(folder / "solution.npz", "rb") as file, np.load(file) as data:
             w, widths, multipliers = (data[k] for k in ("w", "widths", "multipliers"))
         status = Status[summary["status"].upper()]
-    except (ValueError, KeyError, OSError) as error:
+    except (ValueError, KeyError, TypeError, OSError, EOFError, BadZipFile) as error:
         raise OutputError(f"{folder}: damaged result ({error}); solve the scene again") from error
     _, problem = pose(scene)
     collocation = Collocation.named(scene.transcription.scheme, scene.transcription.degree)
@@ -206,7 +207,11 @@ def _replace(target: Path, staging: Path) -> None:
         if target.exists():
             retired = Path(tempfile.mkdtemp(prefix=f".{target.name}.old.", dir=target.parent))
             target.replace(retired)
-            staging.replace(target)
+            try:
+                staging.replace(target)
+            except OSError:
+                retired.replace(target)
+                raise
             shutil.rmtree(retired, ignore_errors=True)
         else:
             staging.replace(target)

@@ -29,7 +29,7 @@ import numpy as np
 
 from ribbonopt.guess import initial_unknowns
 from ribbonopt.scene import LoadGuess, Scene, load_scene
-from ribbonopt.solve import Prepared, prepare
+from ribbonopt.pipeline import Prepared, prepare
 from ribbonopt.summary import versions
 from ribbonopt.transcription import Mesh
 

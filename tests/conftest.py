@@ -9,7 +9,7 @@ from hypothesis import settings
 
 from ribbonopt.scene import load_scene
 from ribbonopt.solution import Solution
-from ribbonopt.solve import solve
+from ribbonopt.pipeline import solve
 
 # The same examples in every run; a busy machine may take its time.
 settings.register_profile("tests", deadline=None, derandomize=True)

@@ -8,7 +8,7 @@ an energy also give `energy(u)` and `complementary_energy(m)`, else these are No
 With M = |m| and mu = |m2|, lambda* of eq. (4.2) is written (M - mu)/(M + mu), which neither divides
 by zero at m3 = 0 nor cancels. All laws are positively homogeneous of degree one and not
 differentiable at m = 0, so M is guarded: M = sqrt(m2^2 + m3^2 + GUARD^2). The guard is below half a
-unit in the last place of M^2 for M > 1e-42 and so changes no bit of any result there; at m = 0
+unit in the last place of M^2 for M > 1e-51 and so changes no bit of any result there; at m = 0
 strains and derivatives are finite.
 """
 
@@ -192,8 +192,9 @@ class Variational(ConstitutiveLaw):
         return inverse(self.strain, u2, u3)
 
     def energy(self, u2: ca.SX, u3: ca.SX) -> ca.SX:
-        # W and its transform are equal where they correspond, both being 2-homogeneous.
-        return self.complementary_energy(*self.moment(u2, u3))
+        # The Legendre transform back: errors of the moments enter in second order only.
+        m2, m3 = self.moment(u2, u3)
+        return m2 * u2 + m3 * u3 - self.complementary_energy(m2, m3)
 
     def complementary_energy(self, m2: ca.SX, m3: ca.SX) -> ca.SX:
         return (norm(m2, m3) + norm(m2, self.delta * m3)) ** 2 / 8

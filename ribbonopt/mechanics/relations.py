@@ -6,7 +6,7 @@ from collections.abc import Callable
 
 import casadi as ca
 
-GUARD = 1e-50
+GUARD = 1e-60
 TINY = 1e-150  # stands for an exact zero in a denominator; its square is still a normal number
 
 Pair = tuple[ca.SX, ca.SX]
@@ -49,7 +49,7 @@ def blended_strain(m2: ca.SX, m3: ca.SX, rho: ca.SX | float, epsilon: ca.SX) -> 
     M, mu = norm(m2, m3), ca.fabs(m2)
     s = M + mu
     torsion = s + rho * (m3**2 / s)
-    bending = (1 - rho) * s + rho * (2 * mu + epsilon * s) + GUARD
+    bending = (1 - rho) * s + rho * (2 * mu + epsilon * s) + TINY
     return m2 * s**2 / (bending * torsion), m3 * s / (2 * torsion)
 
 
@@ -57,7 +57,7 @@ def inverse(strain: Callable[[ca.SX, ca.SX], Pair], u2: ca.SX, u3: ca.SX) -> Pai
     """Moments at given strains for a 1-homogeneous, sign-preserving, monotone law.
 
     Homogeneity leaves one unknown, t = log |m2 / m3|, found by bisection on the ratio of the
-    strains and two Newton steps (through which derivatives flow); |u| then gives the scale.
+    strains and two Newton steps (through which derivatives flow); the larger strain then gives the scale.
     """
 
     def direction(t: ca.SX) -> Pair:
@@ -79,5 +79,6 @@ def inverse(strain: Callable[[ca.SX, ca.SX], Pair], u2: ca.SX, u3: ca.SX) -> Pai
         t = t + ca.fmax(-step, ca.fmin(step, ca.substitute(newton_step, x, t)))
     e2, e3 = direction(t)
     a, b = strain(e2, e3)
-    scale = norm(u2, u3) / norm(a, b)
+    # By the larger strain: where |eta| > 1 at epsilon = 0, u2 is anything up to |u3|.
+    scale = ca.if_else(ca.fabs(u3) >= ca.fabs(u2), ca.fabs(u3) / b, ca.fabs(u2) / a)
     return ca.sign(u2) * e2 * scale, ca.sign(u3) * e3 * scale

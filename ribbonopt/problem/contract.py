@@ -94,6 +94,12 @@ class BoundaryValueProblem:
                     f"phase {i}: dynamics are expected to have shape {self.state.shape}, "
                     f"found {phase.dynamics.shape}"
                 )
+            counts = [(p.algebraic.numel(), p.path.numel()) for p in (phase, self.phases[0])]
+            if counts[0] != counts[1]:
+                raise ModelError(
+                    f"phase {i}: {counts[0]} algebraic equations and path inequalities, expected "
+                    f"as many as in phase 0, {counts[1]}"
+                )
             if self.square and phase.algebraic.numel() != self.algebraic.numel():
                 raise ModelError(
                     f"phase {i}: {self.algebraic.numel()} algebraic variables need as many "

@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import casadi as ca
 import numpy as np
 
 from ribbonopt.arrays import Array
 from ribbonopt.errors import ModelError
-from ribbonopt.mechanics import RodFields
+from ribbonopt.mechanics import MODELS, RodFields
 
 from .contract import BoundaryValueProblem
 from .ribbon import Ribbon
@@ -24,12 +26,11 @@ def examine(ribbon: Ribbon, problem: BoundaryValueProblem, theta: Array) -> None
     ModelError
         With counts, names and remedy.
     """
-    names = list(problem.conditions)
-    samples = _linearized(ribbon, problem, theta)
+    names, samples = _linearized(ribbon, problem, theta)
     _refuse_repeated(names, samples)
-    found, expected = len(names), problem.unknown_count
-    if found != expected:
-        raise ModelError(_count_message(ribbon, names, found - expected), "boundary")
+    excess = len(problem.conditions) - problem.unknown_count
+    if excess:
+        raise ModelError(_count_message(ribbon, list(problem.conditions), excess), "boundary")
     jacobian = samples[0][1]
     scaled = jacobian / np.linalg.norm(jacobian, axis=1, keepdims=True)
     left, singular, _ = np.linalg.svd(scaled)
@@ -104,18 +105,28 @@ def _refuse_repeated(names: list[str], samples: list[Linearized]) -> None:
             )
 
 
-def _linearized(ribbon: Ribbon, problem: BoundaryValueProblem, theta: Array) -> list[Linearized]:
-    """Residuals (nb,) and Jacobians (nb, unknowns of both ends and constants) at two rods."""
-    points = ca.vertcat(*problem.points)
-    conditions = ca.vertcat(*problem.conditions.values())
-    jacobian = ca.densify(ca.jacobian(conditions, ca.vertcat(points, problem.constants)))
-    inputs = [points, problem.constants, problem.parameters]
+def _linearized(
+    ribbon: Ribbon, problem: BoundaryValueProblem, theta: Array
+) -> tuple[list[str], list[Linearized]]:
+    """Names, residuals (nb,) and Jacobians (nb, unknowns of both ends and constants) at two rods.
+
+    On the reduced states whatever the scene's own: they know that the force is one constant, so
+    that a force prescribed at both ends is seen as prescribed twice.
+    """
+    reduced = replace(ribbon, model=MODELS["reduced"])
+    count = len(reduced.model.states)
+    start, end = ca.SX.sym("start", count), ca.SX.sym("end", count)
+    c = ca.SX.sym("c", len(reduced.model.constants))
+    named = reduced.residuals(start, end, c)
+    conditions = ca.vertcat(*named.values())
+    jacobian = ca.densify(ca.jacobian(conditions, ca.vertcat(start, end, c)))
+    inputs = [ca.vertcat(start, end), c, problem.parameters]
     function = ca.Function("conditions", inputs, [conditions, jacobian])
     result = []
     for seed in (0.3, 0.8):
-        residuals, matrix = function(*_generic_rod(ribbon, seed), theta)
+        residuals, matrix = function(*_generic_rod(reduced, seed), theta)
         result.append((np.array(residuals).ravel(), np.array(matrix)))
-    return result
+    return list(named), result
 
 
 def _generic_rod(ribbon: Ribbon, seed: float) -> tuple[Array, Array]:

@@ -102,7 +102,10 @@ class SparseSystem:
     def factor(self, derivatives: ca.DM, p: Array) -> SparseFactors:
         """Factors of the Jacobian; LinAlgError where it is singular."""
         solver = ca.Linsol("newton", "qr", derivatives.sparsity())
-        solver.nfact(derivatives)
+        try:
+            solver.nfact(derivatives)
+        except RuntimeError as error:  # the only way CasADi has to say singular
+            raise np.linalg.LinAlgError("singular Jacobian") from error
         return SparseFactors(solver, derivatives)
 
     def vector(self, w: Array, p: Array) -> Array:

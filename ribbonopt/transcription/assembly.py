@@ -73,12 +73,14 @@ class Assembler:
         v = ca.reshape(self.stages[:, elements.start : elements.stop], lay.nv, -1)
         return [v, self.c, self.theta, ca.reshape(positions, 1, -1)]
 
-    def _each(self, name: str, extra: dict[slice, list[ca.MX]] | None = None) -> list[list[ca.MX]]:
+    def _each(self, name: str, extra: Sequence[list[ca.MX]] = ()) -> list[list[ca.MX]]:
         """Return the outputs of stage function `name` of every phase, mapped over its stages."""
         result = []
-        for functions, s in zip(self.phases, self.layout.phase_slices(), strict=True):
+        for i, (functions, s) in enumerate(
+            zip(self.phases, self.layout.phase_slices(), strict=True)
+        ):
             count = (s.stop - s.start) * self.layout.stages
-            inputs = self._stage_inputs(s) + (extra[s] if extra else [])
+            inputs = self._stage_inputs(s) + (extra[i] if extra else [])
             outputs = shared_map(getattr(functions, name), count)(*inputs)
             result.append(list(outputs) if isinstance(outputs, tuple | list) else [outputs])
         return result
@@ -221,11 +223,11 @@ class Assembler:
         rates = -ca.reshape(collected, lay.nx, -1) * ca.repmat(widths, lay.nx, 1)
         cost = sigma_f * widths * ca.DM(np.tile(t.weights, lay.element_count)).T
         slices = lay.phase_slices()
-        extra = {}
+        extra = []
         for f, s in zip(self.phases, slices, strict=True):
             columns = slice(s.start * lay.stages, s.stop * lay.stages)
             parts = [rates[:, columns], stages[lay.nx :, columns]]
-            extra[s] = [ca.vertcat(*parts, *([] if f.cost is None else [cost[:, columns]]))]
+            extra.append([ca.vertcat(*parts, *([] if f.cost is None else [cost[:, columns]]))])
         nonzeros: list[ca.MX] = []
         rows: list[Index] = []
         columns_of: list[Index] = []

@@ -11,7 +11,7 @@ from scipy.integrate import solve_ivp
 
 from ribbonopt.scene import load_scene
 from ribbonopt.solution import Solution
-from ribbonopt.solve import solve
+from ribbonopt.pipeline import solve
 from ribbonopt.transcription import gauss, radau
 
 SCHEMES = {"gauss": gauss, "radau": radau}

@@ -11,7 +11,7 @@ from scipy.spatial.transform import Rotation
 from ribbonopt.accuracy.estimate import estimate_error
 from ribbonopt.scene import Boundary, Directors, End, LoadGuess, Sadowsky, Scene
 from ribbonopt.solution import Solution
-from ribbonopt.solve import solve
+from ribbonopt.pipeline import solve
 
 Solved = Callable[..., Solution]
 Array = np.ndarray

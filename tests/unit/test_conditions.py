@@ -22,7 +22,7 @@ from ribbonopt.mechanics.rod import MODELS, RodFields
 from ribbonopt.problem import pose
 from ribbonopt.scene import load_scene
 from ribbonopt.solution import Solution
-from ribbonopt.solve import prepare, solve
+from ribbonopt.pipeline import prepare, solve
 from ribbonopt.solvers import Status
 
 HALF = "moebius_half.yaml"

@@ -11,7 +11,7 @@ from ribbonopt.errors import OutputError
 from ribbonopt.results import load_solution, save_solution, staged_result
 from ribbonopt.scene import load_scene
 from ribbonopt.solution import Solution
-from ribbonopt.solve import prepare, solve
+from ribbonopt.pipeline import prepare, solve
 
 Solved = Callable[..., Solution]
 NAMES = ("r", "d1", "d2", "d3", "n", "m", "u")

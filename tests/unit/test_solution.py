@@ -10,7 +10,7 @@ import pytest
 
 from ribbonopt.scene import load_scene
 from ribbonopt.solution import Solution
-from ribbonopt.solve import solve
+from ribbonopt.pipeline import solve
 from ribbonopt.summary import summarize
 
 Solved = Callable[..., Solution]

@@ -15,7 +15,7 @@ from ribbonopt.errors import ModelError, OutputError
 from ribbonopt.results import OWN_FILES
 from ribbonopt.scene import load_scene
 from ribbonopt.solution import Solution
-from ribbonopt.solve import solve
+from ribbonopt.pipeline import solve
 from ribbonopt.views import plot_plane, plot_ribbon, plot_strains, save_figures
 from ribbonopt.views.camera import place_camera
 from ribbonopt.views.pieces import sample_pieces
@@ -46,7 +46,7 @@ def test_matplotlib_is_imported_when_a_figure_is_drawn_and_pyplot_never():
     code = f"""if True:
         import sys, ribbonopt.views
         from ribbonopt.scene import load_scene
-        from ribbonopt.solve import solve
+        from ribbonopt.pipeline import solve
         solution = solve(load_scene({str(CONFIGS / "helix.yaml")!r}))
         assert "matplotlib" not in sys.modules
         ribbonopt.views.plot_ribbon(solution)
