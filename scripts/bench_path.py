@@ -28,8 +28,8 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 import numpy as np
 
 from ribbonopt.guess import initial_unknowns
-from ribbonopt.scene import LoadGuess, Scene, load_scene
 from ribbonopt.pipeline import Prepared, prepare
+from ribbonopt.scene import LoadGuess, Scene, load_scene
 from ribbonopt.summary import versions
 from ribbonopt.transcription import Mesh
 

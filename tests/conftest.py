@@ -7,9 +7,9 @@ from pathlib import Path
 import pytest
 from hypothesis import settings
 
+from ribbonopt.pipeline import solve
 from ribbonopt.scene import load_scene
 from ribbonopt.solution import Solution
-from ribbonopt.pipeline import solve
 
 # The same examples in every run; a busy machine may take its time.
 settings.register_profile("tests", deadline=None, derandomize=True)

@@ -19,10 +19,10 @@ from ribbonopt.mechanics.conditions import (
     Frame,
 )
 from ribbonopt.mechanics.rod import MODELS, RodFields
+from ribbonopt.pipeline import prepare, solve
 from ribbonopt.problem import pose
 from ribbonopt.scene import load_scene
 from ribbonopt.solution import Solution
-from ribbonopt.pipeline import prepare, solve
 from ribbonopt.solvers import Status
 
 HALF = "moebius_half.yaml"

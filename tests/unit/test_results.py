@@ -8,10 +8,10 @@ import pytest
 
 from ribbonopt import results
 from ribbonopt.errors import OutputError
+from ribbonopt.pipeline import prepare, solve
 from ribbonopt.results import load_solution, save_solution, staged_result
 from ribbonopt.scene import load_scene
 from ribbonopt.solution import Solution
-from ribbonopt.pipeline import prepare, solve
 
 Solved = Callable[..., Solution]
 NAMES = ("r", "d1", "d2", "d3", "n", "m", "u")

@@ -126,7 +126,11 @@ def test_data_may_hold_instances() -> None:
         ({"transcription": {"intervals": 0}}, "transcription.intervals", "a whole number >= 1"),
         ({"transcription": {"scheme": "gaus"}}, "transcription.scheme", "did you mean 'gauss'?"),
         ({"transcripton": {}}, "transcripton", "unknown key; did you mean 'transcription'?"),
-        ({"solver": {"tolerance": 1}}, "solver.type", "missing; expected 'auto', 'ipopt' or 'newton'"),
+        (
+            {"solver": {"tolerance": 1}},
+            "solver.type",
+            "missing; expected 'auto', 'ipopt' or 'newton'",
+        ),
         ({"interval": [0]}, "interval", "found [0], expected a list of 2 items"),
         ({"interval": [0, 1, 2]}, "interval", "found [0, 1, 2], expected a list of 2 items"),
         ({"interval": "0 1"}, "interval", "found '0 1', expected a list of 2 items"),

@@ -8,9 +8,9 @@ from typing import Any
 import numpy as np
 import pytest
 
+from ribbonopt.pipeline import solve
 from ribbonopt.scene import load_scene
 from ribbonopt.solution import Solution
-from ribbonopt.pipeline import solve
 from ribbonopt.summary import summarize
 
 Solved = Callable[..., Solution]

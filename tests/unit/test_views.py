@@ -12,10 +12,10 @@ from matplotlib.image import imread
 from matplotlib.text import Text
 
 from ribbonopt.errors import ModelError, OutputError
+from ribbonopt.pipeline import solve
 from ribbonopt.results import OWN_FILES
 from ribbonopt.scene import load_scene
 from ribbonopt.solution import Solution
-from ribbonopt.pipeline import solve
 from ribbonopt.views import plot_plane, plot_ribbon, plot_strains, save_figures
 from ribbonopt.views.camera import place_camera
 from ribbonopt.views.pieces import sample_pieces
