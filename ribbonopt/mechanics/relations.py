@@ -57,7 +57,8 @@ def inverse(strain: Callable[[ca.SX, ca.SX], Pair], u2: ca.SX, u3: ca.SX) -> Pai
     """Moments at given strains for a 1-homogeneous, sign-preserving, monotone law.
 
     Homogeneity leaves one unknown, t = log |m2 / m3|, found by bisection on the ratio of the
-    strains and two Newton steps (through which derivatives flow); the larger strain then gives the scale.
+    strains and two Newton steps (through which derivatives flow); the larger strain then gives the
+    scale.
     """
 
     def direction(t: ca.SX) -> Pair:
