@@ -2,6 +2,6 @@
 
 import sys
 
-from ribbonopt.cli import main
+from ribbonopt.cli import run
 
-sys.exit(main())
+sys.exit(run())

@@ -29,6 +29,14 @@ INTERRUPTED = 130
 READER_GONE = 141
 
 
+def run() -> int:
+    """Run the command line in a process of its own; entry point of `ribbonopt`."""
+    # Before numpy is loaded: threads cost small matrices more than they bring, above all when
+    # another process wants the processors too.
+    os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    return main()
+
+
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run one command and return its exit status."""
     options = _parser().parse_args(arguments)
@@ -237,4 +245,4 @@ def _fail(options: argparse.Namespace, error: str, status: str, code: int) -> in
 
 
 if __name__ == "__main__":
-    sys.exit(main())
+    sys.exit(run())

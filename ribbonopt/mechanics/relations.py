@@ -75,9 +75,10 @@ def inverse(strain: Callable[[ca.SX, ca.SX], Pair], u2: ca.SX, u3: ca.SX) -> Pai
         step /= 2
     x = ca.SX.sym("x")
     newton_step = (target - log_ratio(x)) / ca.gradient(log_ratio(x), x)
+    rest = 2 * step  # what bisection leaves open
     for _ in range(2):
         # The bracket's width bounds the step where the law is flat (|eta| > 1, epsilon = 0).
-        t = t + ca.fmax(-step, ca.fmin(step, ca.substitute(newton_step, x, t)))
+        t = t + ca.fmax(-rest, ca.fmin(rest, ca.substitute(newton_step, x, t)))
     e2, e3 = direction(t)
     a, b = strain(e2, e3)
     # By the larger strain: where |eta| > 1 at epsilon = 0, u2 is anything up to |u3|.
