@@ -260,15 +260,18 @@ def draw(result: dict[str, Any], path: Path) -> None:
     figure = Figure(figsize=(10, 4.2), layout="constrained")
     FigureCanvasAgg(figure)
     left, right = figure.subplots(1, 2)
+    curves: dict[str, list[tuple[float, float]]] = {}
     for row in result["solve"]:
-        left.loglog(row["error"], row["ms"], "o")
-        left.annotate(row["case"], (row["error"], row["ms"]), (6, 3), textcoords="offset points")
+        solver = row["case"].rsplit(" ", 1)[0]
+        curves.setdefault(solver, []).append((row["error"], row["ms"]))
+    for solver, points in curves.items():
+        left.loglog(*zip(*points, strict=True), "o-", label=solver)
+    left.legend()
     left.set(
         xlabel="relative error of n(0), m(0)",
         ylabel="time of one solve (ms)",
         title="half Moebius ribbon, solved again",
     )
-    left.margins(0.25)
     scaling = result["scaling"]
     right.loglog(scaling["intervals"], scaling["ms"], "o-")
     right.set(
@@ -276,6 +279,10 @@ def draw(result: dict[str, Any], path: Path) -> None:
         ylabel="time of one solve (ms)",
         title=f"Newton, Gauss 4: exponent {scaling['exponent']:.2f}",
     )
+    right.set_xticks(scaling["intervals"], [str(n) for n in scaling["intervals"]], minor=False)
+    right.set_xticks([], minor=True)
+    right.set_yticks([5, 10, 20, 50, 100], ["5", "10", "20", "50", "100"], minor=False)
+    right.set_yticks([], minor=True)
     for axes in (left, right):
         axes.grid(True, which="major", alpha=0.3)
     figure.savefig(path, dpi=150)
