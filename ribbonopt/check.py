@@ -6,11 +6,11 @@ from typing import Any
 
 import numpy as np
 
+from ribbonopt.discretize import discretize
 from ribbonopt.pipeline import refuse_unreachable, skipped
 from ribbonopt.problem import pose, theta_of
 from ribbonopt.problem.examine import examine, unknown_names
 from ribbonopt.scene import Scene
-from ribbonopt.transcription import Collocation
 
 
 def check_scene(scene: Scene) -> dict[str, Any]:
@@ -26,9 +26,7 @@ def check_scene(scene: Scene) -> dict[str, Any]:
     ribbon, problem = pose(scene)
     examine(ribbon, problem, np.array(list(theta_of(scene).values())))
     refuse_unreachable(scene)
-    settings = scene.transcription
-    collocation = Collocation.named(settings.scheme, settings.degree)
-    nlp = collocation.transcribe(problem, (settings.intervals,))
+    nlp = discretize(scene, problem)
     return {
         "name": scene.name,
         "unknowns": unknown_names(ribbon),

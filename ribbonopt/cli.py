@@ -1,4 +1,4 @@
-"""The command line: `ribbonopt solve | check | schema | plot`. The only place that prints.
+"""The command line: `ribbonopt VERB ...`. The only place that prints.
 
 Exit status: 0 done, 2 bad input (nothing written), 3 not converged or not the problem asked for
 (what there is is kept beside the wanted folder). Heavy imports happen in the verb that needs them.
@@ -11,17 +11,19 @@ import gc
 import os
 import sys
 import time
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import TYPE_CHECKING, Any
 
+from ribbonopt.arguments import chosen, count, numbers, parser
 from ribbonopt.errors import ConvergenceError, ModelError, RibbonoptError
-from ribbonopt.version import VERSION
 
 if TYPE_CHECKING:
     from pathlib import Path
 
     from ribbonopt.scene import Scene
     from ribbonopt.solution import Solution
+    from ribbonopt.studies.benchmark import Benchmark
+    from ribbonopt.studies.compare import Comparison
 
 BAD_INPUT = 2
 NOT_CONVERGED = 3
@@ -39,13 +41,13 @@ def run() -> int:
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run one command and return its exit status."""
-    options = _parser().parse_args(arguments)
+    options = parser().parse_args(arguments)
     # Commands are short and build much that lives to their end: collecting garbage on the way
     # costs a tenth of the time and frees nothing.
     collecting = gc.isenabled()
     gc.disable()
     try:
-        status: int = options.run(options)
+        status = VERBS[options.verb](options)
         sys.stdout.flush()
         return status
     except ConvergenceError as error:
@@ -64,63 +66,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
     finally:
         if collecting:
             gc.enable()
-
-
-def _help(prog: str) -> argparse.HelpFormatter:
-    # A given width spares the import that asks the terminal for its own.
-    return argparse.HelpFormatter(prog, width=100)
-
-
-def _parser() -> argparse.ArgumentParser:
-    parser = argparse.ArgumentParser(
-        prog="ribbonopt",
-        description="Equilibria of elastic ribbons from YAML scenes.",
-        formatter_class=_help,
-    )
-    parser.add_argument("--version", action="version", version=f"ribbonopt {VERSION}")
-    verbs = parser.add_subparsers(prog="ribbonopt", dest="verb", required=True, metavar="COMMAND")
-
-    solve = verbs.add_parser(
-        "solve", help="solve a scene and report its numbers", formatter_class=_help
-    )
-    _scene_arguments(solve)
-    solve.add_argument("--out", metavar="DIR", help="folder for the result (default: none written)")
-    solve.add_argument(
-        "--plot", action="store_true", help="draw pictures (into --out, or results/NAME)"
-    )
-    solve.set_defaults(run=_solve)
-
-    check = verbs.add_parser(
-        "check", help="validate a scene and count unknowns and conditions", formatter_class=_help
-    )
-    _scene_arguments(check)
-    check.set_defaults(run=_check)
-
-    schema = verbs.add_parser(
-        "schema", help="print the JSON schema of scenes, for editors", formatter_class=_help
-    )
-    schema.set_defaults(run=_schema)
-
-    plot = verbs.add_parser(
-        "plot", help="draw the pictures of a saved result", formatter_class=_help
-    )
-    plot.add_argument("result", metavar="RESULT", help="folder written by solve --out")
-    plot.add_argument("--out", metavar="DIR", help="folder for the pictures (default: RESULT)")
-    plot.set_defaults(run=_plot)
-    return parser
-
-
-def _scene_arguments(parser: argparse.ArgumentParser) -> None:
-    parser.add_argument("scene", metavar="SCENE", help="YAML file")
-    parser.add_argument(
-        "--set",
-        action="append",
-        default=[],
-        metavar="KEY=VALUE",
-        help="override one value, such as law.epsilon=1e-3 (may be repeated)",
-    )
-    parser.add_argument("--json", action="store_true", help="print exactly one JSON object")
-    parser.add_argument("--quiet", action="store_true", help="print nothing unless it fails")
 
 
 def _solve(options: argparse.Namespace) -> int:
@@ -205,6 +150,53 @@ def _checked(found: dict[str, Any]) -> str:
     return "\n".join(lines)
 
 
+def _compare(options: argparse.Namespace) -> int:
+    tolerances = numbers("--tolerances", options.tolerances)
+    scene, _ = _load(options)
+    from ribbonopt.studies.compare import compare
+
+    return _study(options, "comparison", lambda: compare(scene, *chosen(options), tolerances))
+
+
+def _bench(options: argparse.Namespace) -> int:
+    repeat = count("--repeat", options.repeat)
+    scene, _ = _load(options)
+    from ribbonopt.studies.benchmark import benchmark
+
+    return _study(
+        options, "benchmark", lambda: benchmark(scene, *chosen(options), repeat, options.quick)
+    )
+
+
+def _study(
+    options: argparse.Namespace, name: str, run: Callable[[], Comparison | Benchmark]
+) -> int:
+    gc.enable()  # many scenes, and most of what they build is soon done with
+    if options.out:
+        from ribbonopt.results import staged_result
+        from ribbonopt.studies.files import save_study
+        from ribbonopt.views.comparison import save_figure
+
+        # The place is known to be good before minutes are spent.
+        with staged_result(options.out) as stage:
+            study = run()
+            save_study(study, stage.folder, name)
+            save_figure(study.plain(), stage.folder / f"{name}.png")
+            stage.commit(complete=True)
+    else:
+        study = run()
+    if options.json:
+        _print_json(study.plain())
+    elif not options.quiet:
+        from ribbonopt.studies.table import table
+
+        print(table(study))
+    if study.solved:
+        return 0
+    print(f"ribbonopt: {study.name}: no pair gave a verified solution", file=sys.stderr)
+    return NOT_CONVERGED
+
+
 def _schema(options: argparse.Namespace) -> int:
     from ribbonopt.scene import json_schema
 
@@ -243,6 +235,15 @@ def _fail(options: argparse.Namespace, error: str, status: str, code: int) -> in
     print(f"ribbonopt: {error}", file=sys.stderr)
     return code
 
+
+VERBS: dict[str, Callable[[argparse.Namespace], int]] = {
+    "solve": _solve,
+    "check": _check,
+    "compare": _compare,
+    "bench": _bench,
+    "schema": _schema,
+    "plot": _plot,
+}
 
 if __name__ == "__main__":
     sys.exit(run())

@@ -10,20 +10,21 @@ import time
 from dataclasses import dataclass, fields, replace
 from typing import Any
 
+import casadi as ca
 import numpy as np
 
 from ribbonopt.accuracy.resistance import where_it_resists
 from ribbonopt.accuracy.verify import unverified, verify
+from ribbonopt.discretize import discretize
 from ribbonopt.errors import ConvergenceError, ModelError
-from ribbonopt.guess import Guess, IntegratedLoads, initial_unknowns
+from ribbonopt.guess import ConstantStrains, Guess, IntegratedLoads, initial_unknowns
 from ribbonopt.mechanics.boundary import gap_between_ends
 from ribbonopt.problem import BoundaryValueProblem, Ribbon, pose, theta_of
 from ribbonopt.problem.examine import examine
-from ribbonopt.scene import LoadGuess, Scene, validate_scene
+from ribbonopt.scene import LoadGuess, Scene, StrainGuess, validate_scene
 from ribbonopt.solution import Solution
 from ribbonopt.solvers import SOLVERS, Solver, SolveReport, Status
-from ribbonopt.transcription import NLP, Collocation, Mesh
-from ribbonopt.transcription.dense import DenseOutput
+from ribbonopt.transcription import NLP, Mesh
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,7 +34,6 @@ class Prepared:
     scene: Scene
     ribbon: Ribbon
     problem: BoundaryValueProblem
-    collocation: Collocation
     nlp: NLP
     solver: Solver
     seconds: float
@@ -57,21 +57,16 @@ class Prepared:
         """
         started = time.perf_counter()
         scene = scene or self.scene
-        theta = self._theta(scene)
         refuse_unreachable(scene)
-        mesh = Mesh.uniform(scene.transcription.intervals)
-        source = guess or _guess(scene, self.ribbon)
-        reference = theta[[self.problem.parameter_names.index(f"reference.{a}") for a in "xyz"]]
-        w = initial_unknowns(
-            source, self.ribbon, self.collocation, self.nlp.layout, mesh, reference
-        )
+        w, p = self.start(scene, guess)
         guessed = time.perf_counter()
-        p = np.concatenate([theta, mesh.widths])
         report = self.solver.solve(w, p)
+        if report.status.converged and self.problem.recovered:
+            p = self._with_recovered(report, p)
         solution = Solution(
             scene=scene,
             problem=self.problem,
-            dense=DenseOutput(self.nlp.blocks, report.w, p),
+            dense=self.nlp.blocks.dense(report.w, p),
             status=report.status,
             message=report.status.value,
             iterations=sum(attempt.iterations for attempt in report.attempts),
@@ -100,11 +95,34 @@ class Prepared:
         }
         return replace(solution, timings=timings)
 
+    def start(
+        self, scene: Scene | None = None, guess: Guess | None = None
+    ) -> tuple[np.ndarray, np.ndarray]:
+        """Return the unknowns w of the guess and the parameters p = [theta, widths] of a scene."""
+        scene = scene or self.scene
+        mesh = Mesh.uniform(scene.transcription.intervals)
+        p = np.concatenate([self._theta(scene), mesh.widths])
+        source = guess or _guess(scene, self.ribbon)
+        return initial_unknowns(source, self.ribbon, self.problem, self.nlp.blocks, p), p
+
+    def _with_recovered(self, report: SolveReport, p: np.ndarray) -> np.ndarray:
+        """Parameters with those put in that follow from the costates."""
+        problem, layout = self.problem, self.nlp.layout
+        inputs = [problem.points[0], problem.costate, problem.parameters]
+        function = ca.Function("recover", inputs, [ca.vertcat(*problem.recovered.values())])
+        nodes, _, _ = layout.unpack(report.w)
+        theta = p[: problem.parameters.numel()]
+        values = function(nodes[0], layout.start_costate(report.multipliers), theta)
+        where = [problem.parameter_names.index(name) for name in problem.recovered]
+        result: np.ndarray = p.copy()
+        result[where] = np.array(values).ravel()
+        return result
+
     def _step(self, attempt: SolveReport) -> dict[str, Any]:
-        tableau, count = self.collocation.tableau, self.nlp.layout.element_count
+        name, count = self.nlp.blocks.name, self.nlp.layout.element_count
         outcome = "" if attempt.status.converged else f" ({attempt.status.name.lower()})"
         return {
-            "step": f"{attempt.solver}, {tableau.name} on {count} intervals{outcome}",
+            "step": f"{attempt.solver}, {name} on {count} intervals{outcome}",
             "iterations": attempt.iterations,
             "seconds": attempt.total,
         }
@@ -141,13 +159,12 @@ def prepare(scene: Scene) -> Prepared:
     scene = validate_scene(scene)
     ribbon, problem = pose(scene)
     examine(ribbon, problem, np.array(list(theta_of(scene).values())))
-    collocation = Collocation.named(scene.transcription.scheme, scene.transcription.degree)
-    nlp = collocation.transcribe(problem, (scene.transcription.intervals,))
+    nlp = discretize(scene, problem)
     options = {f.name: getattr(scene.solver, f.name) for f in fields(scene.solver)}
     solver = SOLVERS[options.pop("type")](nlp, **options)
     solver.build()
     seconds = time.perf_counter() - started
-    return Prepared(scene, ribbon, problem, collocation, nlp, solver, seconds)
+    return Prepared(scene, ribbon, problem, nlp, solver, seconds)
 
 
 def skipped(scene: Scene, solvers: tuple[str, ...] = ()) -> tuple[str, ...]:
@@ -178,6 +195,8 @@ def _verified(solution: Solution, ribbon: Ribbon) -> Solution:
 def _guess(scene: Scene, ribbon: Ribbon) -> Guess:
     if isinstance(scene.guess, LoadGuess):
         return IntegratedLoads(ribbon, scene, scene.guess)
+    if isinstance(scene.guess, StrainGuess):
+        return ConstantStrains(ribbon, scene, scene.guess.strains)
     from ribbonopt.results import load_solution  # reading files costs imports
 
     return load_solution(scene.guess.solution)
@@ -186,6 +205,8 @@ def _guess(scene: Scene, ribbon: Ribbon) -> Guess:
 def _words(guess: Any) -> str:
     if isinstance(guess, LoadGuess):
         return "force and moment integrated from the start"
+    if isinstance(guess, StrainGuess):
+        return "constant strains"
     return f"saved solution {guess.solution}"
 
 

@@ -30,7 +30,8 @@ def report(summary: Mapping[str, Any]) -> str:
         "",
         f"  drift along the ribbon   {_drifts(s['invariant_drift'])}",
         f"  conditions hold to {_short(s['worst_condition'])}, equations between the stages to "
-        f"{_short(s['residual_between_nodes'])} (relative)",
+        f"{_short(s['residual_between_nodes'])} (relative), "
+        f"the law to {_short(s['law_residual'])}",
         f"  {_steps(s['path'])}",
         f"  {_times(s['timings'])}",
         f"  units {s['units']}",

@@ -19,14 +19,13 @@ from zipfile import BadZipFile
 
 import numpy as np
 
+from ribbonopt.discretize import discretize
 from ribbonopt.errors import OutputError
 from ribbonopt.problem import pose, theta_of
 from ribbonopt.scene import dump_scene, load_scene
 from ribbonopt.solution import Solution, Verification
 from ribbonopt.solvers import Status
 from ribbonopt.summary import summarize
-from ribbonopt.transcription import Collocation
-from ribbonopt.transcription.dense import DenseOutput
 
 ROWS = 201
 OWN_FILES = frozenset(
@@ -138,8 +137,7 @@ def load_solution(path: str | Path) -> Solution:
     except (ValueError, KeyError, TypeError, OSError, EOFError, BadZipFile) as error:
         raise OutputError(f"{folder}: damaged result ({error}); solve the scene again") from error
     _, problem = pose(scene)
-    collocation = Collocation.named(scene.transcription.scheme, scene.transcription.degree)
-    nlp = collocation.transcribe(problem, (len(widths),))
+    nlp = discretize(scene, problem, len(widths))
     if len(w) != nlp.unknowns:
         raise OutputError(
             f"{folder}: damaged result ({len(w)} unknowns, its scene has {nlp.unknowns}); "
@@ -147,11 +145,12 @@ def load_solution(path: str | Path) -> Solution:
         )
     p = np.concatenate([list(theta_of(scene).values()), widths])
     drift = {k: _number(v) for k, v in summary["invariant_drift"].items()}
-    worst, between = (_number(summary[k]) for k in ("worst_condition", "residual_between_nodes"))
+    keys = ("worst_condition", "residual_between_nodes", "law_residual")
+    worst, between, law = (_number(summary[key]) for key in keys)
     return Solution(
         scene=scene,
         problem=problem,
-        dense=DenseOutput(nlp.blocks, w, p),
+        dense=nlp.blocks.dense(w, p),
         status=status,
         message=summary["message"],
         iterations=summary["iterations"],
@@ -159,7 +158,7 @@ def load_solution(path: str | Path) -> Solution:
         timings=summary["timings"],
         path=tuple(summary["path"]),
         skipped=tuple(summary["skipped"]),
-        verification=Verification((), worst, between, drift),
+        verification=Verification((), worst, between, law, drift),
     )
 
 

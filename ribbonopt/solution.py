@@ -15,7 +15,7 @@ from ribbonopt.mechanics import RodFields
 from ribbonopt.problem import BoundaryValueProblem
 from ribbonopt.scene import Scene
 from ribbonopt.solvers import Status
-from ribbonopt.transcription.dense import DenseOutput
+from ribbonopt.transcription.structure import Output
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,6 +30,9 @@ class Verification:
         Largest departure from a prescribed condition.
     residual_between_nodes : float
         Largest relative defect of the differential equations between the stages.
+    law_residual : float
+        Largest difference at the stages between the strains and those that the inverse law gives
+        for the moments, relative to the largest strain.
     drift : mapping
         Drift of the invariants `n`, `n_dot_m`, `H` (relative) and `orthonormality` at the nodes.
     """
@@ -37,6 +40,7 @@ class Verification:
     problems: tuple[str, ...]
     worst_condition: float
     residual_between_nodes: float
+    law_residual: float
     drift: Mapping[str, float]
 
 
@@ -52,7 +56,7 @@ class Solution:
         What was asked.
     problem : BoundaryValueProblem
         The equations that were solved.
-    dense : DenseOutput
+    dense : Output
         The numbers.
     status, message : Status, str
         How the solve ended.
@@ -72,7 +76,7 @@ class Solution:
 
     scene: Scene
     problem: BoundaryValueProblem
-    dense: DenseOutput
+    dense: Output
     status: Status
     message: str
     iterations: int
@@ -139,10 +143,16 @@ class Solution:
     def integral(self, name: str) -> float:
         """Integral over s of a scalar named output, by the scheme's own quadrature."""
         start, end = self.scene.interval
-        v, sigma, weights = self.dense.stages(0)
-        nx = self.dense.blocks.layout.nx
-        values = self._named(v[:, :nx], v[:, nx:], start + (end - start) * sigma)[name]
-        return float((end - start) * weights @ values)
+        weights = self.dense.stages(0)[2]
+        return float((end - start) * weights @ self.at_stages[name])
+
+    @cached_property
+    def at_stages(self) -> dict[str, Array]:
+        """All named outputs at the stages, where the solver itself evaluated the equations."""
+        start, end = self.scene.interval
+        v, sigma, _ = self.dense.stages(0)
+        nx = self.problem.state.numel()
+        return self._named(v[:, :nx], v[:, nx:], start + (end - start) * sigma)
 
     def fields(self, fraction: Array) -> RodFields:
         """Fields at fractions (k,) of the length: a solution is a guess."""
@@ -154,6 +164,14 @@ class Solution:
     def start(self) -> dict[str, Array]:
         """Named outputs at the start of the ribbon."""
         return {k: v[0] for k, v in self.outputs(np.array([self.scene.interval[0]])).items()}
+
+    @property
+    def constants(self) -> Array:
+        """Constants of the rod: unknowns of the problem, or recovered from its costates."""
+        if not self.problem.recovered:
+            return self.dense.constants
+        names = self.problem.parameter_names
+        return self.dense.theta[[names.index(name) for name in self.problem.recovered]]
 
     @property
     def n0(self) -> Array:

@@ -11,6 +11,7 @@ import casadi as ca
 import numpy as np
 
 from ribbonopt.accuracy.estimate import estimate_error
+from ribbonopt.problem import formulation_name
 from ribbonopt.solution import Solution
 from ribbonopt.version import VERSION
 
@@ -28,7 +29,7 @@ def summarize(solution: Solution) -> dict[str, Any]:
         "status": solution.status.name.lower(),
         "verified": solution.verified,
         "message": solution.message,
-        "formulation": scene.formulation,
+        "formulation": formulation_name(scene),
         "states": scene.states,
         "transcription": scene.transcription.type,
         "scheme": scene.transcription.scheme,
@@ -46,12 +47,13 @@ def summarize(solution: Solution) -> dict[str, Any]:
         "invariant_drift": dict(checks.drift),
         "worst_condition": checks.worst_condition,
         "residual_between_nodes": checks.residual_between_nodes,
+        "law_residual": checks.law_residual,
         "error_estimate": _error_estimate(solution),
         "switch_points": [],
         "half_twists": None,
         "unknowns": dense.blocks.layout.unknowns,
         "intervals": dense.blocks.layout.element_count,
-        "degree": dense.blocks.tableau.degree,
+        "degree": dense.blocks.degree,
         "iterations": solution.iterations,
         "path": [dict(step) for step in solution.path],
         "skipped": list(solution.skipped),
@@ -64,8 +66,8 @@ def summarize(solution: Solution) -> dict[str, Any]:
 
 
 def _error_estimate(solution: Solution) -> dict[str, float | None]:
-    """Estimated absolute errors; None for a solve that did not converge."""
-    if not solution.status.converged:
+    """Estimated absolute errors; None without convergence, and for minima (no square system)."""
+    if not solution.status.converged or solution.problem.recovered:
         return dict.fromkeys(("n0", "m0", "u0", "H0", "energy", "states"))
     return dict(estimate_error(solution))
 

@@ -27,11 +27,9 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 
 import numpy as np
 
-from ribbonopt.guess import initial_unknowns
-from ribbonopt.pipeline import Prepared, prepare
-from ribbonopt.scene import LoadGuess, Scene, load_scene
+from ribbonopt.pipeline import prepare
+from ribbonopt.scene import Scene, load_scene
 from ribbonopt.summary import versions
-from ribbonopt.transcription import Mesh
 
 ROOT = Path(__file__).resolve().parent.parent
 SCENE = ROOT / "configs" / "moebius_half.yaml"
@@ -127,19 +125,6 @@ def bench_build(repeat: int) -> dict[str, float]:
     return first | {name: 1e3 * value for name, value in medians(repeat, runs).items()}
 
 
-def start_vector(prepared: Prepared) -> tuple[np.ndarray, np.ndarray]:
-    """Unknowns of the guess and parameters of a prepared scene."""
-    from ribbonopt.guess import IntegratedLoads
-    from ribbonopt.problem import theta_of
-
-    mesh = Mesh.uniform(prepared.scene.transcription.intervals)
-    guess = IntegratedLoads(prepared.ribbon, prepared.scene, LoadGuess(FORCE, MOMENT))
-    w = initial_unknowns(
-        guess, prepared.ribbon, prepared.collocation, prepared.nlp.layout, mesh, np.zeros(3)
-    )
-    return w, np.concatenate([list(theta_of(prepared.scene).values()), mesh.widths])
-
-
 def bench_solve(repeat: int, quick: bool) -> list[dict[str, Any]]:
     """Solve again in process to 1e-9 and 1e-12, beside scipy's solve_bvp at equal error."""
     rows = []
@@ -148,7 +133,7 @@ def bench_solve(repeat: int, quick: bool) -> list[dict[str, Any]]:
         details = {}
         for solver, degree, intervals, tolerance in cases:
             prepared = prepare(scene(solver, degree, intervals, tolerance))
-            w, p = start_vector(prepared)
+            w, p = prepared.start()
             name = f"{solver} {target}"
             runs[name] = lambda prepared=prepared, w=w, p=p: prepared.solver.solve(w, p)
             answer = prepared.solver.solve(w, p)
@@ -221,7 +206,7 @@ def bench_scaling(repeat: int) -> dict[str, Any]:
     runs = {}
     for count in counts:
         prepared = prepare(scene("newton", 4, count, 1e-10))
-        w, p = start_vector(prepared)
+        w, p = prepared.start()
         runs[str(count)] = lambda prepared=prepared, w=w, p=p: prepared.solver.solve(w, p)
     seconds = medians(repeat, runs)
     slope = np.polyfit(np.log(counts), np.log([seconds[str(n)] for n in counts]), 1)[0]

@@ -1,8 +1,9 @@
-"""A posteriori error of the answer: one Newton step of the next higher scheme, from the solution.
+"""A posteriori error of the answer: one Newton step of the next better scheme, from the solution.
 
-The dense output is put into the same problem collocated with one degree more (or, at the highest
-degree, on halved elements). Its defect is the local error; the Newton step carries it through the
-boundary conditions to every unknown. The improved solution minus the solution is the estimate.
+The dense output is put into the same problem collocated with one degree more (at the highest
+degree, and for shooting, on halved elements). Its defect is the local error; the Newton step
+carries it through the boundary conditions to every unknown. The improved solution minus the
+solution is the estimate.
 """
 
 from __future__ import annotations
@@ -14,8 +15,7 @@ import numpy as np
 from ribbonopt.arrays import Array
 from ribbonopt.solution import Solution
 from ribbonopt.solvers.condense import CondensedSystem
-from ribbonopt.transcription.blocks import ElementBlocks
-from ribbonopt.transcription.dense import DenseOutput
+from ribbonopt.transcription import Blocks, Output
 
 ROUNDING = 1e-15
 
@@ -38,7 +38,7 @@ def estimate_error(solution: Solution) -> dict[str, float]:
 
 
 def improved(solution: Solution) -> Solution:
-    """Solution after one Newton step of the next higher scheme; LinAlgError if singular."""
+    """Solution after one Newton step of the next better scheme; LinAlgError if singular."""
     dense = solution.dense
     blocks, split = dense.blocks.finer()
     widths = np.repeat(dense.blocks.widths(dense.p) / split, split)
@@ -46,10 +46,10 @@ def improved(solution: Solution) -> Solution:
     w = blocks.layout.pack(*_sampled(dense, blocks, p))
     residuals, derivatives = blocks.linearize(w, p)
     w = w + CondensedSystem(blocks, derivatives, p).solve(residuals)
-    return replace(solution, dense=DenseOutput(blocks, w, p))
+    return replace(solution, dense=blocks.dense(w, p))
 
 
-def _sampled(dense: DenseOutput, blocks: ElementBlocks, p: Array) -> tuple[Array, Array, Array]:
+def _sampled(dense: Output, blocks: Blocks, p: Array) -> tuple[Array, Array, Array]:
     """Nodes, stages and constants of a solution on another mesh or scheme."""
     slices = blocks.layout.phase_slices()
     positions = blocks.stage_positions(p)
@@ -57,7 +57,7 @@ def _sampled(dense: DenseOutput, blocks: ElementBlocks, p: Array) -> tuple[Array
     for phase, s in enumerate(slices):
         flat = positions[s].ravel()
         v = np.hstack([dense.states(phase, flat), dense.algebraic(phase, flat)])
-        stages.append(v.reshape(*positions[s].shape, -1))
+        stages.append(v.reshape(*positions[s].shape, blocks.layout.nv))
         ends = np.append(0.0, np.cumsum(blocks.widths(p)[s]))
         x = dense.states(phase, ends)
         nodes.append(x if phase == len(slices) - 1 else x[:-1])

@@ -11,7 +11,9 @@ from ribbonopt.transcription import Layout
 
 def where_it_resists(residuals: Array, layout: Layout, solution: Solution) -> str:
     """One sentence that names the largest residual."""
-    sizes = np.where(np.isfinite(residuals), np.abs(residuals), np.inf)
+    # An inequality resists only where it is positive.
+    sizes = np.where(layout.is_inequality(), np.maximum(residuals, 0.0), np.abs(residuals))
+    sizes = np.where(np.isfinite(residuals), sizes, np.inf)
     index = int(sizes.argmax())
     size = f"residual {sizes[index]:.2g}"
     if index >= layout.conditions_at:

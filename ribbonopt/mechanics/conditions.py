@@ -57,6 +57,11 @@ class Condition(ABC):
         """Expressions to verify on a solution, by name; the residuals unless they have others."""
         return self.residuals(context)
 
+    @property
+    def kinematic(self) -> bool:
+        """Whether it speaks of positions and directors only, not of loads."""
+        return True
+
 
 @dataclass(frozen=True, eq=False)
 class Component(Condition):
@@ -74,6 +79,10 @@ class Component(Condition):
     def name(self) -> str:
         """Path of the component in the scene."""
         return f"boundary.{self.end}.{self.quantity}.{self.axis}"
+
+    @property
+    def kinematic(self) -> bool:
+        return self.quantity not in ("force", "moment")
 
     def theta(self) -> dict[str, float]:
         return {self.name: self.value}
@@ -167,12 +176,13 @@ class Direction(Condition):
 class Equation(Condition):
     """Any equation between quantities at the ends, compiled from a formula of the scene.
 
-    `numbers` are its literals by key; `sides` gives left minus right from the context, a scalar or
-    a vector (3,).
+    `of_loads` says whether forces, moments or strains occur in it; `numbers` are its literals by
+    key; `difference` gives left minus right, a scalar or a vector (3,).
     """
 
     index: int
     text: str
+    of_loads: bool
     numbers: tuple[tuple[str, float], ...]
     difference: Callable[[Context, str], ca.SX]
 
@@ -180,6 +190,10 @@ class Equation(Condition):
     def name(self) -> str:
         """Path of the equation in the scene."""
         return f"boundary.also.{self.index}"
+
+    @property
+    def kinematic(self) -> bool:
+        return not self.of_loads
 
     def theta(self) -> dict[str, float]:
         return {f"{self.name}.{key}": value for key, value in self.numbers}

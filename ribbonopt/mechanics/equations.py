@@ -7,7 +7,7 @@ from typing import Literal
 
 import casadi as ca
 
-from ribbonopt.scene.expressions import Number, evaluate, parts
+from ribbonopt.scene.expressions import Number, Quantity, evaluate, parts
 from ribbonopt.scene.formulas import parse_equation
 
 from .conditions import Context, EndName, Equation
@@ -23,7 +23,9 @@ def equation(index: int, text: str, parameters: dict[str, float]) -> Equation:
 
     nodes = [*parts(formula.left), *parts(formula.right)]
     numbers = tuple((n.key, n.value) for n in nodes if isinstance(n, Number) and n.key is not None)
-    return Equation(index, formula.text, numbers, difference)
+    quantities = {n.name for n in nodes if isinstance(n, Quantity)}
+    of_loads = not quantities <= {"r", "d1", "d2", "d3"}
+    return Equation(index, formula.text, of_loads, numbers, difference)
 
 
 class _SymbolicEnv:

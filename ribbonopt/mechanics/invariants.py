@@ -10,12 +10,17 @@ from __future__ import annotations
 
 import casadi as ca
 
+from .conditions import CrossSection
 from .laws import ConstitutiveLaw
 from .rod import RodState
 
 
-def outputs(rod: RodState, law: ConstitutiveLaw, u2: ca.SX, u3: ca.SX) -> dict[str, ca.SX]:
-    """Expressions to sample on a solution, by name; vectors in the lab frame but u (directors)."""
+def outputs(section: CrossSection, law: ConstitutiveLaw, u2: ca.SX, u3: ca.SX) -> dict[str, ca.SX]:
+    """Expressions to sample on a solution, by name; vectors in the lab frame but u (directors).
+
+    `u2`, `u3` are the strains of the formulation, `section` holds those of the inverse law.
+    """
+    rod = section.rod
     n, m = rod.along(rod.n), rod.along(rod.m)
     work = (m[1] * u2 + m[2] * u3) / 2
     w_leg = law.complementary_energy(m[1], m[2])
@@ -26,6 +31,7 @@ def outputs(rod: RodState, law: ConstitutiveLaw, u2: ca.SX, u3: ca.SX) -> dict[s
     result["energy"] = work
     result["H"] = n[2] + (work if w_leg is None else w_leg)
     result["n_dot_m"] = ca.dot(rod.n, rod.m)
+    result["law_residual"] = ca.norm_2(ca.vertcat(u2 - section.u2, u3 - section.u3))
     result["orthonormality"] = _gram_error(rod)
     return result
 

@@ -19,6 +19,7 @@ from dataclasses import dataclass
 
 import casadi as ca
 
+from .implicit import Implicit, gradient_form, norm_form, polynomial_form
 from .relations import (
     GUARD,
     Pair,
@@ -39,6 +40,10 @@ class ConstitutiveLaw(ABC):
     variational: bool = True
     #: the law demands |eta| <= 1 of a solution, eq. (4.1)
     bounds_eta: bool = False
+    #: the complementary energy is differentiable away from m = 0
+    smooth: bool = True
+    #: `moment` is a closed form, cheap to evaluate and to differentiate
+    closed_moment: bool = True
 
     @abstractmethod
     def strain(self, m2: ca.SX, m3: ca.SX) -> Pair:
@@ -55,6 +60,10 @@ class ConstitutiveLaw(ABC):
     @abstractmethod
     def complementary_energy(self, m2: ca.SX, m3: ca.SX) -> ca.SX | None:
         """Legendre transform W_Leg(m2, m3) of the energy, eq. (7.1), or None."""
+
+    def implicit(self, m2: ca.SX, m3: ca.SX) -> Implicit:
+        """Return the law at given moments as equations for the strains, eq. (3.1b)."""
+        return gradient_form(self.moment, self.strain(m2, m3), m2, m3, bounded=False)
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,6 +95,11 @@ class Sadowsky(ConstitutiveLaw):
     """
 
     bounds_eta = True
+    smooth = False
+
+    def implicit(self, m2: ca.SX, m3: ca.SX) -> Implicit:
+        # The gradient of W_S itself: eqs. (2.4)-(2.5) have solutions in the forbidden region too.
+        return gradient_form(sheet_moment, self.strain(m2, m3), m2, m3, bounded=True)
 
     def strain(self, m2: ca.SX, m3: ca.SX) -> Pair:
         M, mu = norm(m2, m3), ca.fabs(m2)
@@ -113,6 +127,9 @@ class SingleSheet(ConstitutiveLaw):
     chi: ca.SX
     bounds_eta = True
 
+    def implicit(self, m2: ca.SX, m3: ca.SX) -> Implicit:
+        return gradient_form(self.moment, self.strain(m2, m3), m2, m3, bounded=True)
+
     def strain(self, m2: ca.SX, m3: ca.SX) -> Pair:
         M = norm(m2, m3)
         p = self._sum(M, m2, m3)
@@ -139,6 +156,10 @@ class Regularized(ConstitutiveLaw):
 
     epsilon: ca.SX
     variational = False
+    closed_moment = False
+
+    def implicit(self, m2: ca.SX, m3: ca.SX) -> Implicit:
+        return polynomial_form(1, self.epsilon, self.strain(m2, m3), m2, m3)
 
     def strain(self, m2: ca.SX, m3: ca.SX) -> Pair:
         return blended_strain(m2, m3, 1, self.epsilon)
@@ -160,6 +181,10 @@ class Homotopy(ConstitutiveLaw):
     rho: ca.SX
     epsilon: ca.SX
     variational = False
+    closed_moment = False
+
+    def implicit(self, m2: ca.SX, m3: ca.SX) -> Implicit:
+        return polynomial_form(self.rho, self.epsilon, self.strain(m2, m3), m2, m3)
 
     def strain(self, m2: ca.SX, m3: ca.SX) -> Pair:
         return blended_strain(m2, m3, self.rho, self.epsilon)
@@ -182,6 +207,10 @@ class Variational(ConstitutiveLaw):
     """
 
     delta: ca.SX
+    closed_moment = False
+
+    def implicit(self, m2: ca.SX, m3: ca.SX) -> Implicit:
+        return norm_form(self.delta, self.strain(m2, m3), m2, m3)
 
     def strain(self, m2: ca.SX, m3: ca.SX) -> Pair:
         M, q = norm(m2, m3), norm(m2, self.delta * m3)

@@ -66,6 +66,13 @@ class BoundaryValueProblem:
         States at the start, at the interior phase boundaries and at the end.
     conditions : mapping of str to SX scalar
         b, by the name a user knows the condition under.
+    local, estimate : SX symbols, SX
+        What any guess knows at a point, and from it the last states and the algebraic variables.
+    algebraic_start : SX (nz,)
+        Where to start solving the algebraic equations, from states, constants and parameters.
+    costate, recovered : SX symbols (nx,), mapping of str to SX
+        Costates at the start, and parameters whose values follow from them once a problem with a
+        cost is solved; until then they enter outputs only.
     """
 
     position: ca.SX
@@ -80,6 +87,11 @@ class BoundaryValueProblem:
     state_names: tuple[str, ...]
     constant_names: tuple[str, ...]
     parameter_names: tuple[str, ...]
+    local: ca.SX = field(default_factory=lambda: ca.SX(0, 1))
+    estimate: ca.SX = field(default_factory=lambda: ca.SX(0, 1))
+    algebraic_start: ca.SX = field(default_factory=lambda: ca.SX(0, 1))
+    costate: ca.SX = field(default_factory=lambda: ca.SX(0, 1))
+    recovered: Mapping[str, ca.SX] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         """Refuse a problem whose parts do not fit together."""

@@ -18,6 +18,9 @@ from ribbonopt.mechanics.laws import LAWS, ConstitutiveLaw
 from ribbonopt.mechanics.rod import MODELS, RodModel, RodState
 from ribbonopt.scene import Scene
 
+#: force and moment at the start where they are not unknowns but follow from costates
+RECOVERED = tuple(f"recovered.{name}" for name in MODELS["reduced"].constants)
+
 
 @dataclass(frozen=True, eq=False)
 class Ribbon:
@@ -58,13 +61,16 @@ class Ribbon:
         outputs = [rod.r, rod.d1, rod.d2, rod.d3, rod.n, rod.m, *self.law.strain(m[1], m[2])]
         return ca.Function("section", [x, c, ca.vertcat(*self.theta.values())], outputs)
 
-    def residuals(self, start: ca.SX, end: ca.SX, c: ca.SX) -> dict[str, ca.SX]:
+    def residuals(
+        self, start: ca.SX, end: ca.SX, c: ca.SX, *, kinematic_only: bool = False
+    ) -> dict[str, ca.SX]:
         """All conditions by name, those that make the start's directors a frame included."""
         context = self.context(start, end, c)
         normalisation = {
             f"start: {name}": value for name, value in self.model.normalisation(start).items()
         }
-        return _merge(normalisation, *(cond.residuals(context) for cond in self.conditions))
+        chosen = [c for c in self.conditions if c.kinematic or not kinematic_only]
+        return _merge(normalisation, *(condition.residuals(context) for condition in chosen))
 
     def verdicts(self, start: ca.SX, end: ca.SX, c: ca.SX) -> dict[str, ca.SX]:
         """Return what to verify on a solution, by name."""
@@ -102,6 +108,8 @@ def theta_of(scene: Scene) -> dict[str, float]:
     values |= {f"parameters.{name}": value for name, value in scene.parameters.items()}
     for condition in conditions_of(scene):
         values |= condition.theta()
+    if scene.formulation == "energy":
+        values |= dict.fromkeys(RECOVERED, 0.0)
     return values
 
 

@@ -12,6 +12,7 @@ from .laws import (
     Variational,
 )
 from .model import (
+    Algebraic,
     AnyVector,
     Auto,
     Boundary,
@@ -23,12 +24,15 @@ from .model import (
     LoadGuess,
     Newton,
     Scene,
+    Shooting,
     SolutionGuess,
+    StrainGuess,
     Value,
 )
 from .yamlio import dump_scene, json_schema, load_scene, loads_scene, locate, validate_scene
 
 __all__ = [
+    "Algebraic",
     "AnyVector",
     "Auto",
     "Boundary",
@@ -45,8 +49,10 @@ __all__ = [
     "Regularized",
     "Sadowsky",
     "Scene",
+    "Shooting",
     "SingleSheet",
     "SolutionGuess",
+    "StrainGuess",
     "Value",
     "Variational",
     "dump_scene",

@@ -79,6 +79,13 @@ class LoadGuess:
 
 
 @dataclass(frozen=True)
+class StrainGuess:
+    """Guess by constant strains (u2, u3): an arc or helix from the start, no loads to be known."""
+
+    strains: tuple[float, float]
+
+
+@dataclass(frozen=True)
 class SolutionGuess:
     """Guess by a saved solution: a result folder or its `solution.npz`."""
 
@@ -87,12 +94,35 @@ class SolutionGuess:
 
 @dataclass(frozen=True)
 class Collocation:
-    """Collocation at Gauss or Radau points: polynomials of a degree on a number of intervals."""
+    """Collocation: polynomials of a degree on a number of intervals."""
 
     type: Literal["collocation"] = "collocation"
-    scheme: Literal["gauss", "radau"] = "gauss"
+    scheme: Literal["gauss", "radau", "lobatto"] = "gauss"
     degree: Annotated[int, Bounds(ge=1, le=10)] = 6
     intervals: Annotated[int, Bounds(ge=1)] = 10
+
+
+@dataclass(frozen=True)
+class Shooting:
+    """Multiple shooting: every interval integrated by a number of Runge-Kutta steps.
+
+    `rk4` and `rk8` are explicit, `gauss` is implicit, of the given degree; one interval is single
+    shooting.
+    """
+
+    type: Literal["shooting"] = "shooting"
+    scheme: Literal["rk4", "rk8", "gauss"] = "rk8"
+    steps: Annotated[int, Bounds(ge=1)] = 1
+    degree: Annotated[int, Bounds(ge=1, le=10)] = 3
+    intervals: Annotated[int, Bounds(ge=1)] = 20
+
+
+@dataclass(frozen=True)
+class Algebraic:
+    """The differential-algebraic form (3.1), with or without the bounds |eta| <= 1 of (4.1)."""
+
+    type: Literal["algebraic"] = "algebraic"
+    bounds: bool = True
 
 
 @dataclass(frozen=True)
@@ -127,10 +157,12 @@ class Scene:
     name: str
     law: Law
     boundary: Boundary
-    guess: LoadGuess | SolutionGuess
-    formulation: Literal["inverted"] = "inverted"
+    guess: LoadGuess | StrainGuess | SolutionGuess
+    formulation: Literal["inverted", "algebraic", "differentiated", "energy"] | Algebraic = (
+        "inverted"
+    )
     states: Literal["reduced", "full"] = "reduced"
     interval: tuple[float, float] = (0.0, 1.0)
     parameters: dict[str, float] = field(default_factory=dict)
-    transcription: Collocation = Collocation()
+    transcription: Collocation | Shooting = Collocation()
     solver: Auto | Ipopt | Newton = Auto()

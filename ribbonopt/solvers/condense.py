@@ -1,7 +1,7 @@
-"""Linear algebra of a collocation system: stages eliminated by element, nodes by cyclic reduction.
+"""Linear algebra of a chain of elements: stages eliminated by element, nodes by cyclic reduction.
 
-1. Stages. Each element's stage equations are solved for the stages, all elements in one batched
-   LAPACK call; what is left couples neighbouring nodes: A_e x_e + B_e x_{e+1} + C_e c = d_e.
+1. Stages. The transcription eliminates what it has inside each element, if anything; what is left
+   couples neighbouring nodes: A_e x_e + B_e x_{e+1} + C_e c = d_e.
 2. Nodes. Pairs of neighbours are merged by orthogonal elimination of the node they share, all pairs
    of a level at once (structured orthogonal factorisation, Wright 1992): stable for growing and
    decaying modes alike, cost linear in the number of elements, few numpy calls.
@@ -18,7 +18,8 @@ from itertools import pairwise
 import numpy as np
 
 from ribbonopt.arrays import Array
-from ribbonopt.transcription.blocks import Derivatives, ElementBlocks, Residuals
+from ribbonopt.transcription.elimination import times
+from ribbonopt.transcription.structure import Blocks, Derivatives, Residuals
 
 DENSE = 80  # nodes of a phase are no longer reduced when their unknowns number less than this
 
@@ -59,8 +60,8 @@ class _Chain:
         for level, d in zip(reversed(self.levels), reversed(eliminated), strict=True):
             pairs = len(level.QT)
             left, right = nodes[:pairs], nodes[1 : pairs + 1]
-            known = _times(level.left, left) + _times(level.right, right) + level.constants @ c
-            middle = _times(level.R_inverse, d - known)
+            known = times(level.left, left) + times(level.right, right) + level.constants @ c
+            middle = times(level.R_inverse, d - known)
             wider = np.empty((len(nodes) + pairs, nodes.shape[1]))
             wider[0 : 2 * pairs : 2], wider[1 : 2 * pairs : 2] = left, middle
             wider[2 * pairs :] = nodes[pairs:]
@@ -69,13 +70,12 @@ class _Chain:
 
 
 class CondensedSystem:
-    """Factored Newton matrix of a collocation system; `solve` gives the Newton step."""
+    """Factored Newton matrix of a square problem; `solve` gives the Newton step."""
 
-    def __init__(self, blocks: ElementBlocks, derivatives: Derivatives, p: Array) -> None:
+    def __init__(self, blocks: Blocks, derivatives: Derivatives, p: Array) -> None:
         lay = self._layout = blocks.layout
-        self._widths = blocks.widths(p)
-        self._eliminate_stages(blocks, derivatives.stages)
-        A, B, C = self._node_blocks
+        self._elements = blocks.eliminate(derivatives, p)
+        A, B, C = self._elements.relations
         chains, rest = zip(
             *(_factor_chain(A[s], B[s], C[s]) for s in lay.phase_slices()), strict=True
         )
@@ -88,9 +88,7 @@ class CondensedSystem:
     def solve(self, residuals: Residuals) -> Array:
         """Newton step (nw,): minus the inverse of the Jacobian times the residuals."""
         lay = self._layout
-        count = lay.element_count
-        local = _times(self._stage_inverse, -residuals.stages.reshape(count, -1))
-        d = -residuals.nodes + _times(self._step, local)
+        d, share = self._elements.reduce(residuals)
         reduced = [
             chain.reduce(d[s]) for chain, s in zip(self._chains, lay.phase_slices(), strict=True)
         ]
@@ -105,8 +103,7 @@ class CondensedSystem:
             )
         ]
         nodes = np.concatenate([parts[0], *(part[1:] for part in parts[1:])])
-        stages = local + _times(self._to_node, nodes[:-1]) + self._to_constants @ c
-        return lay.pack(nodes, stages.reshape(count, lay.stages, lay.nv), c)
+        return lay.pack(nodes, self._elements.expand(nodes, c, share), c)
 
     def _final(self, A: Array, B: Array, C: Array, conditions: Array) -> Array:
         """Dense matrix of the remaining nodes and the constants."""
@@ -123,36 +120,6 @@ class CondensedSystem:
         final[count * nx :, points] = conditions[:, : len(points)]
         final[count * nx :, width:] = conditions[:, len(points) :]
         return final
-
-    def _eliminate_stages(self, blocks: ElementBlocks, J: Array) -> None:
-        lay, t = self._layout, blocks.tableau
-        N, K, nx, nv = lay.element_count, lay.stages, lay.nx, lay.nv
-        h = self._widths[:, None, None, None]
-        dynamic = h * J[:, :, :nx]
-        # Rows (i, equation), columns (j, unknown): identity - h a_ij dF_j, algebraic rows as are.
-        M = np.zeros((N, K, nv, K, nv))
-        M[:, :, :nx] = -np.einsum("ij,ejxv->eixjv", t.matrix, dynamic[..., :nv])
-        i = np.arange(K)[:, None]
-        x = np.arange(nx)
-        M[:, i, x, i, x] += 1
-        if nv > nx:
-            j = np.arange(K)
-            M[:, j, nx:, j] = np.moveaxis(J[:, :, nx:, :nv], 0, 1)
-        inverse = np.asarray(np.linalg.inv(M.reshape(N, K * nv, K * nv)), dtype=float)
-        to_constants = np.zeros((N, K, nv, lay.nc))
-        to_constants[:, :, :nx] = np.einsum("ij,ejxc->eixc", t.matrix, dynamic[..., nv:])
-        to_constants[:, :, nx:] = -J[:, :, nx:, nv:]
-        to_node = np.zeros((K, nv, nx))
-        to_node[:, x, x] = 1
-        self._stage_inverse = inverse
-        self._to_node = inverse @ to_node.reshape(K * nv, nx)
-        self._to_constants = inverse @ to_constants.reshape(N, K * nv, lay.nc)
-        # x_{e+1} = x_e + h sum b_j (dF_j . stages + dF_j/dc . c).
-        weighted = t.weights[:, None, None] * dynamic
-        self._step = weighted[..., :nv].swapaxes(1, 2).reshape(N, nx, K * nv)
-        A = -(np.eye(nx) + self._step @ self._to_node)
-        C = -(weighted[..., nv:].sum(axis=1) + self._step @ self._to_constants)
-        self._node_blocks = A, np.broadcast_to(np.eye(nx), (N, nx, nx)), C
 
 
 def _factor_chain(A: Array, B: Array, C: Array) -> tuple[_Chain, tuple[Array, Array, Array]]:
@@ -174,8 +141,3 @@ def _factor_chain(A: Array, B: Array, C: Array) -> tuple[_Chain, tuple[Array, Ar
         B = np.concatenate([right[:, nx:], B[2 * pairs :]])
         C = np.concatenate([constants[:, nx:], C[2 * pairs :]])
     return _Chain(tuple(levels)), (A, B, C)
-
-
-def _times(matrices: Array, vectors: Array) -> Array:
-    """Products of matrices (n, a, b) with vectors (n, b)."""
-    return np.asarray((matrices @ vectors[:, :, None])[:, :, 0])

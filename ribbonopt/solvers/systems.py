@@ -10,7 +10,7 @@ import numpy as np
 
 from ribbonopt.arrays import Array
 from ribbonopt.transcription import NLP
-from ribbonopt.transcription.blocks import Derivatives, ElementBlocks, Residuals
+from ribbonopt.transcription.structure import Blocks, Derivatives, Residuals
 
 from .condense import CondensedSystem
 
@@ -43,9 +43,9 @@ class System(Protocol):
 
 @dataclass(frozen=True, eq=False)
 class ElementSystem:
-    """A collocation system, factored element by element (`ribbonopt.solvers.condense`)."""
+    """A chain of elements, factored element by element (`ribbonopt.solvers.condense`)."""
 
-    blocks: ElementBlocks
+    blocks: Blocks
 
     def build(self) -> None:
         """Build the functions now rather than at the first evaluation."""

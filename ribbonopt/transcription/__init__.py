@@ -1,18 +1,39 @@
-"""Transcription: boundary-value problem and mesh to NLP; knows nothing of ribbons."""
+"""Transcription: boundary-value problem and mesh to NLP; knows nothing of ribbons.
+
+Multiple shooting is imported when first used.
+"""
+
+from typing import TYPE_CHECKING, Any
 
 from .collocation import Collocation
 from .layout import Layout
 from .mesh import Mesh
 from .nlp import NLP, NLPFunctions
-from .tableaus import Tableau, gauss, radau
+from .structure import Blocks, Output
+from .tableaus import Tableau, gauss, lobatto, radau
+
+if TYPE_CHECKING:
+    from .shooting import MultipleShooting
 
 __all__ = [
     "NLP",
+    "Blocks",
     "Collocation",
     "Layout",
     "Mesh",
+    "MultipleShooting",
     "NLPFunctions",
+    "Output",
     "Tableau",
     "gauss",
+    "lobatto",
     "radau",
 ]
+
+
+def __getattr__(name: str) -> Any:
+    if name == "MultipleShooting":
+        from .shooting import MultipleShooting
+
+        return MultipleShooting
+    raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

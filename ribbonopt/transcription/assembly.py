@@ -152,7 +152,7 @@ class Assembler:
         row, col = triplets_of(self.conditions.jacobian.sparsity())
         nonzeros.append(condition_nonzeros)
         rows.append(row + lay.conditions_at)
-        columns.append(self._condition_columns()[col])
+        columns.append(lay.condition_columns()[col])
         shape = (lay.equations, lay.unknowns)
         jacobian = scatter(nonzeros, np.concatenate(rows), np.concatenate(columns), shape)
         return self._residuals([e for e, _ in stage_outputs], conditions), jacobian
@@ -200,17 +200,11 @@ class Assembler:
         k = np.bincount(where[~linear], v[~linear], len(keys))
         return S, ca.DM(k), keys // width, keys % width
 
-    def _condition_columns(self) -> Index:
-        """Column in w of every variable of the conditions."""
-        lay = self.layout
-        nodes = np.array(lay.point_elements)[:, None] * lay.element_unknowns + np.arange(lay.nx)
-        return np.concatenate([nodes.ravel(), lay.constants_at + np.arange(lay.nc)])
-
     def _hessian(self, sigma_f: ca.MX, multipliers: ca.MX) -> ca.MX:
         lay, t = self.layout, self.tableau
         shape = (lay.unknowns, lay.unknowns)
-        if all(f.cost is None and f.equations.numel() == lay.nx + lay.ng for f in self.phases):
-            # Square: IPOPT needs no second derivatives to solve equations.
+        if all(f.cost is None for f in self.phases):
+            # Nothing to minimise: IPOPT needs no second derivatives to solve equations.
             return ca.MX(*shape)
         body, rest = ca.vertsplit(multipliers, [0, lay.conditions_at, lay.equations])
         body = ca.reshape(body, lay.element_equations, -1)
@@ -242,7 +236,7 @@ class Assembler:
                 out.append(np.where(index < lay.nv, base + index, constant).ravel())
         row, col = triplets_of(self.conditions.lagrangian_hessian.sparsity())
         nonzeros.append(self.conditions.hessian(*self._condition_inputs(), rest))
-        where = self._condition_columns()
+        where = lay.condition_columns()
         rows.append(where[row])
         columns_of.append(where[col])
         return scatter(nonzeros, np.concatenate(rows), np.concatenate(columns_of), shape)

@@ -1,7 +1,6 @@
-"""Numeric evaluation of residuals and derivative blocks, all stages in one mapped call.
+"""Collocation: residuals and derivative blocks as numbers, all stages in one mapped call.
 
-Shapes: N elements, K stages, nx states, nv = nx + nz unknowns of a stage, ne =
-nx + ng + nh equations of a stage, nc constants, P + 1 points.
+`ribbonopt.transcription.structure` has the interface and the shapes.
 """
 
 from __future__ import annotations
@@ -15,36 +14,12 @@ import numpy as np
 from ribbonopt.arrays import Array
 
 from .buffered import Buffered, shared_map
-from .functions import ConditionFunctions, StageFunctions
+from .elimination import StageElimination
+from .functions import StageFunctions
 from .layout import Layout
+from .points import Conditions
+from .structure import Derivatives, Output, Residuals
 from .tableaus import Tableau, next_tableau
-
-
-@dataclass(frozen=True, eq=False)
-class Residuals:
-    """Residuals of one iterate.
-
-    `stages` (N, K, ne): defects X_i - x_0 - h sum a_ij F_j, then algebraic equations; `nodes`
-    (N, nx): x_{e+1} - x_e - h sum b_j F_j; `conditions` (nb,).
-    """
-
-    stages: Array
-    nodes: Array
-    conditions: Array
-
-    def vector(self) -> Array:
-        """All residuals in the order of the layout."""
-        count = len(self.nodes)
-        elements = np.hstack([self.stages.reshape(count, -1), self.nodes])
-        return np.concatenate([elements.ravel(), self.conditions])
-
-
-@dataclass(frozen=True, eq=False)
-class Derivatives:
-    """Derivative blocks: `stages` (N, K, ne, nv + nc) and `conditions` (nb, (P+1) nx + nc)."""
-
-    stages: Array
-    conditions: Array
 
 
 @dataclass(frozen=True, eq=False)
@@ -54,24 +29,52 @@ class ElementBlocks:
     layout: Layout
     tableau: Tableau
     phases: tuple[StageFunctions, ...]
-    conditions: ConditionFunctions
+    conditions: Conditions
+
+    @property
+    def name(self) -> str:
+        """Name of the tableau."""
+        return self.tableau.name
+
+    @property
+    def degree(self) -> int:
+        """Number of stages K."""
+        return self.tableau.degree
+
+    @property
+    def order(self) -> int:
+        """Order of the error at the nodes."""
+        return self.tableau.order
+
+    @property
+    def symplectic(self) -> bool:
+        """Whether quadratic invariants are kept to rounding."""
+        return self.tableau.symplectic
 
     def build(self) -> None:
         """Build all functions now rather than at the first evaluation."""
-        _ = self._values, self._dense, self._condition_values, self._condition_dense
+        _ = self._values, self._dense
+        self.conditions.build()
 
     def finer(self) -> tuple[ElementBlocks, int]:
-        """Return the same equations on the next better scheme, and the parts of each element."""
+        """Return the same equations on the next better scheme, and the parts of each element.
+
+        Path inequalities are left out: a solution inside them is refined by its equations.
+        """
         tableau, split = next_tableau(self.tableau)
         elements = tuple(split * n for n in self.layout.elements)
-        layout = replace(self.layout, stages=tableau.degree, elements=elements)
-        return replace(self, layout=layout, tableau=tableau), split
+        layout = replace(self.layout, nh=0, stages=tableau.degree, elements=elements)
+        conditions = replace(self.conditions, layout=layout)
+        phases = self.phases
+        if self.layout.nh:
+            kept = layout.nx + layout.ng
+            phases = tuple(StageFunctions(f.inputs, f.equations[:kept], None) for f in phases)
+        return ElementBlocks(layout, tableau, phases, conditions), split
 
     def residuals(self, w: Array, p: Array) -> Residuals:
         """Residuals at the unknowns w for the parameters p = [theta, widths]."""
         values = self._evaluate(self._values, w, p)
-        b = self._condition_values(*self._at_points(w, p))[0].copy()
-        return self._residuals(w, p, values[0], b)
+        return self._residuals(w, p, values[0], self.conditions.values(w, p))
 
     def linearize(self, w: Array, p: Array) -> tuple[Residuals, Derivatives]:
         """Residuals and derivative blocks at w for p."""
@@ -81,9 +84,18 @@ class ElementBlocks:
         jacobians = jacobians.reshape(
             lay.element_count, lay.stages, lay.nv + lay.nc, lay.stage_equations
         ).swapaxes(2, 3)
-        b, jb = self._condition_dense(*self._at_points(w, p))
-        jb = jb.reshape(-1, lay.conditions).T.copy()
-        return self._residuals(w, p, values, b.copy()), Derivatives(jacobians, jb)
+        b, jb = self.conditions.linearize(w, p)
+        return self._residuals(w, p, values, b), Derivatives(jacobians, jb)
+
+    def eliminate(self, derivatives: Derivatives, p: Array) -> StageElimination:
+        """Solve every element's stage equations for its stages."""
+        return StageElimination(self.layout, self.tableau, derivatives.stages, self.widths(p))
+
+    def dense(self, w: Array, p: Array) -> Output:
+        """Return the dense output of a solution w."""
+        from .dense import DenseOutput  # needs these blocks
+
+        return DenseOutput(self, w, p)
 
     def rates(self, w: Array, p: Array) -> Array:
         """Return the derivatives F (N, K, nx) at the stages, per relative position."""
@@ -93,15 +105,13 @@ class ElementBlocks:
 
     def widths(self, p: Array) -> Array:
         """Relative widths (N,) of the elements."""
-        return p[len(p) - self.layout.element_count :]
+        return self.layout.widths(p)
 
     def stage_positions(self, p: Array) -> Array:
         """Relative position (N, K) of every stage in its phase."""
-        widths = self.widths(p)
-        starts = np.concatenate(
-            [np.cumsum(widths[s]) - widths[s] for s in self.layout.phase_slices()]
+        return np.asarray(
+            self.layout.starts(p)[:, None] + self.widths(p)[:, None] * self.tableau.nodes
         )
-        return np.asarray(starts[:, None] + widths[:, None] * self.tableau.nodes)
 
     def _residuals(self, w: Array, p: Array, values: Array, b: Array) -> Residuals:
         lay, t = self.layout, self.tableau
@@ -117,7 +127,7 @@ class ElementBlocks:
     def _evaluate(self, mapped: tuple[Buffered, ...], w: Array, p: Array) -> list[Array]:
         lay = self.layout
         _, stages, c = lay.unpack(w)
-        theta = p[: len(p) - lay.element_count]
+        theta = lay.theta(p)
         if any(f.depends_on_position for f in self.phases):
             positions = self.stage_positions(p)
         else:
@@ -128,11 +138,6 @@ class ElementBlocks:
         ]
         return [np.concatenate(group) for group in zip(*parts, strict=True)]
 
-    def _at_points(self, w: Array, p: Array) -> tuple[Array, Array, Array]:
-        nodes, _, c = self.layout.unpack(w)
-        theta = p[: len(p) - self.layout.element_count]
-        return nodes[list(self.layout.point_elements)], c, theta
-
     @cached_property
     def _values(self) -> tuple[Buffered, ...]:
         return self._mapped([f.values for f in self.phases])
@@ -140,14 +145,6 @@ class ElementBlocks:
     @cached_property
     def _dense(self) -> tuple[Buffered, ...]:
         return self._mapped([f.dense for f in self.phases])
-
-    @cached_property
-    def _condition_values(self) -> Buffered:
-        return Buffered(self.conditions.values)
-
-    @cached_property
-    def _condition_dense(self) -> Buffered:
-        return Buffered(self.conditions.dense)
 
     def _mapped(self, functions: list[ca.Function]) -> tuple[Buffered, ...]:
         count = self.layout.stages

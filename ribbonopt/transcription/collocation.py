@@ -12,9 +12,6 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
-import numpy as np
-
-from ribbonopt.arrays import Array
 from ribbonopt.errors import TranscriptionError
 from ribbonopt.problem.contract import BoundaryValueProblem
 
@@ -22,9 +19,10 @@ from .blocks import ElementBlocks
 from .functions import condition_functions, stage_functions
 from .layout import Layout
 from .nlp import NLP, NLPFunctions
-from .tableaus import Tableau, gauss, radau
+from .points import Conditions
+from .tableaus import Tableau, gauss, lobatto, radau
 
-SCHEMES: dict[str, Callable[[int], Tableau]] = {"gauss": gauss, "radau": radau}
+SCHEMES: dict[str, Callable[[int], Tableau]] = {"gauss": gauss, "radau": radau, "lobatto": lobatto}
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,6 +39,11 @@ class Collocation:
                 f"collocation scheme: found {scheme!r}, expected one of {', '.join(SCHEMES)}"
             )
         return cls(SCHEMES[scheme](degree))
+
+    @property
+    def name(self) -> str:
+        """Name of the tableau, such as "gauss 6"."""
+        return self.tableau.name
 
     def transcribe(self, bvp: BoundaryValueProblem, elements: tuple[int, ...]) -> NLP:
         """NLP of `bvp` with `elements[i]` elements in phase i; p = [theta, relative widths]."""
@@ -67,7 +70,7 @@ class Collocation:
 
             return Assembler(layout, self.tableau, phases, conditions, n_theta).functions()
 
-        blocks = ElementBlocks(layout, self.tableau, phases, conditions)
+        blocks = ElementBlocks(layout, self.tableau, phases, Conditions(layout, conditions))
         return NLP(
             unknowns=layout.unknowns,
             equations=layout.equations,
@@ -78,9 +81,3 @@ class Collocation:
             layout=layout,
             structure=blocks,
         )
-
-    def positions(self, widths: Array) -> tuple[Array, Array]:
-        """Relative positions of the nodes (N+1,) and of the stages (N, K) of one phase."""
-        nodes = np.concatenate([[0.0], np.cumsum(widths)])
-        nodes[-1] = 1.0
-        return nodes, nodes[:-1, None] + widths[:, None] * self.tableau.nodes

@@ -12,14 +12,12 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ribbonopt.arrays import Array
 
 from .blocks import ElementBlocks
 from .buffered import Buffered, shared_map
-
-Index = NDArray[np.intp]
+from .layout import Index
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,13 +39,13 @@ class DenseOutput:
     @property
     def order(self) -> int:
         """Order of the error of `states` between the nodes."""
-        tableau = self.blocks.tableau
-        return tableau.dense_order if self.blocks.layout.nz else tableau.order
+        tableau, lay = self.blocks.tableau, self.blocks.layout
+        return tableau.order if lay.nz == lay.ng else tableau.dense_order
 
     @property
     def theta(self) -> Array:
         """Parameters of the problem."""
-        return self.p[: len(self.p) - self.blocks.layout.element_count]
+        return self.blocks.layout.theta(self.p)
 
     @property
     def constants(self) -> Array:
@@ -56,14 +54,11 @@ class DenseOutput:
 
     def nodes(self, phase: int) -> Array:
         """Relative positions (n + 1,) of the nodes of a phase."""
-        widths = self.blocks.widths(self.p)[self.blocks.layout.phase_slices()[phase]]
-        nodes = np.concatenate([[0.0], np.cumsum(widths)])
-        nodes[-1] = 1.0
-        return nodes
+        return self.blocks.layout.phase_nodes(self.p, phase)
 
     def states(self, phase: int, sigma: Array) -> Array:
         """States x (k, nx) at the relative positions sigma (k,), to the order of the scheme."""
-        element, t, h = self._locate(phase, sigma)
+        element, t, h = self.blocks.layout.locate(self.p, phase, sigma)
         x = self._polynomial(element, t, h)
         # Nodes are known already; every other point is the end of a substep.
         inside = (t > 0) & (t < 1)
@@ -79,27 +74,29 @@ class DenseOutput:
         stage_t = t[:, None] * tableau.nodes
         repeated = np.repeat(e, K)
         X = self._polynomial(repeated, stage_t.ravel(), np.repeat(h, K)).reshape(count, K, -1)
-        start = np.concatenate([[0.0], np.cumsum(self.blocks.widths(self.p))])
-        offset = start[self.blocks.layout.phase_slices()[phase].start]
-        positions = start[e][:, None] - offset + h[:, None] * stage_t
+        positions = self.blocks.layout.starts(self.p)[e][:, None] + h[:, None] * stage_t
+        lay = self.blocks.layout
+        z = self._interpolated(repeated, stage_t.ravel())
         equations = self._mapped(phase, count * K)
         step = (h * t)[:, None]
         for sweep in range(K):
-            values = equations(X, self.constants, self.theta, positions)[0]
-            F = values.reshape(count, K, -1)[:, :, : self.blocks.layout.nx]
+            x = X.reshape(count * K, -1)
+            z = self._solved(phase, x, z, positions.ravel())
+            values = equations(np.hstack([x, z]), self.constants, self.theta, positions)[0]
+            F = values.reshape(count, K, -1)[:, :, : lay.nx]
             if sweep < K - 1:
                 X = nodes[e][:, None] + step[:, None] * (tableau.matrix @ F)
         after: Array = nodes[e] + step * (tableau.weights @ F)
         return after
 
     def algebraic(self, phase: int, sigma: Array) -> Array:
-        """Algebraic variables z (k, nz): the polynomial through the stages."""
-        lay = self.blocks.layout
-        element, t, _ = self._locate(phase, sigma)
-        _, stages, _ = lay.unpack(self.w)
-        basis = self.blocks.tableau.basis(t)
-        z: Array = np.einsum("kj,kjz->kz", basis, stages[element][:, :, lay.nx :])
-        return z
+        """Algebraic variables z (k, nz): from their equations at the states.
+
+        Controls, for which there are none, are the polynomial through the stages.
+        """
+        element, t, _ = self.blocks.layout.locate(self.p, phase, sigma)
+        z = self._interpolated(element, t)
+        return self._solved(phase, self.states(phase, sigma), z, sigma) if z.size else z
 
     def stages(self, phase: int) -> tuple[Array, Array, Array]:
         """Stage values v (k, nv), relative positions (k,) and quadrature weights (k,)."""
@@ -140,13 +137,27 @@ class DenseOutput:
         """Derivatives (N, K, nx) at the stages, per relative position."""
         return self.blocks.rates(self.w, self.p)
 
-    def _locate(self, phase: int, sigma: Array) -> tuple[Index, Array, Array]:
-        """Element, position in it from 0 to 1, and width, of relative positions."""
-        nodes = self.nodes(phase)
-        local = np.clip(np.searchsorted(nodes, sigma, side="right") - 1, 0, len(nodes) - 2)
-        h = np.diff(nodes)[local]
-        t = np.clip((sigma - nodes[local]) / h, 0.0, 1.0)
-        return local + self.blocks.layout.phase_slices()[phase].start, t, h
+    def _interpolated(self, element: Index, t: Array) -> Array:
+        """Polynomials (k, nz) through the stages of z."""
+        lay = self.blocks.layout
+        _, stages, _ = lay.unpack(self.w)
+        basis = self.blocks.tableau.basis(t)
+        z: Array = np.einsum("kj,kjz->kz", basis, stages[element][:, :, lay.nx :])
+        return z
+
+    def _solved(self, phase: int, x: Array, z: Array, sigma: Array) -> Array:
+        """Algebraic variables (k, nz) that solve their equations at the states x, from z."""
+        lay = self.blocks.layout
+        if not lay.nz or lay.nz != lay.ng:
+            return z
+        dense = Buffered(shared_map(self.blocks.phases[phase].dense, len(x)))
+        rows, columns = slice(lay.nx, lay.nx + lay.ng), slice(lay.nx, lay.nv)
+        for _ in range(3):  # from the accuracy of the polynomial to rounding
+            values, jacobian = dense(np.hstack([x, z]), self.constants, self.theta, sigma)
+            g = values.reshape(len(x), -1)[:, rows]
+            slope = jacobian.reshape(len(x), lay.nv + lay.nc, -1).swapaxes(1, 2)[:, rows, columns]
+            z = z - np.linalg.solve(slope, g[:, :, None])[:, :, 0]
+        return z
 
     def _polynomial(self, element: Index, t: Array, h: Array) -> Array:
         nodes, _, _ = self.blocks.layout.unpack(self.w)

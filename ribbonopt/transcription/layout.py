@@ -19,10 +19,12 @@ from numpy.typing import NDArray
 
 from ribbonopt.arrays import Array
 
+Index = NDArray[np.intp]
+
 
 @dataclass(frozen=True, eq=False)
 class Layout:
-    """Sizes of a collocation NLP: states, algebraic variables, constants, stages, elements."""
+    """Sizes of an NLP: states, algebraic variables, constants, stages (0: shooting), elements."""
 
     nx: int
     nz: int
@@ -83,10 +85,42 @@ class Layout:
         """Index of the node at the start, at each phase boundary and at the end."""
         return tuple(int(i) for i in np.concatenate([[0], np.cumsum(self.elements)]))
 
+    def condition_columns(self) -> NDArray[np.int64]:
+        """Place in w of every variable of the conditions: the states at all points, c."""
+        nodes = np.array(self.point_elements)[:, None] * self.element_unknowns + np.arange(self.nx)
+        return np.concatenate([nodes.ravel(), self.constants_at + np.arange(self.nc)])
+
     def phase_slices(self) -> tuple[slice, ...]:
         """Elements of each phase."""
         p = self.point_elements
         return tuple(slice(a, b) for a, b in pairwise(p))
+
+    def theta(self, p: Array) -> Array:
+        """Parameters of the problem in p = [theta, relative widths]."""
+        return p[: len(p) - self.element_count]
+
+    def widths(self, p: Array) -> Array:
+        """Relative widths (N,) of the elements in p."""
+        return p[len(p) - self.element_count :]
+
+    def starts(self, p: Array) -> Array:
+        """Relative position (N,) of every element's first node in its phase."""
+        widths = self.widths(p)
+        return np.concatenate([np.cumsum(widths[s]) - widths[s] for s in self.phase_slices()])
+
+    def phase_nodes(self, p: Array, phase: int) -> Array:
+        """Relative positions (n + 1,) of the nodes of a phase."""
+        nodes = np.concatenate([[0.0], np.cumsum(self.widths(p)[self.phase_slices()[phase]])])
+        nodes[-1] = 1.0
+        return nodes
+
+    def locate(self, p: Array, phase: int, sigma: Array) -> tuple[Index, Array, Array]:
+        """Element, position in it from 0 to 1, and width, of relative positions in a phase."""
+        nodes = self.phase_nodes(p, phase)
+        local = np.clip(np.searchsorted(nodes, sigma, side="right") - 1, 0, len(nodes) - 2)
+        h = np.diff(nodes)[local]
+        t = np.clip((sigma - nodes[local]) / h, 0.0, 1.0)
+        return local + self.phase_slices()[phase].start, t, h
 
     def pack(self, nodes: Array, stages: Array, constants: Array) -> Array:
         """Vector w of nodes (N+1, nx), stages (N, K, nv) and constants (nc,)."""
@@ -103,6 +137,18 @@ class Layout:
         nodes = np.vstack([blocks[:, : self.nx], last])
         stages = blocks[:, self.nx :].reshape(count, self.stages, self.nv)
         return nodes, stages, w[self.constants_at :]
+
+    def start_costate(self, multipliers: Array) -> Array:
+        """Costates (nx,) at the start from the multipliers (ng,) of the equations.
+
+        The equations of the first element that hold its first node with the factor minus one are
+        the defects of its stages and of its end: the condition that the Lagrangian is stationary
+        in that node makes their sum the costate.
+        """
+        first = multipliers[: self.element_equations]
+        stages = first[: self.stages * self.stage_equations].reshape(self.stages, -1)
+        costate: Array = stages[:, : self.nx].sum(axis=0) + first[-self.nx :]
+        return costate
 
     def is_inequality(self) -> NDArray[np.bool_]:
         """Which constraints are path inequalities (<= 0); all others are equations."""

@@ -18,8 +18,8 @@ from numpy.typing import NDArray
 
 from ribbonopt.errors import TranscriptionError
 
-from .blocks import ElementBlocks
 from .layout import Layout
+from .structure import Blocks
 
 
 @dataclass(frozen=True, eq=False)
@@ -47,10 +47,10 @@ class NLP:
     has_cost: bool
     build: Callable[[], NLPFunctions]
     layout: Layout
-    structure: ElementBlocks | None
+    structure: Blocks | None
 
     @property
-    def blocks(self) -> ElementBlocks:
+    def blocks(self) -> Blocks:
         """Element blocks; TranscriptionError where the transcription has no such structure."""
         if self.structure is None:
             raise TranscriptionError("this transcription is not made of collocation elements")

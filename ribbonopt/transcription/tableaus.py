@@ -1,17 +1,20 @@
-"""Gauss and Radau collocation coefficients, computed in double precision for any degree.
+"""Gauss, Radau and Lobatto collocation coefficients, computed in double precision for any degree.
 
 A scheme with K nodes c_j integrates f over a unit step by the polynomial of degree K - 1 through
-f(c_j). With shifted Legendre polynomials P_k, the discrete orthogonality of P_k on the nodes (both
-families integrate degree 2K - 2 exactly) gives the Lagrange basis, and so its integral, in closed
+f(c_j). With shifted Legendre polynomials P_k, the discrete orthogonality of P_k on the nodes (all
+families integrate degree 2K - 3 exactly) gives the Lagrange basis, and so its integral, in closed
 form:
 
-    l_j(t) = b_j sum_k (2k + 1) P_k(c_j) P_k(t),      a_ij = integral of l_j from 0 to c_i.
+    l_j(t) = b_j sum_k P_k(c_j) P_k(t) / |P_k|^2,      a_ij = integral of l_j from 0 to c_i,
+
+with the discrete norm |P_k|^2 = sum_j b_j P_k(c_j)^2: 1 / (2k + 1), but for the last k of Lobatto.
 
 `casadi.collocation_coeff` loses digits as the degree grows; these sums do not.
 """
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 from functools import lru_cache
 
@@ -32,13 +35,15 @@ class Tableau:
     name : str
         Family and degree, such as "gauss 6".
     nodes, weights : (K,) arrays
-        Abscissae c_j in (0, 1] and quadrature weights b_j.
+        Abscissae c_j in [0, 1] and quadrature weights b_j.
     matrix : (K, K) array
         Butcher matrix a_ij.
     order : int
         Declared order of the values at the ends of the steps.
     symplectic : bool
         Whether quadratic invariants (|q| = 1, orthonormality, n . m) are kept to rounding.
+    family : function of int
+        The scheme of another degree in the same family.
     """
 
     name: str
@@ -47,6 +52,7 @@ class Tableau:
     matrix: Array
     order: int
     symplectic: bool
+    family: Callable[[int], Tableau]
 
     @property
     def degree(self) -> int:
@@ -81,6 +87,11 @@ def radau(degree: int) -> Tableau:
     return _radau(_checked(degree))
 
 
+def lobatto(degree: int) -> Tableau:
+    """Lobatto IIIA collocation (both ends are nodes), order 2K - 2, degree 2 or more."""
+    return _lobatto(_checked(degree, lowest=2))
+
+
 def next_tableau(tableau: Tableau) -> tuple[Tableau, int]:
     """Return the next better scheme of a family, and into how many parts to split each element.
 
@@ -88,14 +99,14 @@ def next_tableau(tableau: Tableau) -> tuple[Tableau, int]:
     """
     if tableau.degree == MAX_DEGREE:
         return tableau, 2
-    family = _gauss if tableau.symplectic else _radau
-    return family(tableau.degree + 1), 1
+    return tableau.family(tableau.degree + 1), 1
 
 
-def _checked(degree: int) -> int:
-    if not 1 <= degree <= MAX_DEGREE:
+def _checked(degree: int, lowest: int = 1) -> int:
+    if not lowest <= degree <= MAX_DEGREE:
         raise TranscriptionError(
-            f"collocation degree: found {degree}, expected a whole number from 1 to {MAX_DEGREE}"
+            f"collocation degree: found {degree}, expected a whole number from {lowest} to "
+            f"{MAX_DEGREE}"
         )
     return degree
 
@@ -106,7 +117,7 @@ def _gauss(degree: int) -> Tableau:
     guess = np.cos(np.pi * (4 * np.arange(degree, 0, -1) - 1) / (4 * degree + 2))
     x = _roots(guess, degree, 0.0)
     weights = (1 - x**2) / (degree * _legendre(x, degree)[:, degree - 1]) ** 2
-    return _tableau(f"gauss {degree}", (1 + x) / 2, weights / weights.sum(), 2 * degree, True)
+    return _tableau("gauss", (1 + x) / 2, weights, 2 * degree, gauss)
 
 
 @lru_cache
@@ -117,7 +128,19 @@ def _radau(degree: int) -> Tableau:
     # Weights of the right Radau rule: (1 + x) / (K P_{K-1}(x))^2, up to a factor.
     last = _legendre(x, degree)[:, degree - 1]
     weights = (1 + x) / (degree * last) ** 2
-    return _tableau(f"radau {degree}", (1 + x) / 2, weights / weights.sum(), 2 * degree - 1, False)
+    return _tableau("radau", (1 + x) / 2, weights, 2 * degree - 1, radau)
+
+
+@lru_cache
+def _lobatto(degree: int) -> Tableau:
+    # Nodes: +-1 and the roots of P_{K-1}', which are those of x P_{K-1} - P_{K-2} in between.
+    x = np.cos(np.pi * np.arange(degree - 1, -1, -1) / (degree - 1))
+    for _ in range(20):
+        P = _legendre(x, degree - 1)
+        x = x - (x * P[:, -1] - P[:, -2]) / (degree * P[:, -1])
+    x[0], x[-1] = -1, 1
+    weights = 1 / _legendre(x, degree - 1)[:, -1] ** 2
+    return _tableau("lobatto", (1 + x) / 2, weights, 2 * degree - 2, lobatto)
 
 
 def _roots(x: Array, degree: int, share: float) -> Array:
@@ -135,16 +158,21 @@ def _roots(x: Array, degree: int, share: float) -> Array:
     return x
 
 
-def _tableau(name: str, nodes: Array, weights: Array, order: int, symplectic: bool) -> Tableau:
-    matrix = _legendre_integrals(nodes, len(nodes) - 1) @ _scaled(nodes, weights)
-    return Tableau(name, nodes, weights, matrix, order, symplectic)
+def _tableau(
+    name: str, nodes: Array, weights: Array, order: int, family: Callable[[int], Tableau]
+) -> Tableau:
+    """Tableau of nodes and of weights up to a factor."""
+    degree, weights = len(nodes), weights / weights.sum()
+    matrix = _legendre_integrals(nodes, degree - 1) @ _scaled(nodes, weights)
+    symplectic = order == 2 * degree  # collocation keeps quadratic invariants at Gauss nodes only
+    return Tableau(f"{name} {degree}", nodes, weights, matrix, order, symplectic, family)
 
 
 def _scaled(nodes: Array, weights: Array) -> Array:
-    """(K, K) array (2k + 1) P_k(c_j) b_j: Legendre coefficients of the Lagrange basis."""
-    degree = len(nodes) - 1
-    factors = (2 * np.arange(degree + 1) + 1)[:, None]
-    return np.asarray(factors * _shifted_legendre(nodes, degree).T * weights)
+    """(K, K) array P_k(c_j) b_j / |P_k|^2: Legendre coefficients of the Lagrange basis."""
+    weighted = _shifted_legendre(nodes, len(nodes) - 1) * weights[:, None]
+    norms = (weighted * _shifted_legendre(nodes, len(nodes) - 1)).sum(axis=0)
+    return np.asarray((weighted / norms).T)
 
 
 def _legendre(x: Array, degree: int) -> Array:

@@ -77,7 +77,7 @@ BAD: dict[str, tuple[str, str, tuple[str, ...]]] = {
     "degree 0": ("degree: 6", "degree: 0", ("line 8", "transcription.degree", "0")),
     "degree 11": ("degree: 6", "degree: 11", ("line 8", "transcription.degree", "11")),
     "no intervals": ("intervals: 10", "intervals: 0", ("line 8", "transcription.intervals", "0")),
-    "unknown scheme": ("gauss", "lobatto", ("line 8", "transcription.scheme", "lobatto")),
+    "unknown scheme": ("gauss", "gaus", ("line 8", "transcription.scheme", "gaus")),
     "no law": ("law: {type: regularized, epsilon: 0.01}\n", "", ("law",)),
     "no guess": ("guess: {force: [0, 40, 40], moment: [0, 2, -9]}\n", "", ("guess",)),
 }

@@ -41,7 +41,8 @@ def slope(counts: tuple[int, ...], errors: list[float]) -> float:
 
 def half_moebius(configs: Path, scheme: str, degree: int, intervals: int) -> Solution:
     """Solve with the analytic law: Radau has a stage where Sadowsky's law jumps, s = 1/2."""
-    transcription = f"transcription={{scheme: {scheme}, degree: {degree}, intervals: {intervals}}}"
+    mesh = f"scheme: {scheme}, degree: {degree}, intervals: {intervals}"
+    transcription = f"transcription={{type: collocation, {mesh}}}"
     overrides = ["law={type: single_sheet, chi: 1}", "solver={type: newton}", transcription]
     return solve(load_scene(configs / "moebius_half.yaml", overrides))
 
@@ -129,14 +130,12 @@ def test_samples_of_a_ribbon_converge_at_the_order_of_the_scheme(
 
 @each_scheme
 @pytest.mark.parametrize("degree", [1, 2, 3])
-def test_with_algebraic_variables_points_have_at_least_the_declared_order(
-    scheme: str, degree: int
-) -> None:
-    meshes, errors = (8, 16, 32), []
+def test_with_algebraic_variables_points_have_the_declared_order(scheme: str, degree: int) -> None:
+    declared = SCHEMES[scheme](degree).order
+    meshes, errors = ((8, 16, 32) if declared < 5 else (2, 4, 8)), []
     for intervals in meshes:
         _, dense = by_newton(implicit(), scheme, degree, intervals)
         s = between(dense.nodes(0))
         errors.append(np.abs(dense.states(0, s)[:, 0] - np.exp(s)).max())
-    declared = SCHEMES[scheme](degree).dense_order
     assert dense.order == declared
     assert slope(meshes, errors) == pytest.approx(declared, abs=0.3)

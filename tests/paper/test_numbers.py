@@ -17,7 +17,7 @@ from references import (
 from ribbonopt.solution import Solution
 
 Solved = Callable[..., Solution]
-FINE = "transcription={scheme: gauss, degree: 8, intervals: 10}"
+FINE = "transcription={type: collocation, scheme: gauss, degree: 8, intervals: 10}"
 each_solver = pytest.mark.parametrize("solver", ["ipopt", "newton", "auto"])
 each_form = pytest.mark.parametrize("name", ["moebius_half", "moebius_half_full"])
 
@@ -98,7 +98,7 @@ def test_whole_moebius_closes(solved: Solved) -> None:
 def test_half_moebius_regularized(solved: Solved, epsilon: float) -> None:
     # the same law on half the loop, (5.1)
     law = f"law={{type: regularized, epsilon: {epsilon}}}"
-    mesh = "transcription={scheme: gauss, degree: 8, intervals: 200}"
+    mesh = "transcription={type: collocation, scheme: gauss, degree: 8, intervals: 200}"
     found = solved("moebius_half", law, mesh, "solver={type: newton}")
     exact = REGULARIZED[epsilon]
     assert gap(found.n0, exact["n0"]) < 1e-6
@@ -107,7 +107,7 @@ def test_half_moebius_regularized(solved: Solved, epsilon: float) -> None:
 
 
 def test_whole_moebius_with_less_smoothing(solved: Solved) -> None:
-    mesh = "transcription={scheme: gauss, degree: 8, intervals: 200}"
+    mesh = "transcription={type: collocation, scheme: gauss, degree: 8, intervals: 200}"
     found = solved("moebius_regularized", "law.epsilon=1e-3", mesh, "solver={type: newton}")
     exact = REGULARIZED[1e-3]
     assert gap(found.n0, exact["n0"]) < 1e-6

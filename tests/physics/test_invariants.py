@@ -15,17 +15,23 @@ from ribbonopt.solution import Solution
 
 Solved = Callable[..., Solution]
 Array = np.ndarray
-FINE = "transcription={scheme: gauss, degree: 8, intervals: 10}"
+FINE = "transcription={type: collocation, scheme: gauss, degree: 8, intervals: 10}"
 SCENES = {
     "cantilever": (),
-    "elastica_clamped": ("transcription={degree: 8, intervals: 12}",),
+    "elastica_clamped": ("transcription={type: collocation, degree: 8, intervals: 12}",),
     "helix": (),
-    "moebius_half": ("transcription={degree: 8, intervals: 10}",),
-    "moebius_half_full": ("transcription={degree: 8, intervals: 10}",),
-    "moebius_kirchhoff": ("transcription={degree: 8, intervals: 10}",),
+    "moebius_half": ("transcription={type: collocation, degree: 8, intervals: 10}",),
+    "moebius_half_full": ("transcription={type: collocation, degree: 8, intervals: 10}",),
+    "moebius_kirchhoff": ("transcription={type: collocation, degree: 8, intervals: 10}",),
     # Their laws change fast where m2 passes zero.
-    "moebius_regularized": ("transcription={degree: 8, intervals: 200}", "solver={type: newton}"),
-    "moebius_variational": ("transcription={degree: 8, intervals: 80}", "solver={type: newton}"),
+    "moebius_regularized": (
+        "transcription={type: collocation, degree: 8, intervals: 200}",
+        "solver={type: newton}",
+    ),
+    "moebius_variational": (
+        "transcription={type: collocation, degree: 8, intervals: 80}",
+        "solver={type: newton}",
+    ),
 }
 each_scene = pytest.mark.parametrize("name", SCENES)
 
@@ -199,7 +205,8 @@ def test_estimated_errors_are_honest(
     solved: Solved, scheme: str, degree: int, intervals: int
 ) -> None:
     law = "law={type: single_sheet, chi: 1}"
-    mesh = f"transcription={{scheme: {scheme}, degree: {degree}, intervals: {intervals}}}"
+    mesh = f"scheme: {scheme}, degree: {degree}, intervals: {intervals}"
+    mesh = f"transcription={{type: collocation, {mesh}}}"
     found = solved("moebius_half", law, mesh, "solver={type: newton}")
     estimate = estimate_error(found)
     H = HALF_MOEBIUS["H"]

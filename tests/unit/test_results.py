@@ -68,7 +68,7 @@ def test_saved_solution_is_a_better_guess(configs: Path, half: Solution, saved: 
 
 def test_guess_may_come_from_another_mesh_states_and_law(configs: Path, saved: Path) -> None:
     overrides = [f"guess={{solution: {saved}}}", "law={type: variational, delta: 0.05}"]
-    mesh = "transcription={scheme: radau, degree: 5, intervals: 17}"
+    mesh = "transcription={type: collocation, scheme: radau, degree: 5, intervals: 17}"
     found = solve(load_scene(configs / "moebius_half_full.yaml", [*overrides, mesh]))
     assert found.verified, found.message
 

@@ -32,7 +32,11 @@ guess: {force: [0, 40, 40], moment: [0, 2, -9]}
 
 
 def test_dump_is_readable_and_omits_defaults() -> None:
-    text = dump_scene(loads_scene(SCENE + "transcription: {degree: 6}\nsolver: {type: newton}\n"))
+    text = dump_scene(
+        loads_scene(
+            SCENE + "transcription: {type: collocation, degree: 6}\nsolver: {type: newton}\n"
+        )
+    )
     assert "law: {type: regularized}" in text
     assert "position: [0, 0, 0]" in text
     assert "solver: {type: newton}" in text
@@ -133,7 +137,8 @@ def test_json_schema_describes_the_shorthands() -> None:
         == [{"oneOf": [{"type": "number"}, {"type": "string"}]}] * 3
     )
     assert "identity" in [branch.get("const") for branch in end["directors"]["oneOf"]]
-    degree = schema["properties"]["transcription"]["properties"]["degree"]
+    collocation = schema["properties"]["transcription"]["oneOf"][0]
+    degree = collocation["properties"]["degree"]
     assert (degree["minimum"], degree["maximum"], degree["type"]) == (1, 10, "integer")
     named = [part for part in objects(schema) if "properties" in part]
     assert all(part["additionalProperties"] is False for part in named)

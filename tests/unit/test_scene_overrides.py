@@ -47,7 +47,11 @@ def changed(old: str, new: str) -> str:
         ("law={type: sadowsky}", lambda s: s.law, room.Sadowsky()),
         ("law = {type: sadowsky}", lambda s: s.law, room.Sadowsky()),
         ("solver.type=newton", lambda s: s.solver, room.Newton()),
-        ("transcription.degree=3", lambda s: s.transcription.degree, 3),
+        (
+            "transcription={type: collocation, degree: 3}",
+            lambda s: s.transcription,
+            room.Collocation(degree=3),
+        ),
         ("boundary.end.d3.x=1 - turn", lambda s: s.boundary.end.d3, room.LabVector(x="1 - turn")),
         ("boundary.also=[]", lambda s: s.boundary.also, ()),
         ("boundary.also.0=u2(end) = 1", lambda s: s.boundary.also, ("u2(end) = 1",)),

@@ -85,6 +85,9 @@ def test_data_may_hold_instances() -> None:
     assert "expected a mapping whose `type`" in problems(law=End())["law"]
 
 
+COLLOCATION = {"type": "collocation"}
+
+
 @pytest.mark.parametrize(
     ("changes", "path", "message"),
     [
@@ -120,11 +123,28 @@ def test_data_may_hold_instances() -> None:
         ({"law": {"type": "single_sheet", "chi": 2}}, "law.chi", "found 2, expected 1 or -1"),
         ({"law": {"type": "single_sheet", "chi": True}}, "law.chi", "found true, expected 1 or -1"),
         ({"law": {"type": "single_sheet", "chi": 1.0}}, "law.chi", "found 1.0, expected 1 or -1"),
-        ({"transcription": {"degree": 0}}, "transcription.degree", "a whole number from 1 to 10"),
-        ({"transcription": {"degree": 3.0}}, "transcription.degree", "found 3.0, expected a whole"),
-        ({"transcription": {"degree": True}}, "transcription.degree", "found true"),
-        ({"transcription": {"intervals": 0}}, "transcription.intervals", "a whole number >= 1"),
-        ({"transcription": {"scheme": "gaus"}}, "transcription.scheme", "did you mean 'gauss'?"),
+        (
+            {"transcription": COLLOCATION | {"degree": 0}},
+            "transcription.degree",
+            "a whole number from 1 to 10",
+        ),
+        (
+            {"transcription": COLLOCATION | {"degree": 3.0}},
+            "transcription.degree",
+            "found 3.0, expected a whole",
+        ),
+        ({"transcription": COLLOCATION | {"degree": True}}, "transcription.degree", "found true"),
+        (
+            {"transcription": COLLOCATION | {"intervals": 0}},
+            "transcription.intervals",
+            "a whole number >= 1",
+        ),
+        (
+            {"transcription": COLLOCATION | {"scheme": "gaus"}},
+            "transcription.scheme",
+            "did you mean 'gauss'?",
+        ),
+        ({"transcription": {"degree": 3}}, "transcription.type", "missing; expected 'collocation'"),
         ({"transcripton": {}}, "transcripton", "unknown key; did you mean 'transcription'?"),
         (
             {"solver": {"tolerance": 1}},

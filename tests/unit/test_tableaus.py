@@ -1,4 +1,4 @@
-"""Coefficients of Gauss and Radau collocation against exact ones."""
+"""Coefficients of Gauss, Radau and Lobatto collocation against exact ones."""
 
 from collections.abc import Callable
 
@@ -7,12 +7,17 @@ import pytest
 from mpmath import mp, mpf
 
 from ribbonopt.errors import TranscriptionError
-from ribbonopt.transcription import Tableau, gauss, radau
+from ribbonopt.transcription import Tableau, gauss, lobatto, radau
 from ribbonopt.transcription.tableaus import MAX_DEGREE, next_tableau
 
-R3, R6, R15 = np.sqrt([3.0, 6.0, 15.0])
-each_family = pytest.mark.parametrize("family", [gauss, radau])
+R3, R5, R6, R15 = np.sqrt([3.0, 5.0, 6.0, 15.0])
+LOWEST = {gauss: 1, radau: 1, lobatto: 2}
+each_family = pytest.mark.parametrize("family", LOWEST)
 each_degree = pytest.mark.parametrize("degree", range(1, MAX_DEGREE + 1))
+each_scheme = pytest.mark.parametrize(
+    ("family", "degree"),
+    [(family, k) for family, lowest in LOWEST.items() for k in range(lowest, MAX_DEGREE + 1)],
+)
 
 TEXTBOOK = [
     (gauss(1), [[1 / 2]], [1], [1 / 2]),
@@ -44,6 +49,30 @@ TEXTBOOK = [
         [(16 - R6) / 36, (16 + R6) / 36, 1 / 9],
         [(4 - R6) / 10, (4 + R6) / 10, 1],
     ),
+    (lobatto(2), [[0, 0], [1 / 2, 1 / 2]], [1 / 2, 1 / 2], [0, 1]),
+    (
+        lobatto(3),
+        [[0, 0, 0], [5 / 24, 1 / 3, -1 / 24], [1 / 6, 2 / 3, 1 / 6]],
+        [1 / 6, 2 / 3, 1 / 6],
+        [0, 1 / 2, 1],
+    ),
+    (
+        lobatto(4),
+        [
+            [0, 0, 0, 0],
+            [
+                *((11 + R5) / 120, (25 - R5) / 120),
+                *((25 - 13 * R5) / 120, (-1 + R5) / 120),
+            ],
+            [
+                *((11 - R5) / 120, (25 + 13 * R5) / 120),
+                *((25 + R5) / 120, (-1 - R5) / 120),
+            ],
+            [1 / 12, 5 / 12, 5 / 12, 1 / 12],
+        ],
+        [1 / 12, 5 / 12, 5 / 12, 1 / 12],
+        [0, (5 - R5) / 10, (5 + R5) / 10, 1],
+    ),
 ]
 
 
@@ -60,13 +89,13 @@ def exact(family: Callable[[int], Tableau], degree: int) -> tuple[list[mpf], lis
     """Nodes and Butcher matrix at high precision: roots, then integrals of Lagrange polynomials."""
 
     def defining(x: mpf) -> mpf:
-        value = mp.legendre(degree, x)
-        return value if family is gauss else value - mp.legendre(degree - 1, x)
+        value, below = mp.legendre(degree, x), mp.legendre(degree - 1, x)
+        if family is lobatto:  # zero where P_{K-1}' is, and at both ends
+            return below * x - value
+        return value if family is gauss else value - below
 
     starts = [mpf(float(2 * c - 1)) for c in family(degree).nodes]
-    if family is radau:
-        starts[-1] = mpf(1)
-    roots = [mpf(1) if x == 1 else mp.findroot(defining, x) for x in starts]
+    roots = [mpf(round(x)) if abs(x) == 1 else mp.findroot(defining, x) for x in starts]
     nodes = [(1 + x) / 2 for x in roots]
     moments = mp.matrix([[c**k for c in nodes] for k in range(degree)])
     rows = []
@@ -76,8 +105,7 @@ def exact(family: Callable[[int], Tableau], degree: int) -> tuple[list[mpf], lis
     return nodes, rows
 
 
-@each_family
-@each_degree
+@each_scheme
 def test_coefficients_are_right_to_rounding(family: Callable[[int], Tableau], degree: int) -> None:
     with mp.workdps(60):
         nodes, rows = exact(family, degree)
@@ -87,8 +115,7 @@ def test_coefficients_are_right_to_rounding(family: Callable[[int], Tableau], de
     np.testing.assert_allclose(found.matrix, matrix, atol=2e-15)
 
 
-@each_family
-@each_degree
+@each_scheme
 def test_quadrature_is_exact_up_to_the_order_and_no_further(
     family: Callable[[int], Tableau], degree: int
 ) -> None:
@@ -99,8 +126,7 @@ def test_quadrature_is_exact_up_to_the_order_and_no_further(
     assert abs(beyond) > 1e-14 or degree > 8  # the error constant itself falls below rounding
 
 
-@each_family
-@each_degree
+@each_scheme
 def test_stages_integrate_polynomials_below_the_degree(
     family: Callable[[int], Tableau], degree: int
 ) -> None:
@@ -113,10 +139,11 @@ def test_stages_integrate_polynomials_below_the_degree(
 @each_degree
 def test_declared_orders(degree: int) -> None:
     assert (gauss(degree).order, radau(degree).order) == (2 * degree, 2 * degree - 1)
+    if degree > 1:
+        assert lobatto(degree).order == 2 * degree - 2
 
 
-@each_family
-@each_degree
+@each_scheme
 def test_symplectic_means_that_quadratic_invariants_are_kept(
     family: Callable[[int], Tableau], degree: int
 ) -> None:
@@ -133,8 +160,7 @@ def test_radau_ends_on_the_node(degree: int) -> None:
     np.testing.assert_allclose(found.matrix[-1], found.weights, atol=1e-15)
 
 
-@each_family
-@each_degree
+@each_scheme
 def test_basis_is_one_at_its_node_and_zero_at_the_others(
     family: Callable[[int], Tableau], degree: int
 ) -> None:
@@ -147,8 +173,22 @@ def test_basis_is_one_at_its_node_and_zero_at_the_others(
 @each_family
 @pytest.mark.parametrize("degree", [0, 11, -1])
 def test_other_degrees_are_refused(family: Callable[[int], Tableau], degree: int) -> None:
-    with pytest.raises(TranscriptionError, match=f"found {degree}, expected .* from 1 to 10"):
+    expected = f"found {degree}, expected .* from {LOWEST[family]} to 10"
+    with pytest.raises(TranscriptionError, match=expected):
         family(degree)
+
+
+def test_lobatto_needs_both_ends() -> None:
+    with pytest.raises(TranscriptionError, match="found 1, expected a whole number from 2 to 10"):
+        lobatto(1)
+
+
+@pytest.mark.parametrize("degree", range(2, MAX_DEGREE + 1))
+def test_lobatto_starts_and_ends_on_the_nodes(degree: int) -> None:
+    found = lobatto(degree)
+    assert (found.nodes[0], found.nodes[-1]) == (0, 1)
+    np.testing.assert_allclose(found.matrix[0], 0, atol=1e-15)
+    np.testing.assert_allclose(found.matrix[-1], found.weights, atol=1e-15)
 
 
 @each_family

@@ -1,0 +1,120 @@
+"""The words of the command line: its verbs and their options."""
+
+from __future__ import annotations
+
+import argparse
+
+from ribbonopt.errors import SceneError
+from ribbonopt.version import VERSION
+
+
+def parser() -> argparse.ArgumentParser:
+    """Return the parser of all verbs; `verb` names the one that was given."""
+    result = argparse.ArgumentParser(
+        prog="ribbonopt",
+        description="Equilibria of elastic ribbons from YAML scenes.",
+        formatter_class=_help,
+    )
+    result.add_argument("--version", action="version", version=f"ribbonopt {VERSION}")
+    verbs = result.add_subparsers(prog="ribbonopt", dest="verb", required=True, metavar="COMMAND")
+
+    solve = verbs.add_parser(
+        "solve", help="solve a scene and report its numbers", formatter_class=_help
+    )
+    _scene(solve)
+    solve.add_argument("--out", metavar="DIR", help="folder for the result (default: none written)")
+    solve.add_argument(
+        "--plot", action="store_true", help="draw pictures (into --out, or results/NAME)"
+    )
+
+    check = verbs.add_parser(
+        "check", help="validate a scene and count unknowns and conditions", formatter_class=_help
+    )
+    _scene(check)
+
+    compare = verbs.add_parser(
+        "compare",
+        help="solve a scene by all formulations and transcriptions, and say which is cheapest",
+        formatter_class=_help,
+    )
+    _scene(compare)
+    _pairs(compare)
+    compare.add_argument(
+        "--tolerances",
+        metavar="LIST",
+        help="relative errors of n(0), m(0), such as 1e-6,1e-9 (default: 1e-4,1e-6,1e-8,1e-10)",
+    )
+
+    bench = verbs.add_parser(
+        "bench", help="time against error over degrees and meshes", formatter_class=_help
+    )
+    _scene(bench)
+    _pairs(bench)
+    bench.add_argument("--repeat", default="11", metavar="N", help="median of N solves")
+    bench.add_argument("--quick", action="store_true", help="reduced states, low degrees only")
+
+    verbs.add_parser(
+        "schema", help="print the JSON schema of scenes, for editors", formatter_class=_help
+    )
+
+    plot = verbs.add_parser(
+        "plot", help="draw the pictures of a saved result", formatter_class=_help
+    )
+    plot.add_argument("result", metavar="RESULT", help="folder written by solve --out")
+    plot.add_argument("--out", metavar="DIR", help="folder for the pictures (default: RESULT)")
+    return result
+
+
+def _help(prog: str) -> argparse.HelpFormatter:
+    # A given width spares the import that asks the terminal for its own.
+    return argparse.HelpFormatter(prog, width=100)
+
+
+def _scene(verb: argparse.ArgumentParser) -> None:
+    verb.add_argument("scene", metavar="SCENE", help="YAML file")
+    verb.add_argument(
+        "--set",
+        action="append",
+        default=[],
+        metavar="KEY=VALUE",
+        help="override one value, such as law.epsilon=1e-3 (may be repeated)",
+    )
+    verb.add_argument("--json", action="store_true", help="print exactly one JSON object")
+    verb.add_argument("--quiet", action="store_true", help="print nothing unless it fails")
+
+
+def _pairs(verb: argparse.ArgumentParser) -> None:
+    verb.add_argument(
+        "--formulations", metavar="LIST", help="such as inverted,energy (default: all)"
+    )
+    verb.add_argument(
+        "--transcriptions", metavar="LIST", help="such as gauss,radau,rk8 (default: all)"
+    )
+    verb.add_argument("--out", metavar="DIR", help="folder for CSV, JSON and figure")
+
+
+def chosen(options: argparse.Namespace) -> tuple[list[str] | None, list[str] | None]:
+    """Names of formulations and transcriptions; None for all."""
+    return _words(options.formulations), _words(options.transcriptions)
+
+
+def numbers(option: str, text: str | None) -> list[float] | None:
+    """Read a list of numbers between 0 and 1; SceneError for anything else."""
+    try:
+        found = None if text is None else [float(word) for word in text.split(",")]
+    except ValueError:
+        found = [0.0]
+    if found is not None and not all(0 < number < 1 for number in found):
+        raise SceneError(f"{option}: found {text!r}; expected numbers between 0 and 1: 1e-6,1e-9")
+    return found
+
+
+def count(option: str, text: str) -> int:
+    """Read a positive whole number; SceneError for anything else."""
+    if not (text.isascii() and text.isdigit() and int(text) > 0):
+        raise SceneError(f"{option}: found {text!r}; expected a whole number from 1")
+    return int(text)
+
+
+def _words(text: str | None) -> list[str] | None:
+    return None if text is None else [word.strip() for word in text.split(",")]

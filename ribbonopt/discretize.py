@@ -1,0 +1,31 @@
+"""From what a scene says of its transcription to the transcription itself."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from ribbonopt.problem import BoundaryValueProblem
+from ribbonopt.scene import Collocation as CollocationSettings
+from ribbonopt.scene import Scene
+from ribbonopt.transcription import NLP, Collocation
+
+if TYPE_CHECKING:
+    from ribbonopt.transcription.shooting import MultipleShooting
+
+
+def transcription_of(scene: Scene) -> Collocation | MultipleShooting:
+    """Return the transcription a scene asks for; TranscriptionError where there is none such."""
+    settings = scene.transcription
+    if isinstance(settings, CollocationSettings):
+        return Collocation.named(settings.scheme, settings.degree)
+    from ribbonopt.transcription.shooting import MultipleShooting  # few scenes need it
+
+    shooting = MultipleShooting.named(settings.scheme, settings.degree, settings.steps)
+    return replace(shooting, start=lambda problem: problem.algebraic_start)
+
+
+def discretize(scene: Scene, problem: BoundaryValueProblem, intervals: int | None = None) -> NLP:
+    """Return the NLP of a scene's problem, on its own number of intervals unless given."""
+    count = scene.transcription.intervals if intervals is None else intervals
+    return transcription_of(scene).transcribe(problem, (count,))

@@ -1,0 +1,1 @@
+"""Studies: loops over the path, each calling it with other scenes; nothing is solved here."""

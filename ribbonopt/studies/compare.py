@@ -1,0 +1,199 @@
+"""Compare ways to solve one scene: formulations, states and transcriptions by time and true error.
+
+Every pair climbs a ladder of meshes until it meets the tightest tolerance. Errors are taken from a
+reference where one is given, else from the most accurate solution of all by its own estimate; a
+fine solve of the inverted form is among the candidates.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from statistics import median
+from typing import Any
+
+import numpy as np
+
+from ribbonopt.pipeline import Prepared
+from ribbonopt.scene import Collocation, Scene
+from ribbonopt.summary import versions
+
+from .machine import machine
+from .measure import Measurement, Profile, cost_of, errors_of, measure
+from .pairs import Pair, pairs_of
+from .rows import Cheapest, Row, cheapest, row_of
+
+TOLERANCES = (1e-4, 1e-6, 1e-8, 1e-10)
+FINE = Pair("inverted", "reduced", "gauss"), Collocation(scheme="gauss", degree=10, intervals=24)
+# Seconds after which a pair climbs no further, and unverified solves in a row after which it gives
+# up: coarse meshes may fail where finer ones do not.
+PATIENCE = 3.0
+FAILURES = 4
+# Quickest rows at each tolerance that are timed again, and how often.
+LEADERS, ROUNDS = 8, 7
+
+Numbers = Sequence[float]
+
+
+@dataclass(frozen=True)
+class Reference:
+    """Known n, m (lab frame) at the start, and where they come from."""
+
+    n0: Numbers
+    m0: Numbers
+    source: str = "the reference given"
+
+
+@dataclass(frozen=True, eq=False)
+class Truth:
+    """What errors are measured against, and where it comes from."""
+
+    profile: Profile
+    source: str
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """All rows, from cheap to fine for each pair, and what they say.
+
+    Attributes
+    ----------
+    name : str
+        Of the scene.
+    truth : str
+        What errors were measured against.
+    tolerances : tuple of float
+        Relative errors of n(0), m(0) that were wanted.
+    rows : tuple of Row
+        One for each solve.
+    """
+
+    name: str
+    truth: str
+    tolerances: tuple[float, ...]
+    rows: tuple[Row, ...]
+
+    @property
+    def cheapest(self) -> tuple[Cheapest, ...]:
+        """The cheapest pair at each tolerance."""
+        return tuple(cheapest(self.rows, tolerance) for tolerance in self.tolerances)
+
+    @property
+    def sentences(self) -> tuple[str, ...]:
+        """What the rows say, in plain words."""
+        return tuple(found.sentence for found in self.cheapest)
+
+    @property
+    def solved(self) -> bool:
+        """Whether any pair gave a verified solution."""
+        return any(row.verified for row in self.rows)
+
+    def plain(self) -> dict[str, Any]:
+        """Everything as plain data for JSON."""
+        return {
+            "name": self.name,
+            "truth": self.truth,
+            "tolerances": list(self.tolerances),
+            "rows": [row.plain() for row in self.rows],
+            "cheapest": [found.plain() for found in self.cheapest],
+            "sentences": list(self.sentences),
+            "machine": machine(),
+            "versions": versions(),
+        }
+
+
+def compare(
+    scene: Scene,
+    formulations: Iterable[str] | None = None,
+    transcriptions: Iterable[str] | None = None,
+    tolerances: Iterable[float] | None = None,
+    reference: Reference | None = None,
+) -> Comparison:
+    """Solve a scene by all pairs of formulation, states and transcription.
+
+    Parameters
+    ----------
+    scene
+        What to solve; its formulation, states and transcription are not used.
+    formulations, transcriptions
+        Names of `FORMULATIONS` and `TRANSCRIPTIONS`; None for all.
+    tolerances
+        Relative errors of n(0), m(0) wanted; the tightest ends every ladder.
+    reference
+        The truth, if known better than by the best solution.
+
+    Raises
+    ------
+    SceneError
+        If a name is not known. What a pair refuses or fails to solve is a row.
+    """
+    pairs = pairs_of(formulations, transcriptions)
+    wanted = tuple(sorted(TOLERANCES if tolerances is None else tolerances, reverse=True))
+    fine, _ = measure(FINE[0], scene, FINE[1], repeat=1)
+    provisional = truth_of([fine], reference)
+    found = [one for pair in pairs for one in _climb(pair, scene, provisional, wanted[-1])]
+    truth = truth_of([fine, *(measurement for measurement, _ in found)], reference)
+    profile, source = (truth.profile, truth.source) if truth else (None, "unknown: nothing solved")
+    rows = [row_of(measurement, profile) for measurement, _ in found]
+    rows = _leaders_again(rows, [prepared for _, prepared in found], wanted)
+    return Comparison(scene.name, source, wanted, tuple(rows))
+
+
+def truth_of(found: Sequence[Measurement], reference: Reference | None = None) -> Truth | None:
+    """Return the reference, or the verified solution whose own estimate is smallest.
+
+    A reference says nothing of u along s: that comes from the best solution in any case.
+    """
+    best, profile = None, None
+    for one in found:
+        if one.verified and one.estimate is not None and one.profile is not None:
+            if best is None or one.estimate < (best.estimate or 0.0):
+                best, profile = one, one.profile
+    if best is None or profile is None:
+        return None
+    if reference is None:
+        row = row_of(best, None)
+        source = f"{row.name}, {row.mesh}, by its own estimate within {best.estimate:.0e}"
+        return Truth(profile, source)
+    given = replace(profile, n0=np.array(reference.n0), m0=np.array(reference.m0))
+    return Truth(given, reference.source)
+
+
+def _leaders_again(
+    rows: list[Row], built: Sequence[Prepared | None], tolerances: Iterable[float]
+) -> list[Row]:
+    """Time those that might be cheapest again, interleaved: a busy machine should not decide."""
+    leaders: set[int] = set()
+    for tolerance in tolerances:
+        good = [i for i, row in enumerate(rows) if row.solve and row.meets(tolerance)]
+        leaders.update(sorted(good, key=lambda i: rows[i].solve or 0.0)[:LEADERS])
+    seconds: dict[int, list[float]] = {i: [] for i in sorted(leaders)}
+    for _ in range(ROUNDS):
+        for i, values in seconds.items():
+            prepared = built[i]
+            if prepared is not None:
+                values.append(cost_of(prepared).solve)
+    again = {i: median(values) for i, values in seconds.items() if values}
+    return [replace(row, solve=again.get(i, row.solve)) for i, row in enumerate(rows)]
+
+
+def _climb(
+    pair: Pair, scene: Scene, truth: Truth | None, wanted: float
+) -> Iterator[tuple[Measurement, Prepared | None]]:
+    """Measure from cheap to fine meshes until the error is met."""
+    started, failures = time.perf_counter(), 0
+    for mesh in pair.family.ladder:
+        found, prepared = measure(pair, scene, mesh)
+        yield found, prepared
+        failures = 0 if found.verified else failures + 1
+        spent = time.perf_counter() - started
+        if found.refused or failures >= FAILURES or spent > PATIENCE or _met(found, truth, wanted):
+            return
+
+
+def _met(found: Measurement, truth: Truth | None, wanted: float) -> bool:
+    if truth is None or not found.verified or found.profile is None:
+        return False
+    errors = errors_of(found.profile, truth.profile)
+    return max(errors["error_n0"], errors["error_m0"]) <= wanted

@@ -1,0 +1,33 @@
+"""A comparison or benchmark as files: every row as CSV, everything as JSON."""
+
+from __future__ import annotations
+
+import csv
+import json
+from pathlib import Path
+
+from ribbonopt.errors import OutputError
+
+from .benchmark import Benchmark
+from .compare import Comparison
+from .rows import COLUMNS
+
+
+def save_study(study: Comparison | Benchmark, folder: str | Path, name: str) -> None:
+    """Write NAME.csv and NAME.json into an existing folder.
+
+    Raises
+    ------
+    OutputError
+        If they cannot be written.
+    """
+    folder = Path(folder)
+    try:
+        with open(folder / f"{name}.csv", "w", encoding="utf-8", newline="") as file:
+            writer = csv.DictWriter(file, COLUMNS, lineterminator="\n")
+            writer.writeheader()
+            writer.writerows(row.plain() for row in study.rows)
+        text = json.dumps(study.plain(), indent=2, allow_nan=False)
+        (folder / f"{name}.json").write_text(text + "\n", encoding="utf-8")
+    except OSError as error:
+        raise OutputError(f"{folder}: cannot be written ({error.strerror})") from error

@@ -1,0 +1,133 @@
+"""Shooting: residuals and derivative blocks as numbers, all elements of a phase in one mapped call.
+
+`ribbonopt.transcription.structure` has the interface and the shapes.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import casadi as ca
+import numpy as np
+
+from ribbonopt.arrays import Array
+
+from .buffered import Buffered, shared_map
+from .elimination import NothingToEliminate
+from .functions import StageFunctions
+from .layout import Layout
+from .points import Conditions
+from .steps import Method, Step
+from .structure import Derivatives, Output, Residuals
+
+
+@dataclass(frozen=True, eq=False)
+class Flow:
+    """What carries the states along one phase: equations, `steps` steps of a method, z at states.
+
+    `algebraic` is a function (x, c, theta, sigma) of z.
+    """
+
+    stage: StageFunctions
+    step: Step
+    algebraic: ca.Function
+    steps: int
+
+
+@dataclass(frozen=True, eq=False)
+class ShootingBlocks:
+    """Evaluates a shooting system element by element."""
+
+    layout: Layout
+    method: Method
+    name: str
+    flows: tuple[Flow, ...]
+    conditions: Conditions
+
+    @property
+    def degree(self) -> int:
+        """Number of stages of the method, in every step."""
+        return self.method.degree
+
+    @property
+    def order(self) -> int:
+        """Order of the error everywhere."""
+        return self.method.order
+
+    @property
+    def symplectic(self) -> bool:
+        """Whether quadratic invariants are kept to rounding."""
+        return self.method.symplectic
+
+    def build(self) -> None:
+        """Build all functions now rather than at the first evaluation."""
+        _ = self._values, self._dense
+        self.conditions.build()
+
+    def residuals(self, w: Array, p: Array) -> Residuals:
+        """Return the residuals at the unknowns w for p = [theta, widths]."""
+        (after,) = self._evaluate(self._values, w, p)
+        return self._residuals(w, after, self.conditions.values(w, p))
+
+    def linearize(self, w: Array, p: Array) -> tuple[Residuals, Derivatives]:
+        """Return residuals and derivative blocks at w for p."""
+        lay = self.layout
+        after, slopes = self._evaluate(self._dense, w, p)
+        # CasADi stores columns first.
+        slopes = slopes.reshape(lay.element_count, 1, lay.nx + lay.nc, lay.nx).swapaxes(2, 3)
+        b, jb = self.conditions.linearize(w, p)
+        return self._residuals(w, after, b), Derivatives(slopes, jb)
+
+    def eliminate(self, derivatives: Derivatives, p: Array) -> NothingToEliminate:
+        """Neighbouring nodes are related already."""
+        return NothingToEliminate(derivatives)
+
+    def widths(self, p: Array) -> Array:
+        """Relative widths (N,) of the elements."""
+        return self.layout.widths(p)
+
+    def stage_positions(self, p: Array) -> Array:
+        """No stages are unknown: (N, 0)."""
+        return np.empty((self.layout.element_count, 0))
+
+    def finer(self) -> tuple[ShootingBlocks, int]:
+        """Return the same method on halved elements."""
+        layout = replace(self.layout, elements=tuple(2 * n for n in self.layout.elements))
+        conditions = replace(self.conditions, layout=layout)
+        return ShootingBlocks(layout, self.method, self.name, self.flows, conditions), 2
+
+    def dense(self, w: Array, p: Array) -> Output:
+        """Return the dense output of a solution w."""
+        from .shooting_output import ShootingOutput  # needs these blocks
+
+        return ShootingOutput(self, w, p)
+
+    def _residuals(self, w: Array, after: Array, b: Array) -> Residuals:
+        lay = self.layout
+        nodes, _, _ = lay.unpack(w)
+        stages = np.empty((lay.element_count, 0, lay.stage_equations))
+        return Residuals(stages, nodes[1:] - after.reshape(-1, lay.nx), b)
+
+    def _evaluate(self, mapped: tuple[Buffered, ...], w: Array, p: Array) -> list[Array]:
+        lay = self.layout
+        nodes, _, c = lay.unpack(w)
+        theta, starts, widths = lay.theta(p), lay.starts(p), lay.widths(p)
+        parts = [
+            [a.copy() for a in call(nodes[s], c, theta, starts[s], widths[s])]
+            for call, s in zip(mapped, lay.phase_slices(), strict=True)
+        ]
+        return [np.concatenate(group) for group in zip(*parts, strict=True)]
+
+    @cached_property
+    def _values(self) -> tuple[Buffered, ...]:
+        return self._mapped([flow.step.values for flow in self.flows])
+
+    @cached_property
+    def _dense(self) -> tuple[Buffered, ...]:
+        return self._mapped([flow.step.dense for flow in self.flows])
+
+    def _mapped(self, functions: list[ca.Function]) -> tuple[Buffered, ...]:
+        return tuple(
+            Buffered(shared_map(f, n)) for f, n in zip(functions, self.layout.elements, strict=True)
+        )

@@ -1,0 +1,156 @@
+"""What solvers and accuracy checks may ask of a discretised problem, whatever the transcription.
+
+A square problem falls into elements, chained by their nodes: `Blocks` evaluate residuals and
+derivatives element by element, an `Elimination` reduces an element to one relation between its two
+nodes, an `Output` reads a solution between the nodes. Collocation (`ElementBlocks`, `DenseOutput`)
+and shooting (`ShootingBlocks`, `ShootingOutput`) fulfil these interfaces.
+
+Shapes: N elements, K stages (none in shooting), nx states, nv = nx + nz unknowns of a stage, ne =
+nx + ng + nh equations of a stage, nc constants, P + 1 points.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Protocol
+
+import numpy as np
+
+from ribbonopt.arrays import Array
+
+from .layout import Layout
+
+
+@dataclass(frozen=True, eq=False)
+class Residuals:
+    """Residuals of one iterate.
+
+    `stages` (N, K, ne): equations of the stages; `nodes` (N, nx): x_{e+1} minus what element e
+    makes of its first node; `conditions` (nb,).
+    """
+
+    stages: Array
+    nodes: Array
+    conditions: Array
+
+    def vector(self) -> Array:
+        """All residuals in the order of the layout."""
+        count = len(self.nodes)
+        elements = np.hstack([self.stages.reshape(count, -1), self.nodes])
+        return np.concatenate([elements.ravel(), self.conditions])
+
+
+@dataclass(frozen=True, eq=False)
+class Derivatives:
+    """Derivative blocks: `stages` (N, K, ne, nv + nc) and `conditions` (nb, (P+1) nx + nc).
+
+    Without stages, `stages` (N, 1, nx, nx + nc) holds the derivatives of an element's step.
+    """
+
+    stages: Array
+    conditions: Array
+
+
+class Elimination(Protocol):
+    """Elements reduced to their nodes: A_e x_e + B_e x_{e+1} + C_e c = d_e."""
+
+    @property
+    def relations(self) -> tuple[Array, Array, Array]:
+        """A (N, nx, nx), B (N, nx, nx) and C (N, nx, nc)."""
+
+    def reduce(self, residuals: Residuals) -> tuple[Array, Array]:
+        """Right-hand sides d (N, nx), and the stages' share of them (N, K nv) for `expand`."""
+
+    def expand(self, nodes: Array, constants: Array, share: Array) -> Array:
+        """Newton steps of the stages (N, K nv) from those of nodes (N+1, nx) and constants."""
+
+
+class Blocks(Protocol):
+    """A square problem, evaluated element by element; p = [theta, relative widths]."""
+
+    @property
+    def layout(self) -> Layout:
+        """Places of unknowns and equations."""
+
+    @property
+    def name(self) -> str:
+        """Transcription, as reports call it."""
+
+    @property
+    def degree(self) -> int:
+        """Number of stages of the method, eliminated or not."""
+
+    @property
+    def order(self) -> int:
+        """Order of the error at the nodes."""
+
+    @property
+    def symplectic(self) -> bool:
+        """Whether quadratic invariants are kept to rounding."""
+
+    def build(self) -> None:
+        """Build all functions now rather than at the first evaluation."""
+
+    def residuals(self, w: Array, p: Array) -> Residuals:
+        """Return the residuals at the unknowns w."""
+
+    def linearize(self, w: Array, p: Array) -> tuple[Residuals, Derivatives]:
+        """Return residuals and derivative blocks at w."""
+
+    def eliminate(self, derivatives: Derivatives, p: Array) -> Elimination:
+        """Reduce the elements to their nodes; LinAlgError where an element is singular."""
+
+    def widths(self, p: Array) -> Array:
+        """Relative widths (N,) of the elements."""
+
+    def stage_positions(self, p: Array) -> Array:
+        """Relative position (N, K) of every stage in its phase."""
+
+    def finer(self) -> tuple[Blocks, int]:
+        """Return the same equations on a better scheme, and the parts of each element."""
+
+    def dense(self, w: Array, p: Array) -> Output:
+        """Return the dense output of a solution w."""
+
+
+class Output(Protocol):
+    """A solution anywhere; positions are relative to their phase."""
+
+    @property
+    def blocks(self) -> Blocks:
+        """The discretised equations."""
+
+    @property
+    def w(self) -> Array:
+        """Unknowns (nw,)."""
+
+    @property
+    def p(self) -> Array:
+        """Parameters [theta, relative widths]."""
+
+    @property
+    def order(self) -> int:
+        """Order of the error of `states` between the nodes."""
+
+    @property
+    def theta(self) -> Array:
+        """Parameters of the problem."""
+
+    @property
+    def constants(self) -> Array:
+        """Unknown constants c."""
+
+    def nodes(self, phase: int) -> Array:
+        """Relative positions (n + 1,) of the nodes of a phase."""
+
+    def states(self, phase: int, sigma: Array) -> Array:
+        """States x (k, nx) at the relative positions sigma (k,)."""
+
+    def algebraic(self, phase: int, sigma: Array) -> Array:
+        """Algebraic variables z (k, nz) at the relative positions sigma (k,)."""
+
+    def stages(self, phase: int) -> tuple[Array, Array, Array]:
+        """Values v (k, nv), relative positions (k,) and weights (k,) of a quadrature."""
+
+    def residual_between_nodes(self) -> Array:
+        """Relative defects (N, k) of the differential equations inside every element."""
