@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from ribbonopt.problem import BoundaryValueProblem
@@ -21,8 +20,7 @@ def transcription_of(scene: Scene) -> Collocation | MultipleShooting:
         return Collocation.named(settings.scheme, settings.degree)
     from ribbonopt.transcription.shooting import MultipleShooting  # few scenes need it
 
-    shooting = MultipleShooting.named(settings.scheme, settings.degree, settings.steps)
-    return replace(shooting, start=lambda problem: problem.algebraic_start)
+    return MultipleShooting.named(settings.scheme, settings.degree, settings.steps)
 
 
 def discretize(scene: Scene, problem: BoundaryValueProblem, intervals: int | None = None) -> NLP:

@@ -19,6 +19,8 @@ from ribbonopt.transcription import NLP
 
 from .status import SolveReport, Status
 
+DUAL_ROUNDING = 1e-8  # dual infeasibility, absolute, that rounding leaves in flat directions
+
 _STATUS = {
     "Solve_Succeeded": Status.CONVERGED,
     "Solved_To_Acceptable_Level": Status.STALLED,
@@ -82,6 +84,11 @@ class Ipopt:
         """Build the solver now rather than at the first solve."""
         _ = self.solver
 
+    def _at_rounding(self, history: dict[str, list[float]]) -> bool:
+        """Whether IPOPT stopped because steps no longer change anything: solved all the same."""
+        feasible = history["inf_pr"][-1] <= 10 * self.tolerance
+        return feasible and history["inf_du"][-1] <= DUAL_ROUNDING
+
     def solve(self, w: Array, p: Array) -> SolveReport:
         """Solve from the guess w (nw,) for the parameters p (np,)."""
         lower = np.where(self.nlp.inequality, -np.inf, 0.0)
@@ -91,6 +98,8 @@ class Ipopt:
         total = time.perf_counter() - start
         stats = solver.stats()
         status = _STATUS.get(stats["return_status"], Status.INFEASIBLE)
+        if status is Status.STALLED and self._at_rounding(stats["iterations"]):
+            status = Status.CONVERGED
         evaluate = sum(value for key, value in stats.items() if key.startswith("t_wall_nlp_"))
         solution = np.array(result["x"]).ravel()
         # Evaluated again: where IPOPT gave up on numbers that are not finite, it returns zeros.

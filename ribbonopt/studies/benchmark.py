@@ -19,7 +19,7 @@ from ribbonopt.pipeline import Prepared
 from ribbonopt.scene import Scene
 from ribbonopt.summary import versions
 
-from .compare import FINE, TOLERANCES, Numbers, Reference, truth_of
+from .compare import TOLERANCES, UNKNOWN, Numbers, Reference, fine_solves, truth_of
 from .machine import machine
 from .measure import Measurement, Profile, cost_of, errors_of, measure
 from .pairs import Mesh, Pair, pairs_of
@@ -127,11 +127,11 @@ def benchmark(
         Other programs on the same problem.
     """
     pairs = [p for p in pairs_of(formulations, transcriptions) if not quick or p.states != "full"]
-    fine, _ = measure(FINE[0], scene, FINE[1], repeat=1)
+    fine = fine_solves(scene, ROUNDING)
     found = [one for pair in pairs for one in _on_grid(pair, scene, quick)]
     seconds, peer_seconds = _timed([built for _, built in found], peers, repeat)
-    truth = truth_of([fine, *(one for one, _ in found)], reference)
-    profile, source = (truth.profile, truth.source) if truth else (None, "unknown: nothing solved")
+    truth = truth_of([*fine, *(one for one, _ in found)], reference)
+    profile, source = (truth.profile, truth.source) if truth else (None, UNKNOWN)
     rows = tuple(
         _with_time(row_of(one, profile), value)
         for (one, _), value in zip(found, seconds, strict=True)

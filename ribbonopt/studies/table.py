@@ -49,10 +49,10 @@ def _benchmark(benchmark: Benchmark) -> str:
     lines += ["", *benchmark.sentences]
     if benchmark.rivals:
         lines += ["", "peers:"]
-        cells = [
+        peers = [
             (r.name, r.detail, f"{1e3 * r.solve:.2f} ms", _short(r.error)) for r in benchmark.rivals
         ]
-        lines += aligned(cells)
+        lines += aligned(peers)
     return "\n".join(lines)
 
 

@@ -37,16 +37,10 @@ METHODS: dict[str, Callable[[int], Method]] = {
 
 @dataclass(frozen=True, eq=False)
 class MultipleShooting:
-    """Multiple shooting by `steps` equal steps of one method in every element.
-
-    `start` gives, from a problem, an expression (nz,) of its states, constants and parameters at
-    which Newton's method for the algebraic variables starts; without it the problem's own
-    `algebraic_start` does, or zeros.
-    """
+    """Multiple shooting by `steps` equal steps of one method in every element."""
 
     method: Method
     steps: int = 1
-    start: Callable[[BoundaryValueProblem], ca.SX] | None = None
 
     def __post_init__(self) -> None:
         """Refuse less than one step."""
@@ -115,9 +109,7 @@ class MultipleShooting:
 
     def _flows(self, bvp: BoundaryValueProblem) -> tuple[Flow, ...]:
         nx, nz = bvp.state.numel(), bvp.algebraic.numel()
-        start = bvp.algebraic_start if self.start is None else self.start(bvp)
-        if not start.numel():
-            start = ca.SX.zeros(nz)
+        start = bvp.algebraic_start if bvp.algebraic_start.numel() else ca.SX.zeros(nz)
         result = []
         for stage in stage_functions(bvp):
             step = self.method.step(stage, nx, start).repeated(self.steps)

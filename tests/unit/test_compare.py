@@ -152,6 +152,13 @@ def test_the_cheapest_pair_is_named(tolerance: float, sentence: str) -> None:
     assert cheapest(MADE_UP, tolerance).sentence == sentence
 
 
+def test_what_the_truth_cannot_tell_is_not_decided() -> None:
+    study = Comparison("made up", "a coarse solution", 1e-7, (1e-6, 1e-8), MADE_UP)
+    first, second = study.sentences
+    assert first == cheapest(MADE_UP, 1e-6).sentence
+    assert second.startswith("To 1e-08: not decided, the truth is known to 1e-07 only")
+
+
 def test_columns_are_stable(compared: Comparison, tmp_path: Path) -> None:
     assert COLUMNS == (
         *("pair", "formulation", "states", "transcription", "degree", "intervals", "steps"),
@@ -165,8 +172,10 @@ def test_columns_are_stable(compared: Comparison, tmp_path: Path) -> None:
     assert tuple(head) == COLUMNS
     assert len(rows) == len(compared.rows)
     saved = json.loads((tmp_path / "comparison.json").read_text(encoding="utf-8"))
-    keys = ("name", "truth", "tolerances", "rows", "cheapest", "sentences", "machine", "versions")
-    assert tuple(saved) == keys
+    assert tuple(saved) == (
+        *("name", "truth", "truth_error", "tolerances", "rows", "cheapest", "sentences"),
+        *("machine", "versions"),
+    )
     assert [tuple(r) for r in saved["rows"]] == [COLUMNS] * len(rows)
 
 
@@ -188,7 +197,7 @@ def test_the_figure_has_a_line_for_each_pair(compared: Comparison, tmp_path: Pat
 
 
 def test_figures_of_failures_alone_are_drawn() -> None:
-    study = Comparison("nothing", "unknown", (1e-4,), (MADE_UP[-1],))
+    study = Comparison("nothing", "unknown", 0.0, (1e-4,), (MADE_UP[-1],))
     assert plot_study(study.plain()).axes
 
 

@@ -254,15 +254,11 @@ def two_sheets() -> BoundaryValueProblem:
     return bvp(x, (phase,), lambda a, b: {"left": a - 1}, z=z)
 
 
-@pytest.mark.parametrize("own", [True, False], ids=["own", "problem"])
 @pytest.mark.parametrize("sign", [1.0, -1.0])
-def test_the_start_of_algebraic_variables_chooses_their_sheet(sign: float, own: bool) -> None:
-    problem, transcription = two_sheets(), MultipleShooting.named("gauss", 4)
-    if own:
-        transcription = replace(transcription, start=lambda bvp: 2 * sign * bvp.state)
-    else:
-        problem = replace(problem, algebraic_start=2 * sign * problem.state)
-    nlp = transcription.transcribe(problem, (5,))
+def test_the_start_of_algebraic_variables_chooses_their_sheet(sign: float) -> None:
+    problem = two_sheets()
+    problem = replace(problem, algebraic_start=2 * sign * problem.state)
+    nlp = MultipleShooting.named("gauss", 4).transcribe(problem, (5,))
     p = Mesh.uniform(5).widths
     report = Newton(nlp).solve(np.ones(nlp.unknowns), p)
     assert report.status is Status.CONVERGED
