@@ -178,7 +178,8 @@ def _study(
         from ribbonopt.views.comparison import save_figure
 
         # The place is known to be good before minutes are spent.
-        with staged_result(options.out) as stage:
+        own = frozenset(f"{name}.{kind}" for kind in ("csv", "json", "png"))
+        with staged_result(options.out, own) as stage:
             study = run()
             save_study(study, stage.folder, name)
             save_figure(study.plain(), stage.folder / f"{name}.png")

@@ -39,20 +39,23 @@ class Stage:
 
     folder: Path
     target: Path
+    own: frozenset[str]
 
     def commit(self, complete: bool) -> Path:
         """Put the files in place and return where: a failed solve never hides an older result."""
         target = self.target
         if not complete:
             target = target.with_name(f"{target.name}.not-converged")
-            _refuse_foreign(target)
+            _refuse_foreign(target, self.own)
         _replace(target, self.folder)
         return target
 
 
 @contextmanager
-def staged_result(target: str | Path) -> Iterator[Stage]:
+def staged_result(target: str | Path, own: frozenset[str] = OWN_FILES) -> Iterator[Stage]:
     """Give a stage to write into; what is not committed leaves no trace.
+
+    `own` names the files that an older result may consist of: what it would replace.
 
     Raises
     ------
@@ -60,7 +63,7 @@ def staged_result(target: str | Path) -> Iterator[Stage]:
         If `target` cannot be written, is a file, or holds files that are not a result.
     """
     target = Path(target)
-    _refuse_foreign(target)
+    _refuse_foreign(target, own)
     try:
         target.parent.mkdir(parents=True, exist_ok=True)
         folder = Path(tempfile.mkdtemp(prefix=f".{target.name}.", dir=target.parent))
@@ -68,7 +71,7 @@ def staged_result(target: str | Path) -> Iterator[Stage]:
     except OSError as error:
         raise _unwritable(target, error) from error
     try:
-        yield Stage(folder, target)
+        yield Stage(folder, target, own)
     finally:
         shutil.rmtree(folder, ignore_errors=True)
 
@@ -185,14 +188,14 @@ def _number(value: float | None) -> float:
     return float("nan") if value is None else value
 
 
-def _refuse_foreign(target: Path) -> None:
+def _refuse_foreign(target: Path, own: frozenset[str]) -> None:
     try:
         found = sorted(os.listdir(target)) if target.exists() else []
     except NotADirectoryError as error:
         raise OutputError(f"{target}: is a file, expected a folder for results") from error
     except OSError as error:
         raise OutputError(f"{target}: cannot be read ({error.strerror})") from error
-    foreign = [name for name in found if name not in OWN_FILES]
+    foreign = [name for name in found if name not in own]
     if foreign:
         raise OutputError(
             f"{target}: holds files that are not a result of ribbonopt ({', '.join(foreign[:3])}); "

@@ -143,14 +143,17 @@ class Solution:
     def integral(self, name: str) -> float:
         """Integral over s of a scalar named output, by the scheme's own quadrature."""
         start, end = self.scene.interval
-        weights = self.dense.stages(0)[2]
-        return float((end - start) * weights @ self.at_stages[name])
+        return float((end - start) * self._stages[2] @ self.at_stages[name])
+
+    @cached_property
+    def _stages(self) -> tuple[Array, Array, Array]:
+        return self.dense.stages(0)
 
     @cached_property
     def at_stages(self) -> dict[str, Array]:
         """All named outputs at the stages, where the solver itself evaluated the equations."""
         start, end = self.scene.interval
-        v, sigma, _ = self.dense.stages(0)
+        v, sigma, _ = self._stages
         nx = self.problem.state.numel()
         return self._named(v[:, :nx], v[:, nx:], start + (end - start) * sigma)
 

@@ -151,6 +151,14 @@ class Newton:
 
 
 @dataclass(frozen=True)
+class Reference:
+    """Loads at the start (lab frame) known from elsewhere: the truth for `ribbonopt compare`."""
+
+    n0: Numbers3
+    m0: Numbers3
+
+
+@dataclass(frozen=True)
 class Scene:
     """One ribbon: its law, its interval, its boundary conditions and how to solve it."""
 
@@ -166,3 +174,4 @@ class Scene:
     parameters: dict[str, float] = field(default_factory=dict)
     transcription: Collocation | Shooting = Collocation()
     solver: Auto | Ipopt | Newton = Auto()
+    reference: Reference | None = None

@@ -19,7 +19,7 @@ from ribbonopt.pipeline import Prepared
 from ribbonopt.scene import Scene
 from ribbonopt.summary import versions
 
-from .compare import TOLERANCES, UNKNOWN, Numbers, Reference, fine_solves, truth_of
+from .compare import TOLERANCES, UNKNOWN, Numbers, Reference, fine_solves, reference_of, truth_of
 from .machine import machine
 from .measure import Measurement, Profile, cost_of, errors_of, measure
 from .pairs import Mesh, Pair, pairs_of
@@ -130,6 +130,7 @@ def benchmark(
     fine = fine_solves(scene, ROUNDING)
     found = [one for pair in pairs for one in _on_grid(pair, scene, quick)]
     seconds, peer_seconds = _timed([built for _, built in found], peers, repeat)
+    reference = reference or reference_of(scene)
     truth = truth_of([*fine, *(one for one, _ in found)], reference)
     profile, source = (truth.profile, truth.source) if truth else (None, UNKNOWN)
     rows = tuple(

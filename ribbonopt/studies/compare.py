@@ -135,7 +135,8 @@ def compare(
     tolerances
         Relative errors of n(0), m(0) wanted; the tightest ends every ladder.
     reference
-        The truth, if known better than by the best solution.
+        The truth, if known better than by the best solution; else the scene's own reference, if it
+        has one.
 
     Raises
     ------
@@ -143,6 +144,7 @@ def compare(
         If a name is not known. What a pair refuses or fails to solve is a row.
     """
     pairs = pairs_of(formulations, transcriptions)
+    reference = reference or reference_of(scene)
     wanted = tuple(sorted(TOLERANCES if tolerances is None else tolerances, reverse=True))
     fine = fine_solves(scene, wanted[-1])
     provisional = truth_of(fine, reference)
@@ -153,6 +155,12 @@ def compare(
     rows = [row_of(measurement, profile) for measurement, _ in found]
     rows = _leaders_again(rows, [prepared for _, prepared in found], wanted)
     return Comparison(scene.name, source, error, wanted, tuple(rows))
+
+
+def reference_of(scene: Scene) -> Reference | None:
+    """Return the truth that a scene states, if it does."""
+    known = scene.reference
+    return None if known is None else Reference(known.n0, known.m0, "the reference of the scene")
 
 
 def fine_solves(scene: Scene, wanted: float) -> list[Measurement]:
