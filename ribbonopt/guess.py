@@ -7,7 +7,7 @@ unknowns of a discretised problem. A `Solution` is itself a guess.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Protocol
+from typing import TYPE_CHECKING, Protocol
 
 import casadi as ca
 import numpy as np
@@ -17,7 +17,9 @@ from ribbonopt.mechanics import RodFields
 from ribbonopt.mechanics.boundary import start_frame, start_position
 from ribbonopt.problem import BoundaryValueProblem, Ribbon, theta_of
 from ribbonopt.scene import LoadGuess, Scene
-from ribbonopt.transcription.structure import Blocks
+
+if TYPE_CHECKING:
+    from ribbonopt.transcription.structure import Blocks
 
 
 class Guess(Protocol):

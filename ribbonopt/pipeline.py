@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import time
 from dataclasses import dataclass, fields, replace
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import casadi as ca
 import numpy as np
@@ -23,8 +23,11 @@ from ribbonopt.problem import BoundaryValueProblem, Ribbon, pose, theta_of
 from ribbonopt.problem.examine import examine
 from ribbonopt.scene import LoadGuess, Scene, StrainGuess, validate_scene
 from ribbonopt.solution import Solution
-from ribbonopt.solvers import SOLVERS, Solver, SolveReport, Status
+from ribbonopt.solvers import SolveReport, Status, solver_named
 from ribbonopt.transcription import NLP, Mesh
+
+if TYPE_CHECKING:
+    from ribbonopt.solvers import Solver
 
 
 @dataclass(frozen=True, eq=False)
@@ -161,7 +164,7 @@ def prepare(scene: Scene) -> Prepared:
     examine(ribbon, problem, np.array(list(theta_of(scene).values())))
     nlp = discretize(scene, problem)
     options = {f.name: getattr(scene.solver, f.name) for f in fields(scene.solver)}
-    solver = SOLVERS[options.pop("type")](nlp, **options)
+    solver = solver_named(options.pop("type"), nlp, options)
     solver.build()
     seconds = time.perf_counter() - started
     return Prepared(scene, ribbon, problem, nlp, solver, seconds)

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import casadi as ca
 import numpy as np
@@ -15,7 +15,9 @@ from ribbonopt.mechanics import RodFields
 from ribbonopt.problem import BoundaryValueProblem
 from ribbonopt.scene import Scene
 from ribbonopt.solvers import Status
-from ribbonopt.transcription.structure import Output
+
+if TYPE_CHECKING:
+    from ribbonopt.transcription.structure import Output
 
 
 @dataclass(frozen=True, eq=False)

@@ -9,13 +9,16 @@ solution is the estimate.
 from __future__ import annotations
 
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ribbonopt.arrays import Array
 from ribbonopt.solution import Solution
 from ribbonopt.solvers.condense import CondensedSystem
-from ribbonopt.transcription import Blocks, Output
+
+if TYPE_CHECKING:
+    from ribbonopt.transcription import Blocks, Output
 
 ROUNDING = 1e-15
 

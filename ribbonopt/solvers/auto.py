@@ -8,13 +8,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 from ribbonopt.arrays import Array
 from ribbonopt.transcription import NLP
 
-from .ipopt import Ipopt
 from .newton import Newton
 from .status import SolveReport
+
+if TYPE_CHECKING:
+    from .ipopt import Ipopt
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,6 +34,8 @@ class Auto:
     @cached_property
     def ipopt(self) -> Ipopt:
         """For everything else."""
+        from .ipopt import Ipopt  # often never needed
+
         return Ipopt(self.nlp)
 
     def build(self) -> None:

@@ -14,12 +14,16 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ribbonopt.arrays import Array
 from ribbonopt.transcription.elimination import times
-from ribbonopt.transcription.structure import Blocks, Derivatives, Residuals
+from ribbonopt.transcription.residuals import Derivatives, Residuals
+
+if TYPE_CHECKING:
+    from ribbonopt.transcription.structure import Blocks
 
 DENSE = 80  # nodes of a phase are no longer reduced when their unknowns number less than this
 

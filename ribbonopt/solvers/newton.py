@@ -11,6 +11,7 @@ from __future__ import annotations
 import time
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -18,7 +19,10 @@ from ribbonopt.arrays import Array
 from ribbonopt.transcription import NLP
 
 from .status import SolveReport, Status
-from .systems import ElementSystem, SparseSystem, System
+from .systems import ElementSystem, SparseSystem
+
+if TYPE_CHECKING:
+    from .protocols import System
 
 KEEP = 0.1
 SMALLEST_DAMPING = 1e-4

@@ -3,42 +3,19 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Any, Protocol
+from typing import TYPE_CHECKING
 
 import casadi as ca
 import numpy as np
 
 from ribbonopt.arrays import Array
 from ribbonopt.transcription import NLP
-from ribbonopt.transcription.structure import Blocks, Derivatives, Residuals
+from ribbonopt.transcription.residuals import Derivatives, Residuals
 
 from .condense import CondensedSystem
 
-
-class Factors(Protocol):
-    """A factored Newton matrix."""
-
-    def solve(self, residuals: Any) -> Array:
-        """Return the Newton step (nw,)."""
-
-
-class System(Protocol):
-    """A square system: what it calls residuals and derivatives is its own business."""
-
-    def build(self) -> None:
-        """Build the functions now rather than at the first evaluation."""
-
-    def residuals(self, w: Array, p: Array) -> Any:
-        """Return the residuals at w."""
-
-    def linearize(self, w: Array, p: Array) -> tuple[Any, Any]:
-        """Return residuals and derivatives at w."""
-
-    def factor(self, derivatives: Any, p: Array) -> Factors:
-        """Return the factors of the Jacobian; LinAlgError where it is singular."""
-
-    def vector(self, w: Array, p: Array) -> Array:
-        """Return the residuals in the order of the NLP's constraints."""
+if TYPE_CHECKING:
+    from ribbonopt.transcription.structure import Blocks
 
 
 @dataclass(frozen=True, eq=False)

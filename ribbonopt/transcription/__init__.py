@@ -1,6 +1,6 @@
 """Transcription: boundary-value problem and mesh to NLP; knows nothing of ribbons.
 
-Multiple shooting is imported when first used.
+Multiple shooting, and the interfaces for the type checker, are imported when first used.
 """
 
 from typing import TYPE_CHECKING, Any
@@ -9,11 +9,11 @@ from .collocation import Collocation
 from .layout import Layout
 from .mesh import Mesh
 from .nlp import NLP, NLPFunctions
-from .structure import Blocks, Output
 from .tableaus import Tableau, gauss, lobatto, radau
 
 if TYPE_CHECKING:
     from .shooting import MultipleShooting
+    from .structure import Blocks, Output
 
 __all__ = [
     "NLP",
@@ -36,4 +36,8 @@ def __getattr__(name: str) -> Any:
         from .shooting import MultipleShooting
 
         return MultipleShooting
+    if name in ("Blocks", "Output"):
+        from . import structure
+
+        return getattr(structure, name)
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

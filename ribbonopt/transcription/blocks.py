@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import casadi as ca
 import numpy as np
@@ -18,8 +19,11 @@ from .elimination import StageElimination
 from .functions import StageFunctions
 from .layout import Layout
 from .points import Conditions
-from .structure import Derivatives, Output, Residuals
+from .residuals import Derivatives, Residuals
 from .tableaus import Tableau, next_tableau
+
+if TYPE_CHECKING:
+    from .structure import Output
 
 
 @dataclass(frozen=True, eq=False)

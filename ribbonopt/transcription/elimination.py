@@ -9,7 +9,7 @@ import numpy as np
 from ribbonopt.arrays import Array
 
 from .layout import Layout
-from .structure import Derivatives, Residuals
+from .residuals import Derivatives, Residuals
 from .tableaus import Tableau
 
 

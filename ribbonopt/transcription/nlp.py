@@ -11,6 +11,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import casadi as ca
 import numpy as np
@@ -19,7 +20,9 @@ from numpy.typing import NDArray
 from ribbonopt.errors import TranscriptionError
 
 from .layout import Layout
-from .structure import Blocks
+
+if TYPE_CHECKING:
+    from .structure import Blocks
 
 
 @dataclass(frozen=True, eq=False)

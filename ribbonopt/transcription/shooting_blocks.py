@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import casadi as ca
 import numpy as np
@@ -18,8 +19,11 @@ from .elimination import NothingToEliminate
 from .functions import StageFunctions
 from .layout import Layout
 from .points import Conditions
+from .residuals import Derivatives, Residuals
 from .steps import Method, Step
-from .structure import Derivatives, Output, Residuals
+
+if TYPE_CHECKING:
+    from .structure import Output
 
 
 @dataclass(frozen=True, eq=False)

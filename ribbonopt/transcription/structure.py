@@ -5,50 +5,20 @@ derivatives element by element, an `Elimination` reduces an element to one relat
 nodes, an `Output` reads a solution between the nodes. Collocation (`ElementBlocks`, `DenseOutput`)
 and shooting (`ShootingBlocks`, `ShootingOutput`) fulfil these interfaces.
 
+These interfaces are for the type checker; nothing imports them when it runs.
+
 Shapes: N elements, K stages (none in shooting), nx states, nv = nx + nz unknowns of a stage, ne =
 nx + ng + nh equations of a stage, nc constants, P + 1 points.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Protocol
-
-import numpy as np
 
 from ribbonopt.arrays import Array
 
 from .layout import Layout
-
-
-@dataclass(frozen=True, eq=False)
-class Residuals:
-    """Residuals of one iterate.
-
-    `stages` (N, K, ne): equations of the stages; `nodes` (N, nx): x_{e+1} minus what element e
-    makes of its first node; `conditions` (nb,).
-    """
-
-    stages: Array
-    nodes: Array
-    conditions: Array
-
-    def vector(self) -> Array:
-        """All residuals in the order of the layout."""
-        count = len(self.nodes)
-        elements = np.hstack([self.stages.reshape(count, -1), self.nodes])
-        return np.concatenate([elements.ravel(), self.conditions])
-
-
-@dataclass(frozen=True, eq=False)
-class Derivatives:
-    """Derivative blocks: `stages` (N, K, ne, nv + nc) and `conditions` (nb, (P+1) nx + nc).
-
-    Without stages, `stages` (N, 1, nx, nx + nc) holds the derivatives of an element's step.
-    """
-
-    stages: Array
-    conditions: Array
+from .residuals import Derivatives, Residuals
 
 
 class Elimination(Protocol):

@@ -179,3 +179,12 @@ def test_calls_from_python_leave_the_interpreter_alone(half: Path) -> None:
     command = [sys.executable, "-c", code]
     done = subprocess.run(command, capture_output=True, text=True, check=False, env=environment())
     assert done.returncode == 0, done.stderr
+
+
+def test_what_a_process_prints_of_a_failure_arrives_whole() -> None:
+    """The process leaves without ceremony: nothing of its output may stay behind."""
+    command = [sys.executable, "-m", "ribbonopt", "solve", "nowhere.yaml", "--json"]
+    done = subprocess.run(command, capture_output=True, text=True, check=False)
+    assert done.returncode == 2
+    assert json.loads(done.stdout)["status"] == "bad_input"
+    assert "nowhere.yaml: no such file" in done.stderr
