@@ -32,5 +32,5 @@ def check_scene(scene: Scene) -> dict[str, Any]:
         "unknowns": unknown_names(ribbon),
         "conditions": list(problem.conditions),
         "size": nlp.unknowns,
-        "skipped": list(skipped(scene)),
+        "skipped": list(skipped(scene, problem)),
     }

@@ -79,7 +79,9 @@ class Prepared:
                 {"step": f"guess: {_words(scene.guess)}", "seconds": guessed - started},
                 *(self._step(attempt) for attempt in report.attempts),
             ),
-            skipped=skipped(scene, tuple(attempt.solver for attempt in report.attempts)),
+            skipped=skipped(
+                scene, self.problem, tuple(attempt.solver for attempt in report.attempts)
+            ),
         )
         if report.status.converged:
             solution = _verified(solution, self.ribbon)
@@ -170,7 +172,9 @@ def prepare(scene: Scene) -> Prepared:
     return Prepared(scene, ribbon, problem, nlp, solver, seconds)
 
 
-def skipped(scene: Scene, solvers: tuple[str, ...] = ()) -> tuple[str, ...]:
+def skipped(
+    scene: Scene, problem: BoundaryValueProblem, solvers: tuple[str, ...] = ()
+) -> tuple[str, ...]:
     """Say what a scene does not need and what is therefore not made, each with its reason.
 
     `solvers` are those that were used; before a solve, none.
@@ -179,8 +183,9 @@ def skipped(scene: Scene, solvers: tuple[str, ...] = ()) -> tuple[str, ...]:
     if scene.states == "reduced":
         result.append("force and moment as states (no loads: n is constant, m follows from r)")
         result.append("nine director components (a unit quaternion carries the frame)")
-    result.append("second derivatives (square equations, nothing is minimised)")
-    if scene.solver.type != "ipopt" and "ipopt" not in solvers:
+    if all(phase.cost is None for phase in problem.phases):
+        result.append("second derivatives (nothing is minimised)")
+    if problem.square and scene.solver.type != "ipopt" and "ipopt" not in solvers:
         result.append("IPOPT and the sparse Jacobian (Newton condenses element by element)")
     result.append("mesh refinement and further formulations (not asked for)")
     return tuple(result)

@@ -25,6 +25,7 @@ def report(summary: Mapping[str, Any]) -> str:
         _row("force n(0), lab frame", s["n0"], errors["n0"]),
         _row("moment m(0), lab frame", s["m0"], errors["m0"]),
         _row("strains u(0), directors", s["u0"], errors["u0"]),
+        *(["  (force and moment recovered from the costates)"] * (s["loads_from"] == "costates")),
         _row("energy", s["energy"], errors["energy"]),
         _row("invariant H(0)", s["H0"], errors["H0"]),
         "",

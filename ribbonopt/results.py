@@ -21,7 +21,7 @@ import numpy as np
 
 from ribbonopt.discretize import discretize
 from ribbonopt.errors import OutputError
-from ribbonopt.problem import pose, theta_of
+from ribbonopt.problem import pose
 from ribbonopt.scene import dump_scene, load_scene
 from ribbonopt.solution import Solution, Verification
 from ribbonopt.solvers import Status
@@ -80,7 +80,7 @@ def save_solution(solution: Solution, folder: str | Path) -> None:
     """Write the files of a solution into an existing folder.
 
     `solution.npz` holds rows along s: `s` (k,), `r`, `d1`, `d2`, `d3`, `n`, `m` (k, 3, lab frame),
-    `u` (k, 3, along the directors), and the unknowns `w` and `widths` that a reload needs.
+    `u` (k, 3, along the directors), and what a reload needs: `w`, `widths`, `theta`.
 
     Raises
     ------
@@ -101,7 +101,7 @@ def _write(solution: Solution, folder: Path) -> None:
     dense = solution.dense
     arrays: dict[str, Any] = {"s": s} | {name: rows[name] for name in names}
     arrays |= {"w": dense.w, "widths": dense.blocks.widths(dense.p)}
-    arrays["multipliers"] = solution.multipliers
+    arrays |= {"theta": dense.theta, "multipliers": solution.multipliers}
     np.savez(
         folder / "solution.npz",
         **arrays,
@@ -135,18 +135,20 @@ def load_solution(path: str | Path) -> Solution:
     try:
         summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
         with open(folder / "solution.npz", "rb") as file, np.load(file) as data:
-            w, widths, multipliers = (data[k] for k in ("w", "widths", "multipliers"))
+            names = ("w", "widths", "theta", "multipliers")
+            w, widths, theta, multipliers = (data[name] for name in names)
         status = Status[summary["status"].upper()]
     except (ValueError, KeyError, TypeError, OSError, EOFError, BadZipFile) as error:
         raise OutputError(f"{folder}: damaged result ({error}); solve the scene again") from error
     _, problem = pose(scene)
     nlp = discretize(scene, problem, len(widths))
-    if len(w) != nlp.unknowns:
+    if len(w) != nlp.unknowns or len(theta) != problem.parameters.numel():
         raise OutputError(
             f"{folder}: damaged result ({len(w)} unknowns, its scene has {nlp.unknowns}); "
             "solve the scene again"
         )
-    p = np.concatenate([list(theta_of(scene).values()), widths])
+    # The saved parameters, because some follow from the solution (loads from costates).
+    p = np.concatenate([theta, widths])
     drift = {k: _number(v) for k, v in summary["invariant_drift"].items()}
     keys = ("worst_condition", "residual_between_nodes", "law_residual")
     worst, between, law = (_number(summary[key]) for key in keys)

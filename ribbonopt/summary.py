@@ -37,6 +37,7 @@ def summarize(solution: Solution) -> dict[str, Any]:
         "law": law,
         "parameters": dict(scene.parameters),
         "interval": list(scene.interval),
+        "loads_from": "costates" if solution.problem.recovered else "unknowns",
         "n0": start["n"].tolist(),
         "m0": start["m"].tolist(),
         "u0": start["u"].tolist(),

@@ -11,10 +11,14 @@ from references import HALF_MOEBIUS, REGULARIZED
 
 from ribbonopt.accuracy.estimate import estimate_error
 from ribbonopt.accuracy.verify import unverified, verify
+from ribbonopt.check import check_scene
 from ribbonopt.errors import ModelError
 from ribbonopt.pipeline import Prepared, prepare
+from ribbonopt.report import report
+from ribbonopt.results import load_solution, save_solution
 from ribbonopt.scene import load_scene
 from ribbonopt.solution import Solution
+from ribbonopt.summary import summarize
 
 Solved = Callable[..., Solution]
 
@@ -179,3 +183,23 @@ def test_law_drifts_where_it_is_only_differentiated(solved: Solved) -> None:
     ]
     assert drifts[0] > drifts[1] > drifts[2] > 0
     assert solved("moebius_half", FREE).verification.law_residual < 1e-14
+
+
+def test_loads_from_costates_are_said_saved_and_loaded(solved: Solved, tmp_path: Path) -> None:
+    found = solved("moebius_half", ENERGY)
+    assert summarize(found)["loads_from"] == "costates"
+    assert "recovered from the costates" in report(summarize(found))
+    assert "recovered" not in report(summarize(solved("moebius_half")))
+    save_solution(found, tmp_path)
+    np.testing.assert_array_equal(load_solution(tmp_path).n0, found.n0)
+
+
+def test_what_is_skipped_depends_on_the_formulation(configs: Path) -> None:
+    def said(formulation: str) -> str:
+        scene = load_scene(configs / "moebius_half.yaml", [formulation])
+        return " ".join(check_scene(scene)["skipped"])
+
+    assert "second derivatives" in said("formulation=inverted")
+    assert "IPOPT" in said("formulation=inverted")
+    assert "IPOPT" not in said(BOUNDED)
+    assert "second derivatives" not in said(ENERGY)
