@@ -29,7 +29,7 @@ def check_scene(scene: Scene) -> dict[str, Any]:
     nlp = discretize(scene, problem)
     return {
         "name": scene.name,
-        "unknowns": unknown_names(ribbon),
+        "unknowns": unknown_names(ribbon.model),
         "conditions": list(problem.conditions),
         "size": nlp.unknowns,
         "skipped": list(skipped(scene, problem)),

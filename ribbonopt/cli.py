@@ -25,31 +25,39 @@ if TYPE_CHECKING:
     from ribbonopt.studies.benchmark import Benchmark
     from ribbonopt.studies.compare import Comparison
 
-BAD_INPUT = 2
-NOT_CONVERGED = 3
-INTERRUPTED = 130
-READER_GONE = 141
+BAD_INPUT, NOT_CONVERGED = 2, 3
+INTERRUPTED, READER_GONE = 130, 141
 
 
 def run() -> NoReturn:
     """Run the command line in a process of its own; entry point of `ribbonopt`."""
     # Before numpy is loaded: threads cost small matrices more than they bring.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
-    status = main()
-    sys.stdout.flush()
-    os._exit(status)  # taking all objects apart would cost an eighth more
+    os._exit(main())  # taking all objects apart would cost an eighth more
 
 
 def main(arguments: Sequence[str] | None = None) -> int:
-    """Run one command and return its exit status."""
+    """Run one command and return its exit status; what it printed has left."""
     options = parser().parse_args(arguments)
     # Commands are short: collecting garbage on the way costs a tenth of the time, frees nothing.
     collecting = gc.isenabled()
     gc.disable()
     try:
-        status = VERBS[options.verb](options)
+        status = _run(options)
         sys.stdout.flush()
         return status
+    except BrokenPipeError:
+        # The reader of stdout has left: nobody to tell, and nothing more to flush at exit.
+        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
+        return READER_GONE
+    finally:
+        if collecting:
+            gc.enable()
+
+
+def _run(options: argparse.Namespace) -> int:
+    try:
+        return VERBS[options.verb](options)
     except ConvergenceError as error:
         return _fail(options, str(error), error.status, NOT_CONVERGED)
     except ModelError as error:
@@ -59,13 +67,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
     except KeyboardInterrupt:
         print("ribbonopt: interrupted; nothing written", file=sys.stderr)
         return INTERRUPTED
-    except BrokenPipeError:
-        # The reader of stdout has left: nobody to tell, and nothing more to flush at exit.
-        os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
-        return READER_GONE
-    finally:
-        if collecting:
-            gc.enable()
 
 
 def _solve(options: argparse.Namespace) -> int:

@@ -9,7 +9,7 @@ import numpy as np
 
 from ribbonopt.arrays import Array
 from ribbonopt.errors import ModelError
-from ribbonopt.mechanics import MODELS, RodFields
+from ribbonopt.mechanics import MODELS, RodFields, RodModel
 
 from .contract import BoundaryValueProblem
 from .ribbon import Ribbon
@@ -28,8 +28,7 @@ def examine(ribbon: Ribbon, problem: BoundaryValueProblem, theta: Array) -> None
     """
     names, samples = _linearized(ribbon, problem, theta)
     _refuse_repeated(names, samples)
-    reduced = MODELS["reduced"]
-    excess = len(names) - len(reduced.states) - len(reduced.constants)
+    excess = len(names) - sum(unknown_names(MODELS["reduced"]).values())
     if excess:
         raise ModelError(_count_message(names, excess), "boundary")
     jacobian = samples[0][1]
@@ -45,15 +44,14 @@ def examine(ribbon: Ribbon, problem: BoundaryValueProblem, theta: Array) -> None
         )
 
 
-def unknown_names(ribbon: Ribbon) -> dict[str, int]:
+def unknown_names(model: RodModel) -> dict[str, int]:
     """Unknown numbers that the conditions must determine, by what they stand for."""
-    model = ribbon.model
-    counts = {"position": 3, "directors": len(model.orientation.names), "force": 3, "moment": 3}
-    return counts
+    return {"position": 3, "directors": len(model.orientation.names), "force": 3, "moment": 3}
 
 
 def _count_message(names: list[str], excess: int) -> str:
-    unknowns = "position 3, directors 4, force 3, moment 3"
+    counts = unknown_names(MODELS["reduced"])
+    unknowns = ", ".join(f"{name} {count}" for name, count in counts.items())
     own = [name for name in names if name.startswith("start: ")]
     listed = "\n  ".join(name for name in names if name not in own)
     remedy = (

@@ -188,3 +188,13 @@ def test_what_a_process_prints_of_a_failure_arrives_whole() -> None:
     assert done.returncode == 2
     assert json.loads(done.stdout)["status"] == "bad_input"
     assert "nowhere.yaml: no such file" in done.stderr
+
+
+def test_a_reader_that_leaves_before_a_failure_is_no_error() -> None:
+    reading, writing = os.pipe()
+    os.close(reading)
+    command = [sys.executable, "-m", "ribbonopt", "solve", "nowhere.yaml", "--json"]
+    done = subprocess.run(command, stdout=writing, stderr=subprocess.PIPE, text=True, check=False)
+    os.close(writing)
+    assert done.returncode == 141
+    assert "Traceback" not in done.stderr

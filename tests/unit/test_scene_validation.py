@@ -72,9 +72,9 @@ def test_guess_is_picked_by_its_keys() -> None:
 def test_instances_are_checked_again() -> None:
     scene = validate(Scene, GOOD)
     assert validate(Scene, scene) == scene
-    loose = dataclasses.replace(scene, interval=[0, 1], law=Regularized(epsilon=2))  # type: ignore
+    loose = dataclasses.replace(scene, interval=[0, 1], law=Regularized(epsilon=2))
     assert validate(Scene, loose).interval == (0.0, 1.0)
-    wrong = dataclasses.replace(scene, law=Regularized(epsilon=-1), name=3)  # type: ignore
+    wrong = dataclasses.replace(scene, law=Regularized(epsilon=-1), name=3)
     with pytest.raises(InvalidSceneError) as caught:
         validate(Scene, wrong)
     assert [p.path for p in caught.value.problems] == [("name",), ("law", "epsilon")]
