@@ -246,6 +246,3 @@ VERBS: dict[str, Callable[[argparse.Namespace], int]] = {
     "schema": _schema,
     "plot": _plot,
 }
-
-if __name__ == "__main__":
-    run()
