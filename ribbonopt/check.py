@@ -7,10 +7,12 @@ from typing import Any
 import numpy as np
 
 from ribbonopt.discretize import discretize
-from ribbonopt.pipeline import refuse_unreachable, skipped
+from ribbonopt.pipeline import refuse_unreachable
 from ribbonopt.problem import pose, theta_of
 from ribbonopt.problem.examine import examine, unknown_names
 from ribbonopt.scene import Scene
+from ribbonopt.scene.units import in_special_units
+from ribbonopt.skipped import skipped
 
 
 def check_scene(scene: Scene) -> dict[str, Any]:
@@ -23,8 +25,9 @@ def check_scene(scene: Scene) -> dict[str, Any]:
     ConvergenceError
         If the prescribed ends cannot be reached.
     """
-    ribbon, problem = pose(scene)
-    examine(ribbon, problem, np.array(list(theta_of(scene).values())))
+    posed = in_special_units(scene)
+    ribbon, problem = pose(posed)
+    examine(ribbon, problem, np.array(list(theta_of(posed).values())))
     refuse_unreachable(scene)
     nlp = discretize(scene, problem)
     return {

@@ -85,7 +85,7 @@ def _solve(options: argparse.Namespace) -> int:
             from ribbonopt.views import save_figures
 
             save_figures(solution, stage.folder)
-        written = stage.commit(complete=solution.verified)
+        written = stage.commit(solution.status.failure)
     return _tell(options, solution, import_seconds, written)
 
 
@@ -184,7 +184,7 @@ def _study(
             study = run()
             save_study(study, stage.folder, name)
             save_figure(study.plain(), stage.folder / f"{name}.png")
-            stage.commit(complete=True)
+            stage.commit()
     else:
         study = run()
     if options.json:

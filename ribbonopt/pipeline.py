@@ -1,4 +1,4 @@
-"""The path: scene, boundary-value problem, NLP, solver, solution, checks.
+"""The path: scene, boundary-value problem, NLP, start, solver, solution, checks.
 
 `solve(scene)` walks it once. `prepare(scene)` keeps what depends on the structure of a scene only,
 so that other numbers (epsilon, loads, prescribed values, meshes) are solved without building again.
@@ -8,31 +8,36 @@ from __future__ import annotations
 
 import time
 from dataclasses import dataclass, fields, replace
-from typing import TYPE_CHECKING, Any
+from functools import cached_property
+from typing import TYPE_CHECKING
 
-import casadi as ca
 import numpy as np
 
-from ribbonopt.accuracy.resistance import where_it_resists
-from ribbonopt.accuracy.verify import unverified, verify
+from ribbonopt.attempts import Attempts
 from ribbonopt.discretize import discretize
 from ribbonopt.errors import ConvergenceError, ModelError
-from ribbonopt.guess import ConstantStrains, Guess, IntegratedLoads, initial_unknowns
+from ribbonopt.guess import Guess, guess_of, initial_unknowns, words
 from ribbonopt.mechanics.boundary import gap_between_ends
 from ribbonopt.problem import BoundaryValueProblem, Ribbon, pose, theta_of
 from ribbonopt.problem.examine import examine
-from ribbonopt.scene import LoadGuess, Scene, StrainGuess, validate_scene
+from ribbonopt.scene import Scene, SolutionGuess, validate_scene
+from ribbonopt.scene.units import in_special_units
+from ribbonopt.skipped import skipped
 from ribbonopt.solution import Solution
-from ribbonopt.solvers import SolveReport, Status, solver_named
+from ribbonopt.solvers import Status, solver_named
 from ribbonopt.transcription import NLP, Mesh
 
 if TYPE_CHECKING:
     from ribbonopt.solvers import Solver
+    from ribbonopt.starts.automatic import Automatic
 
 
 @dataclass(frozen=True, eq=False)
 class Prepared:
-    """A scene's structure, built: solves any scene that differs from it in numbers only."""
+    """A scene's structure, built: solves any scene that differs from it in numbers only.
+
+    Scenes are in the user's units here; what is built of them is in units Dw = L = 1.
+    """
 
     scene: Scene
     ribbon: Ribbon
@@ -41,7 +46,9 @@ class Prepared:
     solver: Solver
     seconds: float
 
-    def solve(self, scene: Scene | None = None, guess: Guess | None = None) -> Solution:
+    def solve(
+        self, scene: Scene | None = None, guess: Guess | None = None, *, fallback: bool = True
+    ) -> Solution:
         """Solve a scene of this structure (default: the prepared one).
 
         Parameters
@@ -50,6 +57,8 @@ class Prepared:
             Numbers; must agree with the prepared scene in everything else.
         guess
             Where to start, instead of the scene's own guess.
+        fallback
+            Whether to go on from the automatic start where that leads nowhere.
 
         Raises
         ------
@@ -61,36 +70,13 @@ class Prepared:
         started = time.perf_counter()
         scene = scene or self.scene
         refuse_unreachable(scene)
-        w, p = self.start(scene, guess)
-        guessed = time.perf_counter()
-        report = self.solver.solve(w, p)
-        if report.status.converged and self.problem.recovered:
-            p = self._with_recovered(report, p)
-        solution = Solution(
-            scene=scene,
-            problem=self.problem,
-            dense=self.nlp.blocks.dense(report.w, p),
-            status=report.status,
-            message=report.status.value,
-            iterations=sum(attempt.iterations for attempt in report.attempts),
-            verification=unverified(),
-            multipliers=report.multipliers,
-            path=(
-                {"step": f"guess: {_words(scene.guess)}", "seconds": guessed - started},
-                *(self._step(attempt) for attempt in report.attempts),
-            ),
-            skipped=skipped(
-                scene, self.problem, tuple(attempt.solver for attempt in report.attempts)
-            ),
-        )
-        if report.status.converged:
-            solution = _verified(solution, self.ribbon)
-        else:
-            where = where_it_resists(report.residuals, self.nlp.layout, solution)
-            solution = replace(solution, message=f"{report.status.value}. {where}")
+        attempts = self._attempts(scene)
+        self._try_all(attempts, guess, fallback)
+        best = attempts.best
+        if best is None:
+            raise ConvergenceError(Status.NO_START.value, Status.NO_START.name.lower())
         total = time.perf_counter() - started + self.seconds
-        evaluate = sum(attempt.evaluate for attempt in report.attempts)
-        linear = sum(attempt.linear for attempt in report.attempts)
+        evaluate, linear = attempts.seconds
         timings = {
             "build": self.seconds,
             "evaluate": evaluate,
@@ -98,42 +84,77 @@ class Prepared:
             "rest": total - self.seconds - evaluate - linear,
             "total": total,
         }
-        return replace(solution, timings=timings)
+        return replace(
+            best,
+            timings=timings,
+            path=tuple(attempts.path),
+            iterations=attempts.iterations,
+            skipped=skipped(scene, self.problem, attempts.solvers),
+        )
+
+    def polish(self, guess: Guess) -> Solution:
+        """Solve the prepared scene from one guess that is thought to be near."""
+        attempts = self._attempts(self.scene)
+        attempts.run(guess, quick=True)
+        assert attempts.best is not None
+        return attempts.best
 
     def start(
         self, scene: Scene | None = None, guess: Guess | None = None
     ) -> tuple[np.ndarray, np.ndarray]:
         """Return the unknowns w of the guess and the parameters p = [theta, widths] of a scene."""
         scene = scene or self.scene
-        mesh = Mesh.uniform(scene.transcription.intervals)
-        p = np.concatenate([self._theta(scene), mesh.widths])
-        source = guess or _guess(scene, self.ribbon)
+        p = self._parameters(scene)
+        source = guess or self.guess(scene)
         return initial_unknowns(source, self.ribbon, self.problem, self.nlp.blocks, p), p
 
-    def _with_recovered(self, report: SolveReport, p: np.ndarray) -> np.ndarray:
-        """Parameters with those put in that follow from the costates."""
-        problem, layout = self.problem, self.nlp.layout
-        inputs = [problem.points[0], problem.costate, problem.parameters]
-        function = ca.Function("recover", inputs, [ca.vertcat(*problem.recovered.values())])
-        nodes, _, _ = layout.unpack(report.w)
-        theta = p[: problem.parameters.numel()]
-        values = function(nodes[0], layout.start_costate(report.multipliers), theta)
-        where = [problem.parameter_names.index(name) for name in problem.recovered]
-        result: np.ndarray = p.copy()
-        result[where] = np.array(values).ravel()
-        return result
+    def guess(self, scene: Scene | None = None) -> Guess:
+        """Return the first guess for a scene: its own, or the first of the automatic start."""
+        scene = in_special_units(scene or self.scene)
+        own = self._own_guess(scene) or next(self.automatic.guesses(scene, []), None)
+        if own is None:
+            raise ConvergenceError(Status.NO_START.value, Status.NO_START.name.lower())
+        return own
 
-    def _step(self, attempt: SolveReport) -> dict[str, Any]:
-        name, count = self.nlp.blocks.name, self.nlp.layout.element_count
-        outcome = "" if attempt.status.converged else f" ({attempt.status.name.lower()})"
-        return {
-            "step": f"{attempt.solver}, {name} on {count} intervals{outcome}",
-            "iterations": attempt.iterations,
-            "seconds": attempt.total,
-        }
+    @cached_property
+    def automatic(self) -> Automatic:
+        """What is built for the automatic start, when it is first needed."""
+        from ribbonopt.starts.automatic import Automatic  # IPOPT, which many scenes do without
 
-    def _theta(self, scene: Scene) -> np.ndarray:
-        values = theta_of(scene)
+        return Automatic(in_special_units(self.scene))
+
+    def _try_all(self, attempts: Attempts, given: Guess | None, fallback: bool) -> None:
+        """Try the guess that is given or the scene's, then the automatic ones, until one leads on."""
+        scene, path = in_special_units(attempts.scene), attempts.path
+        started = time.perf_counter()
+        own = given or self._own_guess(scene)
+        if own is not None:
+            step = "guess: given" if given else f"guess: {words(scene.guess)}"
+            path.append({"step": step, "seconds": time.perf_counter() - started})
+            if attempts.run(own) or not fallback:
+                return
+        first: Guess | None = None
+        for guess in self.automatic.guesses(scene, path):
+            if attempts.run(guess, quick=True):
+                return
+            first = first or guess
+        if first is not None:
+            attempts.run(first)  # all that was spared to be quick
+
+    def _own_guess(self, scene: Scene) -> Guess | None:
+        if isinstance(scene.guess, SolutionGuess):
+            from ribbonopt.results import load_solution  # reading files costs imports
+
+            return load_solution(scene.guess.solution)
+        return guess_of(scene, self.ribbon)
+
+    def _attempts(self, scene: Scene) -> Attempts:
+        parts = self.ribbon, self.problem, self.nlp, self.solver
+        return Attempts(scene, self._parameters(scene), *parts)
+
+    def _parameters(self, scene: Scene) -> np.ndarray:
+        """Parameters p = [theta, widths] of a scene of this structure."""
+        values = theta_of(in_special_units(scene))
         same = tuple(values) == self.problem.parameter_names and all(
             getattr(scene, f.name) == getattr(self.scene, f.name)
             for f in fields(Scene)
@@ -141,11 +162,13 @@ class Prepared:
         )
         if not same or scene.law.type != self.scene.law.type:
             raise ModelError("this scene differs from the prepared one in more than its numbers")
-        return np.array(list(values.values()))
+        return np.append(list(values.values()), Mesh.uniform(scene.transcription.intervals).widths)
 
 
 def solve(scene: Scene) -> Solution:
-    """Solve a scene: the whole path once.
+    """Solve a scene: the whole path once, or from as many `starts` as the scene says.
+
+    Of several distinct equilibria the one of least energy is returned, with `others`.
 
     Raises
     ------
@@ -155,67 +178,29 @@ def solve(scene: Scene) -> Solution:
         If the prescribed ends cannot be reached. A solve that merely fails to converge returns a
         Solution whose status and message say so.
     """
-    return prepare(scene).solve()
+    prepared = prepare(scene)
+    solution = prepared.solve()
+    if prepared.scene.starts == 1:
+        return solution
+    from ribbonopt.starts.several import equilibria  # few scenes ask for it
+
+    posed = in_special_units(prepared.scene)
+    return equilibria(posed, solution, prepared.automatic, prepared.polish)
 
 
 def prepare(scene: Scene) -> Prepared:
     """Build everything of a scene that does not depend on its numbers."""
     started = time.perf_counter()
     scene = validate_scene(scene)
-    ribbon, problem = pose(scene)
-    examine(ribbon, problem, np.array(list(theta_of(scene).values())))
+    posed = in_special_units(scene)
+    ribbon, problem = pose(posed)
+    examine(ribbon, problem, np.array(list(theta_of(posed).values())))
     nlp = discretize(scene, problem)
     options = {f.name: getattr(scene.solver, f.name) for f in fields(scene.solver)}
     solver = solver_named(options.pop("type"), nlp, options)
     solver.build()
     seconds = time.perf_counter() - started
     return Prepared(scene, ribbon, problem, nlp, solver, seconds)
-
-
-def skipped(
-    scene: Scene, problem: BoundaryValueProblem, solvers: tuple[str, ...] = ()
-) -> tuple[str, ...]:
-    """Say what a scene does not need and what is therefore not made, each with its reason.
-
-    `solvers` are those that were used; before a solve, none.
-    """
-    result = []
-    if scene.states == "reduced":
-        result.append("force and moment as states (no loads: n is constant, m follows from r)")
-        result.append("nine director components (a unit quaternion carries the frame)")
-    if all(phase.cost is None for phase in problem.phases):
-        result.append("second derivatives (nothing is minimised)")
-    if problem.square and scene.solver.type != "ipopt" and "ipopt" not in solvers:
-        result.append("IPOPT and the sparse Jacobian (Newton condenses element by element)")
-    result.append("mesh refinement and further formulations (not asked for)")
-    return tuple(result)
-
-
-def _verified(solution: Solution, ribbon: Ribbon) -> Solution:
-    verification = verify(solution, ribbon)
-    solution = replace(solution, verification=verification)
-    if not verification.problems:
-        return solution
-    message = f"{Status.WRONG_SOLUTION.value}. " + "; ".join(verification.problems)
-    return replace(solution, status=Status.WRONG_SOLUTION, message=message)
-
-
-def _guess(scene: Scene, ribbon: Ribbon) -> Guess:
-    if isinstance(scene.guess, LoadGuess):
-        return IntegratedLoads(ribbon, scene, scene.guess)
-    if isinstance(scene.guess, StrainGuess):
-        return ConstantStrains(ribbon, scene, scene.guess.strains)
-    from ribbonopt.results import load_solution  # reading files costs imports
-
-    return load_solution(scene.guess.solution)
-
-
-def _words(guess: Any) -> str:
-    if isinstance(guess, LoadGuess):
-        return "force and moment integrated from the start"
-    if isinstance(guess, StrainGuess):
-        return "constant strains"
-    return f"saved solution {guess.solution}"
 
 
 def refuse_unreachable(scene: Scene) -> None:

@@ -6,6 +6,8 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+SMALL = 1e-3  # below which numbers are written with a power of ten
+
 
 def report(summary: Mapping[str, Any]) -> str:
     """Return the report of a summary; digits beyond the estimated error are left out."""
@@ -35,11 +37,28 @@ def report(summary: Mapping[str, Any]) -> str:
         f"the law to {_short(s['law_residual'])}",
         f"  {_steps(s['path'])}",
         f"  {_times(s['timings'])}",
+        *_others(s["equilibria"]),
         f"  units {s['units']}",
+        *(f"  warning: {text}" for text in s["warnings"]),
         "  skipped:",
         *(f"    {reason}" for reason in s["skipped"]),
     ]
     return "\n".join(lines)
+
+
+def _others(equilibria: Sequence[Mapping[str, Any]]) -> list[str]:
+    """Lines on all equilibria found, where there are several."""
+    if len(equilibria) == 1:
+        return []
+    lines = [f"  {len(equilibria)} equilibria, by energy; the first is the one above:"]
+    for i, found in enumerate(equilibria, start=1):
+        n = ", ".join(f"{v:.6g}" for v in found["n0"])
+        m = ", ".join(f"{v:.6g}" for v in found["m0"])
+        lines.append(
+            f"    {i}: energy {found['energy']:.8g}, n(0) = ({n}), m(0) = ({m}), "
+            f"from {found['starts']} starts"
+        )
+    return lines
 
 
 def _row(label: str, value: float | Sequence[float] | None, error: float | None) -> str:
@@ -59,8 +78,12 @@ def _number(value: float | None, error: float | None) -> str:
     if abs(value) <= error:
         return "0"
     # Twice the bar, so that the last digit printed still stands after rounding.
-    decimals = max(0, min(15, -math.ceil(math.log10(4 * error))))
-    return f"{value:.{decimals}f}"
+    decimals = -math.ceil(math.log10(4 * error))
+    digits = decimals + math.floor(math.log10(abs(value)))
+    if abs(value) < SMALL and digits >= 0:
+        return f"{value:.{min(15, digits)}e}"
+    text = f"{value:.{max(0, min(15, decimals))}f}"
+    return "0" if float(text) == 0 else text
 
 
 def _drifts(drift: Mapping[str, float | None]) -> str:

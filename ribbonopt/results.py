@@ -23,13 +23,22 @@ from ribbonopt.discretize import discretize
 from ribbonopt.errors import OutputError
 from ribbonopt.problem import pose
 from ribbonopt.scene import dump_scene, load_scene
+from ribbonopt.scene.units import in_special_units
 from ribbonopt.solution import Solution, Verification
 from ribbonopt.solvers import Status
 from ribbonopt.summary import summarize
 
 ROWS = 201
 OWN_FILES = frozenset(
-    ("scene.yaml", "summary.json", "solution.npz", "strains.png", "plane.png", "ribbon.png")
+    (
+        "scene.yaml",
+        "summary.json",
+        "solution.npz",
+        "strains.png",
+        "plane.png",
+        "ribbon.png",
+        "equilibria",
+    )
 )
 
 
@@ -41,11 +50,14 @@ class Stage:
     target: Path
     own: frozenset[str]
 
-    def commit(self, complete: bool) -> Path:
-        """Put the files in place and return where: a failed solve never hides an older result."""
+    def commit(self, failure: str = "") -> Path:
+        """Put the files in place and return where: a failed solve never hides an older result.
+
+        `failure` names what there is instead of a result, such as "not-converged".
+        """
         target = self.target
-        if not complete:
-            target = target.with_name(f"{target.name}.not-converged")
+        if failure:
+            target = target.with_name(f"{target.name}.{failure}")
             _refuse_foreign(target, self.own)
         _replace(target, self.folder)
         return target
@@ -80,7 +92,8 @@ def save_solution(solution: Solution, folder: str | Path) -> None:
     """Write the files of a solution into an existing folder.
 
     `solution.npz` holds rows along s: `s` (k,), `r`, `d1`, `d2`, `d3`, `n`, `m` (k, 3, lab frame),
-    `u` (k, 3, along the directors), and what a reload needs: `w`, `widths`, `theta`.
+    `u` (k, 3, along the directors), all in the units of the scene, and what a reload needs, in
+    units Dw = L = 1: `w`, `widths`, `theta`. Other equilibria go to `equilibria/2`, and so on.
 
     Raises
     ------
@@ -109,6 +122,10 @@ def _write(solution: Solution, folder: Path) -> None:
     (folder / "scene.yaml").write_text(dump_scene(solution.scene), encoding="utf-8")
     text = json.dumps(summarize(solution), indent=2, allow_nan=False)
     (folder / "summary.json").write_text(text + "\n", encoding="utf-8")
+    for i, other in enumerate(solution.others, start=2):
+        inner = folder / "equilibria" / str(i)
+        inner.mkdir(parents=True)
+        _write(other, inner)
 
 
 def load_solution(path: str | Path) -> Solution:
@@ -140,7 +157,7 @@ def load_solution(path: str | Path) -> Solution:
         status = Status[summary["status"].upper()]
     except (ValueError, KeyError, TypeError, OSError, EOFError, BadZipFile) as error:
         raise OutputError(f"{folder}: damaged result ({error}); solve the scene again") from error
-    _, problem = pose(scene)
+    _, problem = pose(in_special_units(scene))
     nlp = discretize(scene, problem, len(widths))
     if len(w) != nlp.unknowns or len(theta) != problem.parameters.numel():
         raise OutputError(

@@ -14,6 +14,7 @@ from ribbonopt.arrays import Array
 from ribbonopt.mechanics import RodFields
 from ribbonopt.problem import BoundaryValueProblem
 from ribbonopt.scene import Scene
+from ribbonopt.scene.units import Units, units_of
 from ribbonopt.solvers import Status
 
 if TYPE_CHECKING:
@@ -29,7 +30,7 @@ class Verification:
     problems : tuple of str
         One sentence for each thing that is not as the scene asked; empty if verified.
     worst_condition : float
-        Largest departure from a prescribed condition.
+        Largest departure from a prescribed condition, in units Dw = L = 1; loads relative.
     residual_between_nodes : float
         Largest relative defect of the differential equations between the stages.
     law_residual : float
@@ -50,7 +51,9 @@ class Verification:
 class Solution:
     """Equilibrium of one ribbon.
 
-    Lab-frame vectors, units Dw = L = 1, arclength s as in the scene's interval.
+    Lab-frame vectors, arclength s as in the scene's interval. What is sampled is in the units of
+    the scene, SI or Dw = L = 1; the numbers behind it (`dense`, `constants`, `fields`) are in units
+    Dw = L = 1 always.
 
     Attributes
     ----------
@@ -74,6 +77,10 @@ class Solution:
         What this scene did not need.
     verification : Verification
         What was checked afterwards.
+    others : tuple of Solution
+        Other equilibria of the scene, where several starts were asked for, by increasing energy.
+    times : int
+        How many of those starts led here.
     """
 
     scene: Scene
@@ -87,11 +94,18 @@ class Solution:
     timings: Mapping[str, float] = field(default_factory=dict)
     path: tuple[Mapping[str, Any], ...] = ()
     skipped: tuple[str, ...] = ()
+    others: tuple[Solution, ...] = ()
+    times: int = 1
 
     @property
     def verified(self) -> bool:
         """Whether the solve converged and everything checked is as the scene asked."""
         return self.status is Status.CONVERGED
+
+    @cached_property
+    def units(self) -> Units:
+        """Units of everything that is sampled."""
+        return units_of(self.scene)
 
     @cached_property
     def nodes(self) -> Array:
@@ -140,7 +154,7 @@ class Solution:
             raise ValueError(f"arclengths are expected in [{start}, {end}], found {s}")
         if len(s) == 0:
             return {name: value[:0] for name, value in self.outputs(np.array([start])).items()}
-        return self._named(self.dense.states(0, sigma), self.dense.algebraic(0, sigma), s)
+        return self._named(self.dense.states(0, sigma), self.dense.algebraic(0, sigma), sigma)
 
     def integral(self, name: str) -> float:
         """Integral over s of a scalar named output, by the scheme's own quadrature."""
@@ -154,15 +168,14 @@ class Solution:
     @cached_property
     def at_stages(self) -> dict[str, Array]:
         """All named outputs at the stages, where the solver itself evaluated the equations."""
-        start, end = self.scene.interval
         v, sigma, _ = self._stages
         nx = self.problem.state.numel()
-        return self._named(v[:, :nx], v[:, nx:], start + (end - start) * sigma)
+        return self._named(v[:, :nx], v[:, nx:], sigma)
 
     def fields(self, fraction: Array) -> RodFields:
-        """Fields at fractions (k,) of the length: a solution is a guess."""
-        start, end = self.scene.interval
-        o = self.outputs(start + (end - start) * fraction)
+        """Fields at fractions (k,) of the length, units Dw = L = 1: a solution is a guess."""
+        x, z = self.dense.states(0, fraction), self.dense.algebraic(0, fraction)
+        o = self._in_special_units(x, z, fraction)
         return RodFields(o["r"], np.stack([o["d1"], o["d2"], o["d3"]], axis=2), o["n"], o["m"])
 
     @cached_property
@@ -203,8 +216,16 @@ class Solution:
         """Twist of the directors about the centre line, in turns."""
         return self.integral("u3") / (2 * np.pi)
 
-    def _named(self, x: Array, z: Array, s: Array) -> dict[str, Array]:
+    def _named(self, x: Array, z: Array, sigma: Array) -> dict[str, Array]:
+        values = self._in_special_units(x, z, sigma)
+        if self.scene.ribbon is None:
+            return values
+        return {name: value * self.units.of(name) for name, value in values.items()}
+
+    def _in_special_units(self, x: Array, z: Array, sigma: Array) -> dict[str, Array]:
         function, names = self.problem.output_functions[0]
+        start, end = self.scene.interval
+        s = (start + (end - start) * sigma) / self.units.length
         count = len(s)
         c = ca.repmat(ca.DM(self.dense.constants), 1, count)
         theta = ca.repmat(ca.DM(self.dense.theta), 1, count)

@@ -11,13 +11,15 @@ import casadi as ca
 import numpy as np
 
 from ribbonopt.accuracy.estimate import estimate_error
+from ribbonopt.accuracy.topology import count_half_twists
+from ribbonopt.accuracy.validity import warnings_of
 from ribbonopt.problem import formulation_name
 from ribbonopt.solution import Solution
 from ribbonopt.version import VERSION
 
 
 def summarize(solution: Solution) -> dict[str, Any]:
-    """Return the summary: lab-frame vectors at the start, units Dw = L = 1, seconds.
+    """Return the summary: lab-frame vectors at the start, in the units of the scene, seconds.
 
     Numbers that are not known are None.
     """
@@ -51,19 +53,31 @@ def summarize(solution: Solution) -> dict[str, Any]:
         "law_residual": checks.law_residual,
         "error_estimate": _error_estimate(solution),
         "switch_points": [],
-        "half_twists": None,
+        "half_twists": count_half_twists(solution),
         "unknowns": dense.blocks.layout.unknowns,
         "intervals": dense.blocks.layout.element_count,
         "degree": dense.blocks.degree,
         "iterations": solution.iterations,
+        "equilibria": [_equilibrium(found) for found in (solution, *solution.others)],
         "path": [dict(step) for step in solution.path],
         "skipped": list(solution.skipped),
         "timings": dict(solution.timings),
         "versions": versions(),
-        "units": "Dw = L = 1",
+        "units": solution.units.name,
+        "warnings": warnings_of(solution),
     }
     finite: dict[str, Any] = _finite(summary)
     return finite
+
+
+def _equilibrium(solution: Solution) -> dict[str, Any]:
+    """Return what tells one equilibrium of a scene from the others; `starts` led to it."""
+    return {
+        "energy": solution.energy,
+        "n0": solution.n0.tolist(),
+        "m0": solution.m0.tolist(),
+        "starts": solution.times,
+    }
 
 
 def _error_estimate(solution: Solution) -> dict[str, float | None]:

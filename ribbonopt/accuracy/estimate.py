@@ -26,17 +26,19 @@ ROUNDING = 1e-15
 def estimate_error(solution: Solution) -> dict[str, float]:
     """Estimated absolute errors of `n0`, `m0`, `u0`, `H0`, `energy` and `states`.
 
-    Vectors by their largest component; states: positions and directors at the nodes. None of them
-    is below rounding.
+    Vectors by their largest component, in the units of the solution; states: positions, over the
+    unit of length, and directors at the nodes. None of them is below rounding.
     """
-    better = improved(solution)
+    better, units = improved(solution), solution.units
     result = {
-        name: _gap(getattr(better, name), getattr(solution, name)) for name in ("n0", "m0", "u0")
+        name: _gap(getattr(better, name), getattr(solution, name), units.of(name[0]))
+        for name in ("n0", "m0", "u0")
     }
-    result["H0"] = _gap(better.start["H"], solution.start["H"])
-    result["energy"] = _gap(np.array(better.energy), np.array(solution.energy))
+    result["H0"] = _gap(better.start["H"], solution.start["H"], units.of("H"))
+    result["energy"] = _gap(np.array(better.energy), np.array(solution.energy), units.moment)
     ours, theirs = (s.outputs(solution.nodes) for s in (solution, better))
-    result["states"] = max(_gap(theirs[name], ours[name]) for name in ("r", "d1", "d2", "d3"))
+    states = {name: units.of(name) for name in ("r", "d1", "d2", "d3")}
+    result["states"] = max(_gap(theirs[k], ours[k], unit) / unit for k, unit in states.items())
     return result
 
 
@@ -67,6 +69,6 @@ def _sampled(dense: Output, blocks: Blocks, p: Array) -> tuple[Array, Array, Arr
     return np.concatenate(nodes), np.concatenate(stages), dense.constants
 
 
-def _gap(a: Array, b: Array) -> float:
+def _gap(a: Array, b: Array, unit: float) -> float:
     size = float(np.abs(b).max())
-    return max(float(np.abs(a - b).max()), ROUNDING * max(1.0, size))
+    return max(float(np.abs(a - b).max()), ROUNDING * max(unit, size))

@@ -1,7 +1,8 @@
 """Verification: whether this is the solution of the problem that the scene states.
 
 Every condition is evaluated again on the dense output, by expressions that have no other roots than
-the condition itself; directors must be orthonormal and |eta| <= 1 where the law demands it.
+the condition itself; directors must be orthonormal and |eta| <= 1 where the law demands it, and a
+loop must close with the half twists that were asked.
 """
 
 from __future__ import annotations
@@ -33,7 +34,8 @@ def verify(solution: Solution, ribbon: Ribbon) -> Verification:
     exact = solution.dense.blocks.symplectic and not solution.problem.recovered
     allowed = TOLERANCE + (0.0 if exact else residual)
     if not worst <= allowed:
-        problems.append(f"{worst_name} is off by {worst:.2g}")
+        units = "" if solution.scene.ribbon is None else " (units Dw = L = 1)"
+        problems.append(f"{worst_name} is off by {worst:.2g}{units}")
     if not drift["orthonormality"] <= allowed:
         problems.append(
             f"the directors are not orthonormal (off by {drift['orthonormality']:.2g}); refine the "
@@ -48,6 +50,11 @@ def verify(solution: Solution, ribbon: Ribbon) -> Verification:
                 f"|eta| = {eta.max():.4g} at s = {s:.4g}, beyond 1: eq. (4.1) forbids it; the "
                 "ribbon wants to switch sheets there (law: sadowsky, regularized or variational)"
             )
+    loop = solution.scene.boundary.loop
+    if loop is not None:
+        from .topology import loop_problems  # only where a scene has one
+
+        problems += loop_problems(solution, loop, residual)
     law = float(solution.at_stages["law_residual"].max())
     law /= max(_size(nodes["u"]), np.finfo(float).tiny)  # a straight ribbon has no strains
     return Verification(tuple(problems), worst, residual, law, drift)
@@ -71,7 +78,8 @@ def _worst_condition(solution: Solution, ribbon: Ribbon) -> tuple[str, float]:
     ends = ends[:, :count]
     values = function(ends[0], ends[1], solution.constants, solution.dense.theta)
     # Relative to the loads, absolute in lengths and directors (L = 1).
-    scale = 1 + max(np.linalg.norm(solution.n0), np.linalg.norm(solution.m0))
+    n0, m0 = solution.n0 / solution.units.force, solution.m0 / solution.units.moment
+    scale = 1 + max(np.linalg.norm(n0), np.linalg.norm(m0))
     sizes = np.abs(np.array(values).ravel())
     loads = np.array(["force" in n or "moment" in n or "also" in n for n in verdicts])
     sizes = np.where(np.isfinite(sizes), sizes / np.where(loads, scale, 1.0), np.inf)

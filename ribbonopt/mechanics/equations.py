@@ -1,25 +1,36 @@
-"""Equations of a scene (`also:`) as conditions: formulas evaluated on CasADi expressions."""
+"""Equations of a scene (`also:`) as conditions: formulas evaluated on CasADi expressions.
+
+In a scene that was written in SI the quantities are multiplied by their units, and both sides
+divided by that of the equation.
+"""
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from typing import Literal
 
 import casadi as ca
 
 from ribbonopt.scene.expressions import Number, Quantity, evaluate, parts
 from ribbonopt.scene.formulas import parse_equation
+from ribbonopt.scene.units import DIMENSIONS, UNIT_FORCE, UNIT_LENGTH
 
 from .conditions import Context, EndName, Equation
+from .dimensions import dimension_of_equation
+
+Unit = Callable[[float, float], ca.SX]
 
 
 def equation(index: int, text: str, parameters: dict[str, float]) -> Equation:
     """Return the condition of one entry of `also:`; raises FormulaError if it does not parse."""
     formula = parse_equation(text, parameters)
+    dimension = dimension_of_equation(formula.left, formula.right)
 
     def difference(context: Context, name: str) -> ca.SX:
-        env = _SymbolicEnv(context, name)
-        return ca.SX(evaluate(formula.left, env) - evaluate(formula.right, env))
+        unit = _unit(context) if UNIT_LENGTH in parameters else None
+        env = _SymbolicEnv(context, name, unit)
+        result = ca.SX(evaluate(formula.left, env) - evaluate(formula.right, env))
+        return result if unit is None else result / unit(dimension.length, dimension.force)
 
     nodes = [*parts(formula.left), *parts(formula.right)]
     numbers = tuple((n.key, n.value) for n in nodes if isinstance(n, Number) and n.key is not None)
@@ -28,11 +39,17 @@ def equation(index: int, text: str, parameters: dict[str, float]) -> Equation:
     return Equation(index, formula.text, of_loads, numbers, difference)
 
 
-class _SymbolicEnv:
-    """Evaluates a formula on CasADi expressions of both ends."""
+def _unit(context: Context) -> Unit:
+    """Return the unit of a quantity by its exponents of length and force."""
+    length, force = (context.theta(f"parameters.{name}") for name in (UNIT_LENGTH, UNIT_FORCE))
+    return lambda a, b: length**a * force**b
 
-    def __init__(self, context: Context, prefix: str) -> None:
-        self._context, self._prefix = context, prefix
+
+class _SymbolicEnv:
+    """Evaluates a formula on CasADi expressions of both ends; `unit` as above, or None for 1."""
+
+    def __init__(self, context: Context, prefix: str, unit: Unit | None) -> None:
+        self._context, self._prefix, self._unit = context, prefix, unit
 
     def number(self, value: float, key: str | None) -> ca.SX:
         return ca.SX(value) if key is None else self._context.theta(f"{self._prefix}.{key}")
@@ -49,7 +66,7 @@ class _SymbolicEnv:
             value = section.rod.along(getattr(section.rod, name[0]))[int(name[1]) - 1]
         else:
             value = getattr(section.rod, name)
-        return value
+        return value if self._unit is None else value * self._unit(*DIMENSIONS.get(name, (0, 0)))
 
     def vector(self, components: Sequence[ca.SX]) -> ca.SX:
         return ca.vertcat(*components)

@@ -23,6 +23,35 @@ def directors_of(q: ca.SX) -> tuple[ca.SX, ca.SX, ca.SX]:
     return d1, d2, d3
 
 
+def matrix_of(q: Array) -> Array:
+    """Frame (3, 3) of a quaternion (4,) of numbers, whose length is removed."""
+    a, b, c, d = np.asarray(q) / np.linalg.norm(q)
+    vector = np.array([b, c, d])
+    cross = np.array([[0, -d, c], [d, 0, -b], [-c, b, 0]])
+    turned: Array = (2 * a * a - 1) * np.eye(3) + 2 * np.outer(vector, vector) + 2 * a * cross
+    return turned
+
+
+def turns_about(vectors: Array) -> Array:
+    """Matrices (k, 3, 3) of the rotations by |v| about each vector v of (k, 3): Rodrigues."""
+    angle = np.linalg.norm(vectors, axis=1)
+    x, y, z = (vectors / np.where(angle > 0, angle, 1.0)[:, None]).T
+    zero = np.zeros_like(x)
+    K = np.array([[zero, -z, y], [z, zero, -x], [-y, x, zero]]).transpose(2, 0, 1)
+    sin, versine = np.sin(angle)[:, None, None], (1 - np.cos(angle))[:, None, None]
+    turned: Array = np.eye(3) + sin * K + versine * (K @ K)
+    return turned
+
+
+def turn_vector(turn: Array) -> Array:
+    """Rotation vector (3,), of length at most pi, of a matrix (3, 3)."""
+    q = quaternions_from(np.asarray(turn)[None])[0]
+    sine = float(np.linalg.norm(q[1:]))
+    if sine == 0:
+        return np.zeros(3)
+    return np.asarray(2 * np.arctan2(sine, q[0]) * q[1:] / sine)
+
+
 def product(p: Any, q: Any) -> list[Any]:
     """Components of the Hamilton product p q."""
     return [

@@ -10,7 +10,8 @@ which n and m(0) are recovered. Controls:
 
 Sign: with equations x_{e+1} - x_e - ... = 0 and the Lagrangian cost + lambda . equations, lambda is
 the derivative of the energy with respect to a shift of the rest of the ribbon, which is n; a turn
-by dt of the rest changes q by dt q / 2, hence m . e_k = lambda_q . (e_k q) / 2.
+by dt of the rest changes q by dt q / 2, hence m . e_k = lambda_q . (e_k q) / 2. With the dead
+force in the cost, the costate of r is n - F.
 """
 
 from __future__ import annotations
@@ -20,6 +21,7 @@ import casadi as ca
 from ribbonopt.errors import ModelError
 from ribbonopt.mechanics.conditions import Component
 from ribbonopt.mechanics.invariants import outputs
+from ribbonopt.mechanics.placement import LoadAlong
 from ribbonopt.mechanics.rotations import product
 from ribbonopt.scene import Scene
 
@@ -33,14 +35,24 @@ def energy(ribbon: Ribbon, scene: Scene) -> BoundaryValueProblem:
     Raises
     ------
     ModelError
-        If the law has no energy, loads are prescribed that do work, or the states are not reduced.
+        If the law has no energy, loads are prescribed that are not natural, or the states are not
+        reduced.
     """
     _refuse(ribbon, scene)
+    return minimum(ribbon)
+
+
+def minimum(ribbon: Ribbon) -> BoundaryValueProblem:
+    """Return the problem of least energy under the conditions on positions and directors.
+
+    All other conditions but dead forces are left out, natural or not.
+    """
     theta, model = ribbon.theta, ribbon.model
     x = ca.SX.sym("x", len(model.states))
     # Force and moment for outputs and verification only: they follow from the costates.
     loads = ca.vertcat(*(theta[name] for name in RECOVERED))
     section = ribbon.section(x, loads)
+    dead = dead_force(ribbon)
     local = ca.SX.sym("m", 2)
     strain = ribbon.law.strain(local[0], local[1])
     if ribbon.law.smooth:
@@ -59,7 +71,7 @@ def energy(ribbon: Ribbon, scene: Scene) -> BoundaryValueProblem:
         length=theta["interval.end"] - theta["interval.start"],
         outputs=outputs(section, ribbon.law, u2, u3),
         path=path,
-        cost=cost,
+        cost=cost - ca.dot(dead, section.rod.d3),
     )
     points = ca.SX.sym("start", x.numel()), ca.SX.sym("end", x.numel())
     costate = ca.SX.sym("costate", x.numel())
@@ -79,8 +91,31 @@ def energy(ribbon: Ribbon, scene: Scene) -> BoundaryValueProblem:
         local=local,
         estimate=estimate,
         costate=costate,
-        recovered=dict(zip(RECOVERED, _loads(points[0], costate, ribbon.reference), strict=True)),
+        recovered=dict(zip(RECOVERED, _loads(points[0], costate, dead, ribbon), strict=True)),
     )
+
+
+def dead_force(ribbon: Ribbon) -> ca.SX:
+    """Force (3,), lab frame, prescribed at an end that is free to follow it; zero elsewhere."""
+    given = {
+        c.axis: ribbon.theta[c.name]
+        for c in ribbon.conditions
+        if isinstance(c, Component) and _is_dead_force(ribbon, c)
+    }
+    force = ca.vertcat(*(given.get(axis, ca.SX(0)) for axis in "xyz"))
+    for condition in ribbon.conditions:
+        if isinstance(condition, LoadAlong):
+            force += condition.dead(ribbon.theta)
+    return force
+
+
+def _is_dead_force(ribbon: Ribbon, condition: Component) -> bool:
+    held = [
+        c
+        for c in ribbon.conditions
+        if isinstance(c, Component) and (c.quantity, c.axis) == ("position", condition.axis)
+    ]
+    return condition.quantity == "force" and condition.axis in "xyz" and len(held) < 2
 
 
 def _legendre(ribbon: Ribbon, z: ca.SX) -> ca.SX:
@@ -89,12 +124,12 @@ def _legendre(ribbon: Ribbon, z: ca.SX) -> ca.SX:
     return value
 
 
-def _loads(start: ca.SX, costate: ca.SX, reference: ca.SX) -> list[ca.SX]:
+def _loads(start: ca.SX, costate: ca.SX, dead: ca.SX, ribbon: Ribbon) -> list[ca.SX]:
     """Force and moment about the reference (lab frame) from the costates at the start."""
-    n, q = costate[:3], ca.vertsplit(start[3:7])
+    n, q = costate[:3] + dead, ca.vertsplit(start[3:7])
     basis = ((0, 1, 0, 0), (0, 0, 1, 0), (0, 0, 0, 1))
     m = ca.vertcat(*(ca.dot(costate[3:7], ca.vertcat(*product(e, q))) / 2 for e in basis))
-    return ca.vertsplit(ca.vertcat(n, m - ca.cross(n, start[:3] - reference)))
+    return ca.vertsplit(ca.vertcat(n, m - ca.cross(n, start[:3] - ribbon.reference)))
 
 
 def _refuse(ribbon: Ribbon, scene: Scene) -> None:
@@ -111,9 +146,12 @@ def _refuse(ribbon: Ribbon, scene: Scene) -> None:
             "formulation",
         )
     for condition in ribbon.conditions:
-        if isinstance(condition, Component) and not condition.kinematic and condition.value:
+        if not isinstance(condition, Component) or condition.kinematic or not condition.value:
+            continue
+        if not _is_dead_force(ribbon, condition):
             raise ModelError(
-                f"formulation energy: {condition.name} = {condition.value:g} does work that the "
-                "strain energy does not hold; use another formulation",
+                f"formulation energy: {condition.name}, other than zero, has no potential here "
+                "(only a dead force, in lab components, on an end free to follow it has); use "
+                "another formulation",
                 condition.name,
             )

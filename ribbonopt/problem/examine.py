@@ -2,33 +2,39 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
-import casadi as ca
 import numpy as np
 
 from ribbonopt.arrays import Array
 from ribbonopt.errors import ModelError
-from ribbonopt.mechanics import MODELS, RodFields, RodModel
+from ribbonopt.mechanics import MODELS, RodModel
 
 from .contract import BoundaryValueProblem
+from .linearized import linearize
+from .motions import refuse_motions
 from .ribbon import Ribbon
 
-Linearized = tuple[Array, Array]
+Sample = tuple[Array, Array]
 PARALLEL = 1e-10
 
 
 def examine(ribbon: Ribbon, problem: BoundaryValueProblem, theta: Array) -> None:
     """Refuse a problem whose conditions are too many, too few, repeated or dependent.
 
+    And one whose conditions leave the ribbon free to move as a whole, or along itself.
+
     Raises
     ------
     ModelError
         With counts, names and remedy.
     """
-    names, samples = _linearized(ribbon, problem, theta)
-    _refuse_repeated(names, samples)
+    conditions = linearize(ribbon, problem, theta)
+    names = list(conditions.names)
+    samples = [conditions.at(conditions.generic(seed)) for seed in (0.3, 0.8)]
     excess = len(names) - sum(unknown_names(MODELS["reduced"]).values())
+    if not excess:
+        # Where the energy is minimised, sliding along itself does no harm.
+        refuse_motions(conditions, sliding=not problem.recovered)
+    _refuse_repeated(names, samples)
     if excess:
         raise ModelError(_count_message(names, excess), "boundary")
     jacobian = samples[0][1]
@@ -72,7 +78,7 @@ def _key(name: str) -> str:
     return name.partition(" ")[0]
 
 
-def _refuse_repeated(names: list[str], samples: list[Linearized]) -> None:
+def _refuse_repeated(names: list[str], samples: list[Sample]) -> None:
     lengths = [np.linalg.norm(jacobian, axis=1) for _, jacobian in samples]
     for i, name in enumerate(names):
         if min(length[i] for length in lengths) == 0:
@@ -102,40 +108,3 @@ def _refuse_repeated(names: list[str], samples: list[Linearized]) -> None:
                 "remove one",
                 _key(names[j]),
             )
-
-
-def _linearized(
-    ribbon: Ribbon, problem: BoundaryValueProblem, theta: Array
-) -> tuple[list[str], list[Linearized]]:
-    """Names, residuals (nb,) and Jacobians (nb, unknowns of both ends and constants) at two rods.
-
-    On the reduced states whatever the scene's own: they know that the force is one constant, so
-    that a force prescribed at both ends is seen as prescribed twice.
-    """
-    reduced = replace(ribbon, model=MODELS["reduced"])
-    count = len(reduced.model.states)
-    start, end = ca.SX.sym("start", count), ca.SX.sym("end", count)
-    c = ca.SX.sym("c", len(reduced.model.constants))
-    named = reduced.residuals(start, end, c)
-    conditions = ca.vertcat(*named.values())
-    jacobian = ca.densify(ca.jacobian(conditions, ca.vertcat(start, end, c)))
-    inputs = [ca.vertcat(start, end), c, problem.parameters]
-    function = ca.Function("conditions", inputs, [conditions, jacobian])
-    result = []
-    for seed in (0.3, 0.8):
-        residuals, matrix = function(*_generic_rod(reduced, seed), theta)
-        result.append((np.array(residuals).ravel(), np.array(matrix)))
-    return list(named), result
-
-
-def _generic_rod(ribbon: Ribbon, seed: float) -> tuple[Array, Array]:
-    """States of both ends and constants of a rod without any symmetry.
-
-    A Weyl sequence instead of `numpy.random`, whose import costs more than all of this module.
-    """
-    values = 2 * np.modf(seed + np.arange(1, 37) * 0.6180339887498949)[0] - 1
-    frames = np.linalg.qr(values[:18].reshape(2, 3, 3))[0]
-    frames *= np.linalg.det(frames)[:, None, None]
-    r, n, m = values[18:].reshape(3, 2, 3)
-    x, c = ribbon.model.pack(RodFields(r, frames, n, m), np.zeros(3))
-    return x.ravel(), c

@@ -12,6 +12,7 @@ from functools import cached_property
 
 import casadi as ca
 
+from ribbonopt.errors import ModelError
 from ribbonopt.mechanics.boundary import conditions_of, start_position
 from ribbonopt.mechanics.conditions import Condition, Context, CrossSection, EndName
 from ribbonopt.mechanics.laws import LAWS, ConstitutiveLaw
@@ -96,7 +97,9 @@ def ribbon_of(scene: Scene) -> Ribbon:
 
 
 def theta_of(scene: Scene) -> dict[str, float]:
-    """Return every number of a scene by parameter name, in the order of theta."""
+    """Return every number of a scene, in units Dw = L = 1, by name and in the order of theta."""
+    if scene.ribbon is not None:
+        raise ModelError("this scene is in SI; convert it by `in_special_units` first", "ribbon")
     values = {
         f"law.{f.name}": float(getattr(scene.law, f.name))
         for f in fields(scene.law)

@@ -5,34 +5,44 @@ Each check looks at one matter and returns all problems it finds; none depends o
 
 from __future__ import annotations
 
-import math
-from collections.abc import Iterator, Mapping
-from dataclasses import fields, is_dataclass
-from itertools import combinations
-from typing import Any
+from collections.abc import Iterator
+from dataclasses import is_dataclass
+from typing import Any, get_origin
 
-from .model import Boundary, Directors, End, LabVector, Scene, Value
+from .ends import Boundary, Loop
+from .frame_checks import check_frame
+from .loop_checks import check_loop, check_piece
+from .model import Guess, MoebiusGuess, RibbonSizes, Scene
 from .problems import Path, Problem
-
-_TOLERANCE = 1e-6
-_NAMES = ("d1", "d2", "d3")
-_AXES = ("x", "y", "z")
+from .shapes import branches, hints, inside
+from .support_checks import check_supports
+from .wording import written
 
 
 def check(scene: Scene) -> list[Problem]:
     """Return the problems of a scene whose single values are valid."""
+    boundary = scene.boundary
     problems = list(_interval(scene.interval))
-    formulas = dict(_formulas(scene.boundary, ("boundary",)))
+    formulas = dict(_formulas(boundary, Boundary, ("boundary",)))
+    formulas |= _formulas(scene.guess, Guess, ("guess",))
     values: dict[Path, float] = {}
-    if formulas or scene.boundary.also or scene.parameters:
+    if formulas or boundary.also or scene.parameters:
         # Imported late: a scene in plain numbers starts without the grammar of formulas.
         from .formula_checks import check_equations, check_parameters, values_of
 
         values, found = values_of(formulas, scene.parameters)
         problems += check_parameters(scene.parameters)
-        problems += [*found, *check_equations(scene.boundary.also, scene.parameters)]
+        problems += [*found, *check_equations(boundary.also, scene.parameters)]
     for name in ("start", "end"):
-        problems += _frame(getattr(scene.boundary, name), ("boundary", name), values)
+        problems += check_frame(getattr(boundary, name), ("boundary", name), values)
+    if isinstance(scene.guess, MoebiusGuess):
+        problems += check_piece(scene.guess.moebius, ("guess", "moebius"))
+    if boundary.loop is not None:
+        problems += check_loop(boundary.loop, boundary, scene.guess)
+    else:
+        problems += check_supports(boundary, values)
+    if scene.ribbon is not None:
+        problems += [*_sizes(scene.ribbon), *_fits(scene, scene.ribbon)]
     return problems
 
 
@@ -43,83 +53,42 @@ def _interval(interval: tuple[float, float]) -> Iterator[Problem]:
         yield Problem(("interval",), message, f"[{start:g}, {end:g}]")
 
 
-def _formulas(value: Any, path: Path) -> Iterator[tuple[Path, str]]:
-    """Yield the formulas in vectors; other texts (`directors: identity`, `also`) are no values."""
-    members: list[tuple[str | int, Any]]
-    if is_dataclass(value):
-        members = [(member.name, getattr(value, member.name)) for member in fields(value)]
-        vector = not isinstance(value, Boundary | End)
+def _formulas(value: Any, annotation: Any, path: Path) -> Iterator[tuple[Path, str]]:
+    """Yield the formulas in a value: texts that stand where the annotation has numbers as well."""
+    options = branches(annotation).values()
+    if isinstance(value, str):
+        if str in options:
+            yield path, value
+    elif is_dataclass(value):
+        cls: type = type(value)
+        for name, inner in hints(cls).items():
+            yield from _formulas(getattr(value, name), inner, (*path, name))
     elif isinstance(value, tuple):
-        members = list(enumerate(value))
-        vector = path[-1] != "also"
-    else:
-        return
-    for key, member in members:
-        if isinstance(member, str) and vector:
-            yield (*path, key), member
-        yield from _formulas(member, (*path, key))
+        items = next((some for some in options if get_origin(some) is tuple), annotation)
+        for index, item in enumerate(value):
+            yield from _formulas(item, inside(items, index), (*path, index))
 
 
-def _frame(end: End, path: Path, values: Mapping[Path, float]) -> Iterator[Problem]:
-    """Yield contradictions among the directors prescribed at one end."""
-    whole = end.directors if isinstance(end.directors, Directors) else None
-    if whole and sum(getattr(whole, name) is not None for name in _NAMES) < 2:
-        message = "needs two or three of d1, d2, d3; give a single director beside it, as d1: [...]"
-        yield Problem((*path, "directors"), message)
-    singles = [name for name in _NAMES if getattr(end, name) is not None]
-    if end.directors is not None and singles:
-        for name in singles:
-            yield Problem((*path, name), "given twice: `directors` holds the frame; keep one")
-        return
-    if whole:
-        path = (*path, "directors")
-    units: dict[str, list[float]] = {}
-    for name in _NAMES:
-        components = _components(getattr(whole or end, name), (*path, name), values)
-        if message := _not_unit(components):
-            yield Problem((*path, name), message)
-        elif len(components) == 3:
-            units[name] = components
-    yield from _not_orthonormal(units, path)
+def _sizes(ribbon: RibbonSizes) -> Iterator[Problem]:
+    for small, large in (("width", "length"), ("thickness", "width")):
+        size, limit = getattr(ribbon, small), getattr(ribbon, large)
+        if not size < limit:
+            message = f"expected less than ribbon.{large}, {limit:g}; sizes are in metres, moduli "
+            example = f'in pascals; for 1 mm write "{small}: 0.001"'
+            yield Problem(("ribbon", small), message + example, f"{size:g}")
 
 
-def _components(
-    vector: tuple[Value, Value, Value] | LabVector | None,
-    path: Path,
-    values: Mapping[Path, float],
-) -> list[float]:
-    """Return the components that are prescribed and have a value; a bad formula tells its own."""
-    if isinstance(vector, LabVector):
-        given: dict[str | int, Value | None] = {axis: getattr(vector, axis) for axis in _AXES}
-    else:
-        given = {index: value for index, value in enumerate(vector or ())}
-    numbers = {
-        key: values.get((*path, key)) if isinstance(value, str) else value
-        for key, value in given.items()
-    }
-    return [float(number) for number in numbers.values() if number is not None]
+def _fits(scene: Scene, ribbon: RibbonSizes) -> Iterator[Problem]:
+    start, end = scene.interval
+    if end - start > ribbon.length * (1 + 1e-9):
+        fitting = written((start, start + ribbon.length / _pieces(scene.boundary.loop)))
+        message = f"is longer than the ribbon, ribbon.length: {ribbon.length:.12g}; write for "
+        example = f'example "interval: {fitting}"'
+        yield Problem(("interval",), message + example, written(scene.interval))
 
 
-def _not_unit(components: list[float]) -> str:
-    length = math.hypot(*components)
-    if len(components) == 3 and abs(length - 1) > _TOLERANCE:
-        return f"has length {length:.6g}, expected 1 (a director is a unit vector)"
-    if length > 1 + _TOLERANCE:
-        return f"has components of length {length:.6g}, more than the 1 of a unit vector"
-    return ""
-
-
-def _not_orthonormal(units: Mapping[str, list[float]], path: Path) -> Iterator[Problem]:
-    orthogonal = True
-    for first, second in combinations(units, 2):
-        product = sum(a * b for a, b in zip(units[first], units[second], strict=True))
-        if abs(product) > _TOLERANCE:
-            orthogonal = False
-            message = f"is not orthogonal to {first}: their product is {product:.6g}, expected 0"
-            yield Problem((*path, second), message)
-    if orthogonal and len(units) == 3:
-        d1, d2, d3 = (units[name] for name in _NAMES)
-        handed = sum(d3[i] * (d1[i - 2] * d2[i - 1] - d1[i - 1] * d2[i - 2]) for i in range(3))
-        if handed < 0:
-            message = "makes a left-handed frame; expected d3 = d1 x d2, so turn its sign"
-            yield Problem((*path, "d3"), message)
+def _pieces(loop: Loop | None) -> int:
+    """Return how many pieces make the ribbon, one of which is solved."""
+    if loop is None or loop.piece == "whole":
+        return 1
+    return 2 if loop.piece == "half" else 2 * max(abs(loop.half_twists), 1)

@@ -10,28 +10,50 @@ import math
 from collections.abc import Iterable
 from dataclasses import is_dataclass
 from types import NoneType
-from typing import Annotated, Any, Literal, get_args, get_origin
+from typing import Annotated, Any, Literal, NamedTuple, get_args, get_origin
 
 from pydantic_core import ErrorDetails
 
 from .bounds import Bounds
-from .problems import Path, Problem, shown, suggestion
+from .problems import Path, Problem, nearest, shown, suggestion
 from .shapes import branches, classes_of, hints, inside, types_of
 
 _KEY_OF_MAPPING = "[key]"
 
 
-def explain(cls: type, error: ErrorDetails) -> Problem:
-    """Return one error as a problem of the scene.
+class _Place(NamedTuple):
+    """Where an error is: its path, and the annotations of the value and of what holds it."""
+
+    path: Path
+    annotation: Any
+    owner: Any
+    union: Any
+
+
+def explain(cls: type, errors: Iterable[ErrorDetails]) -> list[Problem]:
+    """Return errors as problems of the scene; a misspelt key is not told as missing as well.
 
     Parameters
     ----------
     cls
         The dataclass that was validated.
-    error
-        What `ValidationError.errors()` tells of one error; its location holds the tags of
-        unions, which the path of the problem does not.
+    errors
+        What `ValidationError.errors()` tells.
     """
+    placed = [(_place(cls, error), error) for error in errors]
+    excused: set[Path] = set()
+    for place, error in placed:
+        if error["type"] == "unexpected_keyword_argument":
+            excused.update((*place.path[:-1], name) for name in _meant(place))
+    return [
+        _problem(place, error)
+        for place, error in placed
+        if not (error["type"] == "missing" and place.path in excused)
+    ]
+
+
+def _place(cls: type, error: ErrorDetails) -> _Place:
+    """Follow the location of an error, which holds tags of unions, as the path does not."""
     path: Path = ()
     annotation: Any = cls
     union: Any = None
@@ -42,21 +64,30 @@ def explain(cls: type, error: ErrorDetails) -> Problem:
         elif step != _KEY_OF_MAPPING:
             owner, annotation = annotation, inside(annotation, step)
             path = (*path, step)
+    return _Place(path, annotation, owner, union)
 
+
+def _problem(place: _Place, error: ErrorDetails) -> Problem:
+    path, annotation, owner, union = place
     value, kind = error["input"], error["type"]
     if kind == "invalid_key" or error["loc"][-1:] == (_KEY_OF_MAPPING,):
         return Problem(path, "expected text as the key", shown(value))
     if kind == "unexpected_keyword_argument":
-        return Problem(path, _unknown_key(str(path[-1]), owner, union))
+        return Problem(path, _unknown_key(place))
     if kind == "missing" and get_origin(owner) is tuple:
         return Problem(path[:-1], f"expected {expected(owner)}", shown(value))
     if kind == "missing":
         return Problem(path, f"missing; expected {expected(annotation)}")
     if isinstance(value, dict) and (types := types_of(annotation)):
         return _without_type((*path, "type"), value, types)
-    hint = suggestion(value, _words(annotation)) if isinstance(value, str) else ""
-    finite = isinstance(value, float) and not math.isfinite(value)
-    remedy = "; it must be finite" if finite else hint
+    remedy = ""
+    if isinstance(value, float) and not math.isfinite(value):
+        remedy = "; it must be finite"
+    elif isinstance(value, str):
+        remedy = suggestion(value, _words(annotation))
+        if not remedy:
+            annotation = union if error["loc"][-1:] == ("text",) else annotation
+            remedy = _as_mapping(value, annotation)
     return Problem(path, f"expected {expected(annotation)}{remedy}", shown(value))
 
 
@@ -84,14 +115,18 @@ def expected(annotation: Any) -> str:
 def _expected_of_union(annotation: Any) -> str:
     parts = []
     members = [branch for branch in branches(annotation).values() if branch is not NoneType]
-    types = types_of(annotation)
+    types, classes = types_of(annotation), classes_of(annotation).values()
+    grouped = bool(types) or len(classes) > 1
     for branch in members:
         if branch is str and float in members:
             parts.append("a formula")  # text in the place of a number
-        elif not (types and is_dataclass(branch)):
+        elif not (grouped and is_dataclass(branch)):
             parts.append(expected(branch))
     if types:
         parts.append(f"a mapping whose `type` is {_one_of(types)}")
+    elif grouped:
+        keys = ", or ".join(", ".join(hints(member)) for member in classes)
+        parts.append(f"a mapping with keys {keys}")
     return " or ".join(parts)
 
 
@@ -126,16 +161,44 @@ def _without_type(path: Path, value: dict[str, Any], types: dict[str, str]) -> P
     return Problem(path, f"expected {_one_of(types)}{hint}", shown(name))
 
 
-def _unknown_key(key: str, owner: Any, union: Any) -> str:
-    known = hints(owner)
+def _as_mapping(word: str, annotation: Any) -> str:
+    """Return the mapping that a single word was probably meant to be, as a remedy."""
+    classes = list(classes_of(annotation).values())
+    if is_dataclass(annotation) and isinstance(annotation, type):
+        classes = [annotation]
+    for cls in classes:
+        for name, inner in hints(cls).items():
+            if name == word:
+                return f"; did you mean {{{name}: ...}}?"
+            if word in _words(inner):
+                return f"; did you mean {{{name}: {word}}}?"
+    return ""
+
+
+def _meant(place: _Place) -> list[str]:
+    """Return the keys that an unknown key stands for: one it is like, or all of another class."""
+    key, own = str(place.path[-1]), hints(place.owner)
+    if _rivals(place):
+        return list(own)
+    return [near] if (near := nearest(key, own)) else []
+
+
+def _rivals(place: _Place) -> list[type]:
+    """Return the other classes of a union without `type` that own an unknown key."""
+    classes = classes_of(place.union).values()
+    if types_of(place.union) or place.owner not in classes:
+        return []
+    return [cls for cls in classes if cls is not place.owner and place.path[-1] in hints(cls)]
+
+
+def _unknown_key(place: _Place) -> str:
+    key, known = str(place.path[-1]), hints(place.owner)
+    if _rivals(place):
+        return f"cannot stand beside {', '.join(known)}; keep one of the two"
     message = f"unknown key{suggestion(key, known)} (known keys: {', '.join(known)})"
-    siblings = {tag: cls for tag, cls in classes_of(union).items() if cls is not owner}
-    owners = [name for name, tag in types_of(union).items() if key in hints_of(siblings, tag)]
-    if owner in classes_of(union).values() and owners:
-        message += f"; {key!r} belongs to type {_one_of(owners)}"
+    classes = classes_of(place.union)
+    if place.owner in classes.values():
+        types = types_of(place.union).items()
+        owners = [name for name, tag in types if key in hints(classes[tag])]
+        message += f"; {key!r} belongs to type {_one_of(owners)}" if owners else ""
     return message
-
-
-def hints_of(classes: dict[str, type], tag: str) -> dict[str, Any]:
-    """Return the annotations of the class of a tag; empty for a tag that is not there."""
-    return hints(classes[tag]) if tag in classes else {}

@@ -21,8 +21,8 @@ EndName = Literal["start", "end"]
 class Number(NamedTuple):
     """A number; `key` names it by order of appearance ("c0", "c1", ...).
 
-    Numbers without a key belong to the structure of the formula and never vary: exponents, pi and
-    the components of ex, ey, ez.
+    Numbers without a key belong to the structure of the formula and never vary: exponents, pi,
+    deg and the components of ex, ey, ez.
     """
 
     value: float

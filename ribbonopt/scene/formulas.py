@@ -1,8 +1,8 @@
 """Formulas of a scene, such as "dot(n, d1(start)) = 0": what they say and what they are worth.
 
-They hold numbers, + - * / **, parentheses, pi, the lab axes ex, ey, ez, vectors [a, b, c], `.x .y
-.z`, sqrt sin cos tan exp log abs dot cross norm, parameters by name, and in equations the vectors
-r d1 d2 d3 n m and scalars n1 n2 n3 m1 m2 m3 u2 u3 at `(start)` or `(end)`.
+They hold numbers, + - * / **, parentheses, pi, deg (pi/180), the lab axes ex, ey, ez, vectors
+[a, b, c], `.x .y .z`, sqrt sin cos tan exp log abs dot cross norm, parameters by name, and in
+equations the vectors r d1 d2 d3 n m and scalars n1 n2 n3 m1 m2 m3 u2 u3 at `(start)` or `(end)`.
 """
 
 from __future__ import annotations

@@ -50,6 +50,7 @@ _QUANTITIES: dict[str, Shape] = {
     **dict.fromkeys(_SCALARS, "scalar"),
 }
 _AXES = ("ex", "ey", "ez")
+_CONSTANTS = {"pi": math.pi, "deg": math.pi / 180}
 _SIGNS: dict[type[ast.operator], str] = {
     ast.Add: "+",
     ast.Sub: "-",
@@ -58,7 +59,7 @@ _SIGNS: dict[type[ast.operator], str] = {
     ast.Pow: "**",
 }
 
-RESERVED = frozenset((*_FUNCTIONS, *_QUANTITIES, *_AXES, "start", "end", "pi"))
+RESERVED = frozenset((*_FUNCTIONS, *_QUANTITIES, *_AXES, *_CONSTANTS, "start", "end"))
 """Words of the grammar, which no parameter may shadow."""
 
 _FOREIGN = re.compile(r"[^A-Za-z0-9_ \t\n.+*/()\[\],=-]")
@@ -177,8 +178,8 @@ class Parser:
         name = node.id
         if name in self.names:
             return Name(name, self.names[name])
-        if name == "pi":
-            return Number(math.pi)
+        if name in _CONSTANTS:
+            return Number(_CONSTANTS[name])
         if name in _AXES:
             x, y, z = (Number(float(axis == name)) for axis in _AXES)
             return Vector((x, y, z))
@@ -191,7 +192,7 @@ class Parser:
             self._refuse(node, f"{name!r} is not known here; a value is numbers and parameters")
         if name in _FUNCTIONS:
             self._refuse(node, f"{name!r} is a function; write {name}(...)")
-        self._unknown(node, "name", name, [*self.names, *_AXES, "pi"])
+        self._unknown(node, "name", name, [*self.names, *_AXES, *_CONSTANTS])
 
     def _call(self, node: ast.Call, function: str, depth: int, exponent: bool) -> Node:
         if function in _QUANTITIES and self.quantities:
@@ -199,7 +200,7 @@ class Parser:
                 case [ast.Name(id="start" | "end" as end)]:
                     return Quantity(function, end, _QUANTITIES[function])
             self._refuse(node, f"{function!r} is taken at (start) or (end)")
-        if function in (*self.names, *_AXES, "pi"):
+        if function in (*self.names, *_AXES, *_CONSTANTS):
             self._refuse(node, f"{function!r} is no function; write it without (...)")
         if function not in _FUNCTIONS:
             self._unknown(node, "function", function, list(_FUNCTIONS))

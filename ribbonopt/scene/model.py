@@ -1,8 +1,8 @@
 """The scene: everything a user may say about one ribbon, as frozen data.
 
 Python users build these classes directly, YAML users through `load_scene`; both are validated by
-the same schema (`ribbonopt.scene.validation`). Units: Dw = L = 1 (section 2 of the paper).
-A `Value` is a number, or a formula of the scene's `parameters` such as "1 - shortening".
+the same schema (`ribbonopt.scene.validation`). Units: Dw = L = 1 (section 2 of the paper), or SI
+where the scene says what the ribbon is made of (`ribbon`).
 """
 
 from __future__ import annotations
@@ -11,63 +11,10 @@ from dataclasses import dataclass, field
 from typing import Annotated, Literal
 
 from .bounds import Bounds
+from .ends import Boundary, Value
 from .laws import Law
 
-Value = float | str
-Triple = tuple[Value, Value, Value]
 Numbers3 = tuple[float, float, float]
-
-
-@dataclass(frozen=True)
-class LabVector:
-    """Some components of a vector in the lab frame; those not named are left free."""
-
-    x: Value | None = None
-    y: Value | None = None
-    z: Value | None = None
-
-
-@dataclass(frozen=True)
-class AnyVector:
-    """Some components of a vector: in the lab frame (x, y, z) or along directors (d1, d2, d3)."""
-
-    x: Value | None = None
-    y: Value | None = None
-    z: Value | None = None
-    d1: Value | None = None
-    d2: Value | None = None
-    d3: Value | None = None
-
-
-@dataclass(frozen=True)
-class Directors:
-    """A whole frame: two or three of its directors, each by its lab components."""
-
-    d1: Triple | None = None
-    d2: Triple | None = None
-    d3: Triple | None = None
-
-
-@dataclass(frozen=True)
-class End:
-    """What is prescribed at one end; everything not named is free."""
-
-    position: Triple | LabVector | None = None
-    directors: Literal["identity"] | Directors | None = None
-    d1: Triple | LabVector | None = None
-    d2: Triple | LabVector | None = None
-    d3: Triple | LabVector | None = None
-    force: Triple | AnyVector | None = None
-    moment: Triple | AnyVector | None = None
-
-
-@dataclass(frozen=True)
-class Boundary:
-    """Conditions at both ends; `also` holds further equations as formulas."""
-
-    start: End = End()
-    end: End = End()
-    also: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -90,6 +37,57 @@ class SolutionGuess:
     """Guess by a saved solution: a result folder or its `solution.npz`."""
 
     solution: str
+
+
+@dataclass(frozen=True)
+class ArcGuess:
+    """Guess by a circular arc bent about d2 that turns by an angle (radians) in all."""
+
+    arc: Value
+
+
+@dataclass(frozen=True)
+class Helix:
+    """Helix of some turns that rises by a share of its length (0: circles, 1: straight)."""
+
+    turns: Value
+    rise: Annotated[float, Bounds(ge=-1, le=1)]
+
+
+@dataclass(frozen=True)
+class HelixGuess:
+    """Guess by a helix from the start."""
+
+    helix: Helix
+
+
+@dataclass(frozen=True)
+class Band:
+    """Circle whose directors turn about the tangent by half twists; or the `piece` solved of it.
+
+    Without a piece: that of the scene's loop, or the whole.
+    """
+
+    half_twists: int
+    piece: Literal["whole", "half", "fundamental"] | None = None
+
+
+@dataclass(frozen=True)
+class MoebiusGuess:
+    """Guess by a twisted circle."""
+
+    moebius: Band
+
+
+Guess = (
+    Literal["auto", "circle"]
+    | LoadGuess
+    | StrainGuess
+    | ArcGuess
+    | HelixGuess
+    | MoebiusGuess
+    | SolutionGuess
+)
 
 
 @dataclass(frozen=True)
@@ -159,13 +157,26 @@ class Reference:
 
 
 @dataclass(frozen=True)
+class RibbonSizes:
+    """The ribbon in SI units (m, Pa): lengths, forces and moments of the scene are SI too."""
+
+    length: Annotated[float, Bounds(gt=0)]
+    width: Annotated[float, Bounds(gt=0)]
+    thickness: Annotated[float, Bounds(gt=0)]
+    youngs_modulus: Annotated[float, Bounds(gt=0)]
+    poisson_ratio: Annotated[float, Bounds(gt=-1, le=0.5)]
+
+
+@dataclass(frozen=True)
 class Scene:
     """One ribbon: its law, its interval, its boundary conditions and how to solve it."""
 
     name: str
     law: Law
     boundary: Boundary
-    guess: LoadGuess | StrainGuess | SolutionGuess
+    guess: Guess = "auto"
+    starts: Annotated[int, Bounds(ge=1)] = 1
+    seed: Annotated[int, Bounds(ge=0)] = 0
     formulation: Literal["inverted", "algebraic", "differentiated", "energy"] | Algebraic = (
         "inverted"
     )
@@ -175,3 +186,4 @@ class Scene:
     transcription: Collocation | Shooting = Collocation()
     solver: Auto | Ipopt | Newton = Auto()
     reference: Reference | None = None
+    ribbon: RibbonSizes | None = None

@@ -69,12 +69,18 @@ def shown(value: object) -> str:
 
 def suggestion(word: str, known: Iterable[str]) -> str:
     """Return "; did you mean 'x'?" for the known word nearest to `word`, or an empty text."""
+    near = nearest(word, known)
+    return f"; did you mean {near!r}?" if near else ""
+
+
+def nearest(word: str, known: Iterable[str]) -> str:
+    """Return the known word that `word` was probably meant to be, or an empty text."""
     # Imported late: only a mistake pays for it.
     from difflib import get_close_matches
 
     # Of two letters, one in common must do: d4 for d1.
     near = get_close_matches(word, list(known), n=1, cutoff=0.5 if len(word) < 4 else 0.6)
-    return f"; did you mean {near[0]!r}?" if near else ""
+    return near[0] if near else ""
 
 
 def report(source: str, problems: Iterable[Problem], places: Mapping[Path, Place]) -> str:

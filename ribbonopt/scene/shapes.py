@@ -12,6 +12,8 @@ from numbers import Real
 from types import NoneType, UnionType
 from typing import Annotated, Any, Literal, Union, get_args, get_origin, get_type_hints
 
+from .problems import nearest
+
 
 @cache
 def hints(cls: type) -> dict[str, Any]:
@@ -52,7 +54,8 @@ def tag_chooser(annotation: Any) -> Callable[[Any], str | None]:
     """Return the function that picks the branch of a union by the shape of a value.
 
     A mapping goes to the dataclass named by its `type`; where the dataclasses have no `type`, to
-    the one that owns most of its keys. No branch may exist for the tag that is returned.
+    the one that owns most of its keys, or else names like them. No branch may exist for the tag
+    that is returned.
     """
     classes = {tag: hints(cls) for tag, cls in classes_of(annotation).items()}
     types = types_of(annotation)
@@ -65,7 +68,14 @@ def tag_chooser(annotation: Any) -> Callable[[Any], str | None]:
         if types:
             name = value.get("type")
             return types.get(name) if isinstance(name, str) else None
-        return max(classes, key=lambda tag: sum(key in classes[tag] for key in value))
+        keys = [key for key in value if isinstance(key, str)]
+        owned = {tag: sum(key in classes[tag] for key in keys) for tag in classes}
+        if not any(owned.values()):
+            names = [name for members in classes.values() for name in members]
+            meant = [nearest(key, names) for key in keys]
+            owned = {tag: sum(name in classes[tag] for name in meant) for tag in classes}
+        best = max(owned, key=lambda tag: owned[tag])
+        return best if owned[best] else None
 
     return choose
 

@@ -50,7 +50,7 @@ def validate(cls: type[T], data: object) -> T:
         from .explain import explain  # only a mistake pays for it
 
         details = error.errors(include_url=False)
-        raise InvalidSceneError(explain(cls, detail) for detail in details) from None
+        raise InvalidSceneError(explain(cls, details)) from None
     return instance
 
 

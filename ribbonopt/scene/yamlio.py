@@ -8,8 +8,9 @@ from typing import Any
 
 from ..errors import SceneError
 from .checks import check
+from .ends import Boundary
 from .laws import Sadowsky
-from .model import Boundary, Scene, SolutionGuess
+from .model import Scene
 from .problems import InvalidSceneError, Problem, report
 from .validation import validate
 from .yamltext import YamlTextError, read
@@ -90,10 +91,10 @@ def loads_scene(text: str, source: str = "<string>", overrides: Sequence[str] = 
         where = f"{source}, line {error.line}" if error.line else source
         raise SceneError(f"{where}: {error}") from None
     if written.data is None:
-        raise SceneError(f"{source}: is empty; expected a scene with name, law, boundary, guess")
+        raise SceneError(f"{source}: is empty; expected a scene with name, law, boundary")
     if not isinstance(written.data, dict):
         kind = "a list" if isinstance(written.data, list) else "a single value"
-        raise SceneError(f"{source}: is {kind}; expected keys such as name, law, boundary, guess")
+        raise SceneError(f"{source}: is {kind}; expected keys such as name, law, boundary")
     plain = written
     if overrides:
         from .overrides import override  # only scenes that are overridden pay for it
@@ -161,8 +162,10 @@ def _further(data: object, problems: Sequence[Problem]) -> list[Problem]:
         return []
     faulty = {problem.path[0] for problem in problems}
     if "parameters" in faulty:
-        faulty.add("boundary")  # its formulas would seem to use unknown names
-    parts = {"interval", "parameters", "boundary"} - faulty
+        faulty |= {"boundary", "guess"}  # their formulas would seem to use unknown names
+    if "interval" in faulty:
+        faulty.add("ribbon")  # which would seem not to be as long as the default
+    parts = {"interval", "parameters", "boundary", "guess", "ribbon"} - faulty
     sound = {key: value for key, value in data.items() if key in parts}
-    blank = {"name": "", "law": Sadowsky(), "boundary": Boundary(), "guess": SolutionGuess("")}
+    blank = {"name": "", "law": Sadowsky(), "boundary": Boundary()}
     return check(validate(Scene, blank | sound))

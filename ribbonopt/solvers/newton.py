@@ -19,7 +19,7 @@ from ribbonopt.arrays import Array
 from ribbonopt.transcription import NLP
 
 from .status import SolveReport, Status
-from .systems import ElementSystem, SparseSystem
+from .systems import ElementSystem, RelaxedSystem, SparseSystem
 
 if TYPE_CHECKING:
     from .protocols import System
@@ -47,11 +47,16 @@ class Newton:
         """Build the system now rather than at the first solve."""
         self.system.build()
 
-    def solve(self, w: Array, p: Array) -> SolveReport:
-        """Solve from the guess w (nw,) for the parameters p (np,)."""
+    def solve(self, w: Array, p: Array, relaxed: Array | None = None) -> SolveReport:
+        """Solve from the guess w (nw,) for the parameters p (np,).
+
+        `relaxed` (nb,) are residuals that the conditions shall have instead of zero.
+        """
         if not self.nlp.square:
             return _Run(self, w, p).report(Status.NOT_SQUARE)
         run = _Run(self, np.array(w, dtype=float), np.asarray(p, dtype=float))
+        if relaxed is not None and isinstance(self.system, ElementSystem):
+            run.system = RelaxedSystem(self.system, relaxed)
         with np.errstate(all="ignore"):
             return run.report(run.iterate())
 
@@ -61,6 +66,7 @@ class _Run:
 
     def __init__(self, settings: Newton, w: Array, p: Array) -> None:
         self.settings, self.w, self.p = settings, w, p
+        self.system: System = settings.system
         self.iterations = self.factorizations = 0
         self.evaluate = self.linear = 0.0
         self.started = time.perf_counter()
@@ -108,7 +114,7 @@ class _Run:
 
     def _stalled(self) -> Status:
         # At the limit of rounding no step contracts any more; the iterate is as good as it gets.
-        residuals = self.settings.system.vector(self.w, self.p)
+        residuals = self.system.vector(self.w, self.p)
         attainable = ROUNDING * (1 + np.abs(self.w).max())
         return Status.CONVERGED if np.abs(residuals).max() <= attainable else Status.STALLED
 
@@ -117,9 +123,9 @@ class _Run:
 
     def _newton_step(self) -> Array:
         start = time.perf_counter()
-        residuals, derivatives = self.settings.system.linearize(self.w, self.p)
+        residuals, derivatives = self.system.linearize(self.w, self.p)
         middle = time.perf_counter()
-        self.factors = self.settings.system.factor(derivatives, self.p)
+        self.factors = self.system.factor(derivatives, self.p)
         step = self.factors.solve(residuals)
         self.evaluate += middle - start
         self.linear += time.perf_counter() - middle
@@ -128,7 +134,7 @@ class _Run:
 
     def _simplified_step(self, w: Array) -> Array:
         start = time.perf_counter()
-        residuals = self.settings.system.residuals(w, self.p)
+        residuals = self.system.residuals(w, self.p)
         middle = time.perf_counter()
         step = self.factors.solve(residuals)
         self.evaluate += middle - start
@@ -141,7 +147,7 @@ class _Run:
             status=status,
             w=self.w,
             multipliers=np.zeros(self.settings.nlp.equations),
-            residuals=self.settings.system.vector(self.w, self.p),
+            residuals=self.system.vector(self.w, self.p),
             iterations=self.iterations,
             factorizations=self.factorizations,
             evaluate=self.evaluate,

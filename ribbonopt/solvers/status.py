@@ -41,12 +41,23 @@ class Status(Enum):
         "the equations are solved, but not the problem the scene states: start from another guess, "
         "or refine the mesh"
     )
+    NO_START = (
+        "no equilibrium of the smooth law was found to start from, from any shape that fits the "
+        "ends: give a guess, or bring the ends to an easier place first"
+    )
     UNREACHABLE = "the ends are further apart than the ribbon is long: bring them together"
 
     @property
     def converged(self) -> bool:
         """Whether the nonlinear equations are solved."""
         return self in (Status.CONVERGED, Status.WRONG_SOLUTION)
+
+    @property
+    def failure(self) -> str:
+        """What a solve gave instead of a solution, in a word; nothing where it gave one."""
+        if self is Status.CONVERGED:
+            return ""
+        return "wrong-solution" if self is Status.WRONG_SOLUTION else "not-converged"
 
 
 @dataclass(frozen=True, eq=False)

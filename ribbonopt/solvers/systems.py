@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import TYPE_CHECKING
 
 import casadi as ca
@@ -43,6 +43,38 @@ class ElementSystem:
     def vector(self, w: Array, p: Array) -> Array:
         """Residuals in the order of the NLP's constraints."""
         return self.blocks.residuals(w, p).vector()
+
+
+@dataclass(frozen=True, eq=False)
+class RelaxedSystem:
+    """A chain of elements whose conditions need only be met up to given values (nb,)."""
+
+    system: ElementSystem
+    conditions: Array
+
+    def build(self) -> None:
+        """Build the functions now rather than at the first evaluation."""
+        self.system.build()
+
+    def residuals(self, w: Array, p: Array) -> Residuals:
+        """Residuals at w."""
+        return self._relaxed(self.system.residuals(w, p))
+
+    def linearize(self, w: Array, p: Array) -> tuple[Residuals, Derivatives]:
+        """Residuals and derivatives at w."""
+        residuals, derivatives = self.system.linearize(w, p)
+        return self._relaxed(residuals), derivatives
+
+    def factor(self, derivatives: Derivatives, p: Array) -> CondensedSystem:
+        """Factors of the Jacobian; LinAlgError where it is singular."""
+        return self.system.factor(derivatives, p)
+
+    def vector(self, w: Array, p: Array) -> Array:
+        """Residuals in the order of the NLP's constraints."""
+        return self.residuals(w, p).vector()
+
+    def _relaxed(self, residuals: Residuals) -> Residuals:
+        return replace(residuals, conditions=residuals.conditions - self.conditions)
 
 
 @dataclass(frozen=True, eq=False)

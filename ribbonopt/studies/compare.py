@@ -41,7 +41,7 @@ Numbers = Sequence[float]
 
 @dataclass(frozen=True)
 class Reference:
-    """Known n, m (lab frame) at the start, and where they come from."""
+    """Known n, m (lab frame, units of the scene) at the start, and where they come from."""
 
     n0: Numbers
     m0: Numbers

@@ -6,8 +6,8 @@ What is refused or does not converge is a measurement too, with the message that
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
-from functools import cached_property
+from dataclasses import dataclass, replace
+from functools import cached_property, lru_cache
 from statistics import median
 from typing import Any
 
@@ -17,9 +17,11 @@ import numpy as np
 from ribbonopt.accuracy.estimate import ROUNDING, improved
 from ribbonopt.arrays import Array
 from ribbonopt.errors import ConvergenceError, RibbonoptError
+from ribbonopt.guess import Guess
 from ribbonopt.pipeline import Prepared, prepare
 from ribbonopt.problem import ribbon_of, theta_of
 from ribbonopt.scene import Scene
+from ribbonopt.scene.units import Units, in_special_units
 from ribbonopt.solution import Solution
 
 from .pairs import Mesh, Pair
@@ -33,12 +35,14 @@ class Profile:
     """What errors are measured on: n, m (3,) at the start, lab frame, and u (SAMPLES, 3) along s.
 
     u is taken in the middles of equal parts of the ribbon, because it may jump at the ends (at the
-    end of half a Moebius ribbon m2 changes sign, and at epsilon = 0 that throws u2 over).
+    end of half a Moebius ribbon m2 changes sign, and at epsilon = 0 that throws u2 over). All in
+    the scene's `units`, with which n and m can be compared.
     """
 
     n0: Array
     m0: Array
     u: Array
+    units: Units
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,15 +85,17 @@ class LawResidual:
 
     scene: Scene
 
-    def __call__(self, outputs: dict[str, Array]) -> float:
+    def __call__(self, outputs: dict[str, Array], units: Units) -> float:
         """Return the largest departure on sampled outputs."""
-        expected = np.array(self._strain(outputs["m2"][None], outputs["m3"][None]))
-        found = np.stack([outputs["u2"], outputs["u3"]])
+        m2, m3 = (outputs[name][None] / units.moment for name in ("m2", "m3"))
+        expected = np.array(self._strain(m2, m3))
+        found = np.stack([outputs["u2"], outputs["u3"]]) / units.strain
         return _relative(found - expected, found)
 
     @cached_property
     def _strain(self) -> ca.Function:
-        ribbon, values = ribbon_of(self.scene), list(theta_of(self.scene).values())
+        scene = in_special_units(self.scene)
+        ribbon, values = ribbon_of(scene), list(theta_of(scene).values())
         m2, m3 = ca.SX.sym("m2"), ca.SX.sym("m3")
         u = ca.vertcat(*ribbon.law.strain(m2, m3))
         theta = ca.vertcat(*ribbon.theta.values())
@@ -105,9 +111,15 @@ class Cost:
     solve: float
 
 
+@lru_cache(maxsize=1)
+def _guess(prepared: Prepared) -> Guess:
+    """First guess of a prepared scene, made once for its repeated solves."""
+    return prepared.guess()
+
+
 def cost_of(prepared: Prepared) -> Cost:
     """Solve again and return the cost; guess and checks, the same for all pairs, are left out."""
-    attempts = prepared.solver.solve(*prepared.start()).attempts
+    attempts = prepared.solver.solve(*prepared.start(guess=_guess(prepared))).attempts
     return Cost(
         sum(a.evaluate for a in attempts),
         sum(a.linear for a in attempts),
@@ -124,7 +136,8 @@ def measure(
     """
     try:
         prepared = prepare(pair.scene(scene, mesh))
-        solution = prepared.solve()
+        # The one guess: a pair that needs another start than the rest has failed here.
+        solution = prepared.solve(guess=_guess(prepared), fallback=False)
         costs = [cost_of(prepared)]
         while len(costs) < repeat and costs[0].solve < SLOW:
             costs.append(cost_of(prepared))
@@ -153,11 +166,11 @@ def _measured(
     if solution.status.converged:
         start, end = solution.scene.interval
         o = solution.outputs(start + (end - start) * (np.arange(SAMPLES) + 0.5) / SAMPLES)
-        profile = Profile(solution.n0, solution.m0, o["u"])
+        profile = Profile(solution.n0, solution.m0, o["u"], solution.units)
         estimate = _estimate(solution, profile)
         numbers |= {
             "drift_invariant": solution.verification.drift["H"],
-            "drift_law": LawResidual(solution.scene)(o),
+            "drift_law": LawResidual(solution.scene)(o, solution.units),
             "drift_frame": float(o["orthonormality"].max()),
         }
     message = "" if solution.verified else _line(solution.message)
@@ -170,19 +183,21 @@ def _estimate(solution: Solution, profile: Profile) -> float | None:
     if solution.problem.recovered:
         return None
     better = improved(solution)
-    errors = errors_of(Profile(better.n0, better.m0, profile.u), profile)
+    errors = errors_of(replace(profile, n0=better.n0, m0=better.m0), profile)
     return max(errors["error_n0"], errors["error_m0"], ROUNDING)
 
 
 def load_sizes(profile: Profile) -> tuple[float, float]:
     """Sizes of n(0) and m(0); one that vanishes is measured by the other, and both by one."""
-    n, m = float(np.linalg.norm(profile.n0)), float(np.linalg.norm(profile.m0))
+    units = profile.units
+    n = float(np.linalg.norm(profile.n0)) / units.force
+    m = float(np.linalg.norm(profile.m0)) / units.moment
     tiny = 1e-9 * max(n, m)
     if n <= tiny:
         n = m
     if m <= tiny:
         m = n
-    return n or 1.0, m or 1.0
+    return (n or 1.0) * units.force, (m or 1.0) * units.moment
 
 
 def errors_of(found: Profile, true: Profile) -> dict[str, float]:

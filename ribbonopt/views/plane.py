@@ -18,7 +18,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-STRAIGHT = 1e-9  # largest strain of a ribbon that counts as straight
+STRAIGHT = 1e-9  # largest strain, times L, of a ribbon that counts as straight
 
 
 def plot_plane(solution: Solution, complete: bool = True) -> Figure:
@@ -37,7 +37,7 @@ def plot_plane(solution: Solution, complete: bool = True) -> Figure:
 def draw_plane(subject: Subject) -> Figure:
     """Plot the path in the plane; a jump between them is dotted."""
     pieces = subject.pieces
-    (left, right), (low, high) = _limits(pieces)
+    (left, right), (low, high) = _limits(pieces, subject.units.strain)
     shape = (high - low) / (right - left)
     figure = blank(6.6, (2.05 if subject.mirrored else 1.8) + 5.6 * shape)
     axes = figure.add_subplot()
@@ -50,10 +50,10 @@ def draw_plane(subject: Subject) -> Figure:
         jump = [[a.u2[-1], b.u2[0]], [a.u3[-1], b.u3[0]]]
         if abs(jump[0][1] - jump[0][0]) > tolerance:
             axes.plot(*jump, color=FAINT, lw=1.3, ls=":", zorder=2)
-    start, end = subject.interval
+    (start, end), metres = subject.interval, " m" if subject.units.si else ""
     for piece, row, marker, size, fill, label in (
-        (subject.solved[0], 0, "o", 6, BENDING, f"start, $s = {start:.4g}$"),
-        (subject.solved[-1], -1, "s", 10, "none", f"end, $s = {end:.4g}$"),
+        (subject.solved[0], 0, "o", 6, BENDING, f"start, $s = {start:.4g}${metres}"),
+        (subject.solved[-1], -1, "s", 10, "none", f"end, $s = {end:.4g}${metres}"),
     ):
         axes.plot(
             piece.u2[row],
@@ -70,9 +70,9 @@ def draw_plane(subject: Subject) -> Figure:
     if subject.mirrored:
         axes.plot([], [], color=BENDING, lw=1.8, ls=DASHES, label="second half by symmetry")
     axes.set(xlim=(left, right), ylim=(low, high), aspect="equal")
-    axes.set_xlabel(r"bending strain $u_2$")
-    axes.set_ylabel(r"twisting strain $u_3$")
-    head(axes, subject.name)
+    axes.set_xlabel(subject.label(r"bending strain $u_2$", "1/m"))
+    axes.set_ylabel(subject.label(r"twisting strain $u_3$", "1/m"))
+    head(axes, subject.name, subject.units)
     figure.legend(loc="outside lower center", ncols=2, frameon=False, fontsize=9)
     tidy(axes)
     return figure
@@ -92,12 +92,14 @@ def _shade(axes: Axes, far: float) -> None:
     axes.axvline(0, color=INK, lw=0.5, zorder=1)
 
 
-def _limits(pieces: tuple[Piece, ...]) -> tuple[tuple[float, float], tuple[float, float]]:
+def _limits(
+    pieces: tuple[Piece, ...], unit: float
+) -> tuple[tuple[float, float], tuple[float, float]]:
     """Limits around the path and the origin: not flatter than 1 : 2, not steeper than 1 : 1."""
     u2 = np.concatenate([[0.0], *(p.u2 for p in pieces)])
     u3 = np.concatenate([[0.0], *(p.u3 for p in pieces)])
     size = max(np.ptp(u2), np.ptp(u3)) * 1.16
-    size = size if size > STRAIGHT else 1.0
+    size = size if size > STRAIGHT * unit else unit
     middle = [(v.min() + v.max()) / 2 for v in (u2, u3)]
     half = [max(size, np.ptp(u2) * 1.16) / 2, max(size / 2, np.ptp(u3) * 1.16) / 2]
     (a, b), (p, q) = middle, half

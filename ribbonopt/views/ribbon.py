@@ -31,8 +31,8 @@ def plot_ribbon(
     solution
         What to draw.
     half_width
-        Default: a twentieth of the length drawn, or less so that no generatrices cross. The figure
-        states it.
+        Default: that of the ribbon, where the scene says it; else a twentieth of the length drawn,
+        or less so that no generatrices cross. The figure states it.
     complete
         Add, in a lighter tone, the other half of a loop of which this solution is one half by
         symmetry.
@@ -43,7 +43,7 @@ def plot_ribbon(
 def draw_ribbon(subject: Subject, half_width: float | None = None) -> Figure:
     """Draw a ribbon."""
     pieces = subject.pieces
-    surface = sweep(pieces, half_width)
+    surface = sweep(pieces, subject.half_width if half_width is None else half_width)
     line = np.concatenate([p.r for p in pieces])
     camera = place_camera(line, np.concatenate([p.d1 for p in pieces]))
     drawing = draw_surface(surface, camera)
@@ -58,8 +58,8 @@ def draw_ribbon(subject: Subject, half_width: float | None = None) -> Figure:
     _paint(axes, drawing)
     axes.set(xlim=box[:2], ylim=box[2:], aspect="equal")
     axes.set_axis_off()
-    head(axes, subject.name)
-    _scale_bar(axes, box, size)
+    head(axes, subject.name, subject.units)
+    _scale_bar(axes, box, size, " m" if subject.units.si else "")
     _triad(axes, camera, box, size)
     figure.supxlabel(_caption(subject, surface), fontsize=8.5, color=INK)
     return figure
@@ -81,12 +81,13 @@ def _paint(axes: Axes, drawing: Drawing) -> None:
     )
 
 
-def _scale_bar(axes: Axes, box: tuple[float, float, float, float], size: float) -> None:
+def _scale_bar(axes: Axes, box: tuple[float, float, float, float], size: float, unit: str) -> None:
     exponent = np.floor(np.log10(0.25 * size))
     length = max(k * 10**exponent for k in (1, 2, 5) if k * 10**exponent <= 0.25 * size)
     x, y = box[0] + 0.03 * size, box[2] + 0.03 * size
     axes.plot([x, x + length], [y, y], color=INK, lw=2, solid_capstyle="butt")
-    axes.text(x + length / 2, y + 0.012 * size, f"{length:g}", ha="center", va="bottom", fontsize=9)
+    label = f"{length:g}{unit}"
+    axes.text(x + length / 2, y + 0.012 * size, label, ha="center", va="bottom", fontsize=9)
 
 
 def _triad(axes: Axes, camera: Camera, box: tuple[float, float, float, float], size: float) -> None:
@@ -117,9 +118,11 @@ def _triad(axes: Axes, camera: Camera, box: tuple[float, float, float, float], s
 
 
 def _caption(subject: Subject, surface: Surface) -> str:
-    lines = [
-        rf"drawn to the half-width {surface.half_width:.3g} along generatrices $d_2 + \eta\, d_3$"
-    ]
+    unit = " m" if subject.units.si else ""
+    width = f"{surface.half_width:.3g}{unit}"
+    if surface.half_width == subject.half_width:
+        width += ", the ribbon's own,"
+    lines = [rf"drawn to the half-width {width} along generatrices $d_2 + \eta\, d_3$"]
     notes = []
     if subject.mirrored:
         notes.append("second half (light) by symmetry")
@@ -129,5 +132,5 @@ def _caption(subject: Subject, surface: Surface) -> str:
         notes.append("generatrices cross")
     if surface.leaps:
         reach = ETA_BOUND * surface.half_width / LEAP_SLOPE
-        notes.append(rf"$\eta$ drawn smooth within {reach:.2g} of where $u_2$ changes sign")
+        notes.append(rf"$\eta$ drawn smooth within {reach:.2g}{unit} of where $u_2$ changes sign")
     return "\n".join([*lines, *([", ".join(notes)] if notes else [])])

@@ -52,8 +52,8 @@ def draw_strains(subject: Subject) -> Figure:
 
 
 def _label(top: Axes, bottom: Axes, subject: Subject) -> None:
-    head(top, subject.name, pad=26)
-    top.set_ylabel(r"strains $u_2,\ u_3$")
+    head(top, subject.name, subject.units, pad=26)
+    top.set_ylabel(subject.label(r"strains $u_2,\ u_3$", "1/m"))
     top.legend(loc="lower left", bbox_to_anchor=(0, 1.0, 1, 0), ncols=3, frameon=False, fontsize=9)
     bottom.axhspan(-1, 1, color=ALLOWED, lw=0, zorder=0)
     for sign in (-1, 1):
@@ -61,7 +61,7 @@ def _label(top: Axes, bottom: Axes, subject: Subject) -> None:
     bottom.set_ylim(-ETA_SHOWN, ETA_SHOWN)
     bottom.set_yticks([-1, 0, 1])
     bottom.set_ylabel(r"$\eta = u_3/u_2$")
-    bottom.set_xlabel(r"arclength $s$")
+    bottom.set_xlabel(subject.label(r"arclength $s$", "m"))
     bottom.set_xlim(subject.interval[0], subject.end)
     for axes in (top, bottom):
         tidy(axes)

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
+from ribbonopt.scene.units import Units
+
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
@@ -16,7 +18,7 @@ ALLOWED = "#dcefdc"  # the paper's green: |eta| <= 1
 FORBIDDEN = "#fbd9b0"  # the paper's orange: |eta| > 1
 INK = "#222222"
 FAINT = "#777777"
-UNITS = r"units $Dw = L = 1$"
+SPECIAL, SI = r"units $Dw = L = 1$", "SI units"
 DASHES = (0, (4, 2))  # what follows by symmetry
 
 
@@ -32,10 +34,10 @@ def blank(width: float, height: float) -> Figure:
     return figure
 
 
-def head(axes: Axes, name: str, pad: float = 6) -> None:
+def head(axes: Axes, name: str, units: Units, pad: float = 6) -> None:
     """Title: the scene's name, and the units."""
     axes.set_title(name, loc="left", fontsize=12, fontweight="bold", pad=pad)
-    axes.set_title(UNITS, loc="right", fontsize=9, pad=pad)
+    axes.set_title(SI if units.si else SPECIAL, loc="right", fontsize=9, pad=pad)
 
 
 def tidy(axes: Axes) -> None:

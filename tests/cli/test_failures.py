@@ -79,7 +79,6 @@ BAD: dict[str, tuple[str, str, tuple[str, ...]]] = {
     "no intervals": ("intervals: 10", "intervals: 0", ("line 8", "transcription.intervals", "0")),
     "unknown scheme": ("gauss", "gaus", ("line 8", "transcription.scheme", "gaus")),
     "no law": ("law: {type: regularized, epsilon: 0.01}\n", "", ("law",)),
-    "no guess": ("guess: {force: [0, 40, 40], moment: [0, 2, -9]}\n", "", ("guess",)),
 }
 
 

@@ -119,9 +119,10 @@ def test_energy_needs_a_law_with_an_energy(configs: Path, law: str) -> None:
         prepare(load_scene(configs / "moebius_half.yaml", [ENERGY, f"law={law}"]))
 
 
-def test_energy_refuses_loads_that_do_work(configs: Path) -> None:
-    with pytest.raises(ModelError, match=r"boundary.end.force.x = 1 does work"):
-        prepare(load_scene(configs / "cantilever.yaml", [ENERGY]))
+def test_energy_refuses_loads_without_a_potential(configs: Path) -> None:
+    follower = [ENERGY, "boundary.end.force={d1: 1, d2: 0, d3: 0}"]
+    with pytest.raises(ModelError, match=r"boundary.end.force.d1, other than zero, has no potential"):
+        prepare(load_scene(configs / "cantilever.yaml", follower))
 
 
 def test_energy_refuses_director_components(configs: Path) -> None:

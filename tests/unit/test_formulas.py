@@ -42,6 +42,8 @@ from ribbonopt.scene.formulas import (
         ("(-[1, 2, 3]).y", -2.0),
         (" 1\n + 1 ", 2.0),
         (".5 + 1. + 1e-1", 1.6),
+        ("180*deg - pi", 0.0),
+        ("cos(60*deg)", 0.5),
     ],
 )
 def test_values(text: str, value: float) -> None:
@@ -106,6 +108,8 @@ def test_numbers_are_named_in_order_but_not_exponents() -> None:
         ("u2(end) = (1", 11, "cannot be read"),
         ("sin = u2(end)", 1, r"write sin\(...\)"),
         ("turn(end) = n1(end)", 1, "is no function"),
+        ("deg(end) = n1(end)", 1, "is no function"),
+        ("u2(end) = 3*degree", 13, "did you mean 'deg'"),
         ("n(middle) = n", 1, r"taken at \(start\) or \(end\)"),
         ("[1, 2] = n", 1, "three scalars"),
         ("u2(end).x = 1", 1, "only a vector has a component"),

@@ -32,7 +32,7 @@ def saved(half: Solution, tmp_path: Path) -> Path:
 def store(solution: Solution, folder: Path) -> None:
     with staged_result(folder) as stage:
         save_solution(solution, stage.folder)
-        stage.commit(complete=True)
+        stage.commit()
 
 
 def test_loading_gives_back_what_was_saved(half: Solution, saved: Path) -> None:

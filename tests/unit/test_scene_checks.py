@@ -108,6 +108,7 @@ def test_every_rotation_is_a_frame_and_its_mirror_is_not(
     ("name", "message"),
     [
         ("pi", "a word of the formulas"),
+        ("deg", "a word of the formulas"),
         ("dot", "a word of the formulas"),
         ("n", "a word of the formulas"),
         ("start", "a word of the formulas"),

@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from typing import Any
 
 import pytest
-from hypothesis import given
+from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from ribbonopt import scene as room
@@ -58,6 +58,7 @@ partial = st.floats(-0.5, 0.5) | st.none()
 lab = st.builds(room.LabVector, *[values | st.none()] * 3)
 director = st.none() | st.builds(room.LabVector, partial, partial)
 loads = st.none() | triples | st.builds(room.AnyVector, *[values | st.none()] * 6)
+PIECES = ["whole", "half", "fundamental"]
 positive = st.floats(0, exclude_min=True, allow_nan=False, allow_infinity=False)
 laws = st.one_of(
     st.builds(room.Kirchhoff, B2=positive, B3=positive),
@@ -75,6 +76,63 @@ ends = st.builds(
     moment=loads,
 ) | st.builds(room.End, d1=director, d2=director, d3=director)
 numbers = st.tuples(floats, floats, floats)
+turns = st.sampled_from(["x", "y", "z", "d1", "d2", "d3"]).flatmap(
+    lambda axis: st.builds(room.Turn, **{axis: values})
+)
+rotations = st.one_of(
+    st.just("identity"),
+    st.sampled_from([room.Quaternion((0.6, 0.0, -0.8, 0.0)), room.Quaternion(("turn", 0.5) * 2)]),
+    st.builds(room.RotationVector, triples),
+    st.lists(turns, min_size=1).map(lambda several: room.Turns(tuple(several))),
+)
+along = st.sampled_from([(0.0, 0.0, 1.0), ("turn", 0.0, 1e-3)])
+held = st.builds(
+    room.End,
+    st.just("held"),
+    distance=st.floats(0, exclude_min=True, allow_infinity=False) | st.just("turn"),
+    moment=st.none() | triples,
+)
+supports = st.one_of(
+    st.builds(room.End, st.just("clamped"), triples, rotations),
+    st.builds(room.End, st.just("pinned"), triples, moment=st.none() | triples),
+    st.builds(
+        room.End,
+        st.just("hinged"),
+        triples,
+        axis=st.just("d2"),
+        along=along,
+        moment=st.builds(room.AnyVector, d2=values) | st.none(),
+    ),
+)
+loose = st.one_of(
+    st.builds(room.End, st.just("sliding"), triples, rotations, along=along),
+    st.builds(room.End, st.just("free"), force=st.none() | triples, moment=st.none() | triples),
+    st.builds(room.End, st.just("flip"), triples, axis=st.just("d1"), along=along),
+)
+loops = st.builds(room.Loop, st.integers(), st.sampled_from(["whole", "half"])) | st.builds(
+    room.Loop, st.integers(max_value=-1), st.just("fundamental")
+)
+boundaries = st.one_of(
+    st.builds(room.Boundary, supports, supports | loose | held),
+    st.builds(room.Boundary, loose, supports | loose),
+    st.builds(room.Boundary, loop=loops),
+)
+bands = st.builds(room.Band, st.integers(max_value=-1) | st.integers(1), st.sampled_from(PIECES))
+guesses = st.one_of(
+    st.sampled_from(["auto", "circle"]),
+    st.builds(room.StrainGuess, st.tuples(floats, floats)),
+    st.builds(room.ArcGuess, values),
+    st.builds(room.HelixGuess, st.builds(room.Helix, values, st.floats(-1, 1))),
+    st.builds(room.MoebiusGuess, bands),
+)
+ribbons = st.lists(positive, min_size=3, max_size=3, unique=True).flatmap(
+    lambda sizes: st.builds(
+        room.RibbonSizes,
+        *(st.just(size) for size in sorted(sizes, reverse=True)),
+        youngs_modulus=positive,
+        poisson_ratio=st.floats(-1, 0.5, exclude_min=True),
+    )
+)
 scenes = st.builds(
     Scene,
     name=st.text() | st.sampled_from(["1e-2", "yes", "null", "1:30", "a: b", "0x1", "# x", "\x85"]),
@@ -105,6 +163,42 @@ def test_dump_loads_back_to_an_equal_scene(scene: Scene) -> None:
     assert loads_scene(dump_scene(scene)) == scene
 
 
+@given(boundaries, guesses, ribbons | st.none(), st.integers(1), st.integers(0))
+def test_supports_loops_guesses_and_sizes_load_back(
+    boundary: room.Boundary, guess: Any, ribbon: Any, starts: int, seed: int
+) -> None:
+    assume(not boundary.loop or guess == "auto")
+    assume(not ribbon or ribbon.length > 1e-100)
+    scene = Scene(
+        "one",
+        room.Sadowsky(),
+        boundary,
+        guess,
+        starts,
+        seed,
+        parameters={"turn": 0.5},
+        ribbon=ribbon,
+    )
+    if ribbon:
+        scene = dataclasses.replace(scene, interval=(0.0, ribbon.length))
+    assert loads_scene(dump_scene(scene)) == scene
+
+
+def test_dump_of_supports_is_readable() -> None:
+    boundary = room.Boundary(
+        room.End("clamped", (0, 0, 0), room.Turns((room.Turn(x="90*deg"), room.Turn(d3=1)))),
+        room.End("held", distance=0.5),
+    )
+    text = dump_scene(Scene("one", room.Sadowsky(), boundary, room.MoebiusGuess(room.Band(3))))
+    assert "directors:\n" in text
+    assert "- {x: 90*deg}" in text
+    assert "end: {support: held, distance: 0.5}" in text
+    assert "moebius: {half_twists: 3}" in text
+    assert "guess" not in dump_scene(
+        Scene("one", room.Sadowsky(), room.Boundary(loop=room.Loop(1)), "auto")
+    )
+
+
 def objects(schema: Any) -> Iterator[dict[str, Any]]:
     for part in schema.values() if isinstance(schema, dict) else schema:
         if isinstance(part, dict | list):
@@ -118,7 +212,7 @@ def test_json_schema_describes_the_shorthands() -> None:
     json.dumps(schema)
     assert schema["$schema"].startswith("https://json-schema.org/")
     assert set(schema["properties"]) == {member.name for member in dataclasses.fields(Scene)}
-    assert set(schema["required"]) == {"name", "law", "boundary", "guess"}
+    assert set(schema["required"]) == {"name", "law", "boundary"}
     laws = schema["properties"]["law"]["oneOf"]
     assert {law["properties"]["type"]["const"] for law in laws} == {
         "kirchhoff",
@@ -137,6 +231,8 @@ def test_json_schema_describes_the_shorthands() -> None:
         == [{"oneOf": [{"type": "number"}, {"type": "string"}]}] * 3
     )
     assert "identity" in [branch.get("const") for branch in end["directors"]["oneOf"]]
+    assert {"clamped", "flip"} < set(end["support"]["oneOf"][0]["enum"])
+    assert schema["properties"]["guess"]["default"] == "auto"
     collocation = schema["properties"]["transcription"]["oneOf"][0]
     degree = collocation["properties"]["degree"]
     assert (degree["minimum"], degree["maximum"], degree["type"]) == (1, 10, "integer")

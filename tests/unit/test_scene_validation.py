@@ -9,17 +9,24 @@ import pytest
 
 from ribbonopt.scene import (
     AnyVector,
+    Band,
     Boundary,
     Collocation,
     Directors,
     End,
+    Helix,
+    HelixGuess,
     LabVector,
     LoadGuess,
+    MoebiusGuess,
     Newton,
+    Quaternion,
     Regularized,
     Sadowsky,
     Scene,
     SolutionGuess,
+    Turn,
+    Turns,
 )
 from ribbonopt.scene.bounds import Bounds
 from ribbonopt.scene.problems import InvalidSceneError
@@ -65,8 +72,27 @@ def test_branches_are_picked_by_shape() -> None:
 
 def test_guess_is_picked_by_its_keys() -> None:
     assert validate(Scene, {**GOOD, "guess": {"solution": "a"}}).guess == SolutionGuess("a")
+    helix = {"turns": "2*turn", "rise": 0.5}
+    assert validate(Scene, {**GOOD, "guess": {"helix": helix}}).guess == HelixGuess(Helix(**helix))
+    band = validate(Scene, {**GOOD, "guess": {"moebius": {"half_twists": 3}}}).guess
+    assert band == MoebiusGuess(Band(3))
     assert problems(guess={"solution": "a", "solutoin": 1}).keys() == {"guess.solutoin"}
     assert problems(guess={"force": [0, 1, 2]}).keys() == {"guess.moment"}
+
+
+def test_guess_need_not_be_given() -> None:
+    without = {key: value for key, value in GOOD.items() if key != "guess"}
+    assert validate(Scene, without).guess == "auto"
+    assert validate(Scene, {**GOOD, "guess": "circle"}).guess == "circle"
+
+
+def test_rotations_are_picked_by_their_keys() -> None:
+    turns = [{"x": "90*deg"}, {"d3": 1}]
+    start = {"directors": {"quaternion": [1, 0, 0, "a"]}}
+    end = {"directors": {"turns": turns}}
+    boundary = validate(Scene, {**GOOD, "boundary": {"start": start, "end": end}}).boundary
+    assert boundary.start.directors == Quaternion((1.0, 0.0, 0.0, "a"))
+    assert boundary.end.directors == Turns((Turn(x="90*deg"), Turn(d3=1.0)))
 
 
 def test_instances_are_checked_again() -> None:
@@ -159,7 +185,18 @@ COLLOCATION = {"type": "collocation"}
         ({"parameters": [1]}, "parameters", "expected a mapping of names"),
         ({"parameters": {3: 4}}, "parameters.3", "expected text as the key"),
         ({"name": None}, "name", "found null, expected text"),
-        ({"guess": "auto"}, "guess", "expected a mapping with keys among force, moment or"),
+        ({"guess": 1}, "guess", "a mapping with keys force, moment, or strains, or arc, or helix"),
+        ({"guess": "atuo"}, "guess", "expected 'auto' or 'circle'; did you mean 'auto'?"),
+        ({"guess": "none"}, "guess", "expected 'auto' or 'circle' or a mapping with keys force"),
+        ({"guess": "moebius"}, "guess", "did you mean {moebius: ...}?"),
+        ({"guess": {}}, "guess", "found {}, expected 'auto' or 'circle' or a mapping with keys"),
+        ({"guess": {"moebuis": {}}}, "guess.moebuis", "unknown key; did you mean 'moebius'?"),
+        ({"guess": {"arc": 1, "force": [0] * 3}}, "guess.arc", "cannot stand beside force, moment"),
+        ({"guess": {"helix": {"turns": 3}}}, "guess.helix.rise", "missing; expected a number from"),
+        ({"guess": {"helix": {"turns": 3, "rise": 2}}}, "guess.helix.rise", "from -1 to 1"),
+        ({"solver": "newton"}, "solver", "did you mean {type: newton}?"),
+        ({"starts": 0}, "starts", "found 0, expected a whole number >= 1"),
+        ({"seed": -1}, "seed", "found -1, expected a whole number >= 0"),
         ({"boundary": None}, "boundary", "found null, expected a mapping with keys among start"),
         ({"boundary": {"also": "n = 0"}}, "boundary.also", "found 'n = 0', expected a list"),
         ({"boundary": {"also": [1]}}, "boundary.also.0", "found 1, expected text"),
@@ -176,6 +213,49 @@ COLLOCATION = {"type": "collocation"}
             "or a mapping with keys among x, y, z",
         ),
         ({"boundary": {"end": {"directors": "id"}}}, "boundary.end.directors", "'identity'"),
+        ({"boundary": {"end": "clamped"}}, "boundary.end", "did you mean {support: clamped}?"),
+        ({"boundary": {"end": {"support": "clampt"}}}, "boundary.end.support", "mean 'clamped'?"),
+        ({"boundary": {"end": {"axis": "x"}}}, "boundary.end.axis", "expected 'd1', 'd2' or 'd3'"),
+        (
+            {"boundary": {"end": {"directors": {"quaternoin": [1, 0, 0, 0]}}}},
+            "boundary.end.directors.quaternoin",
+            "unknown key; did you mean 'quaternion'? (known keys: quaternion)",
+        ),
+        (
+            {"boundary": {"end": {"directors": {"quaternion": [1, 0, 0]}}}},
+            "boundary.end.directors.quaternion",
+            "found [1, 0, 0], expected a list of 4 items",
+        ),
+        (
+            {"boundary": {"end": {"directors": {"quaternion": [1, 0, 0, 0], "d1": [1, 0, 0]}}}},
+            "boundary.end.directors.quaternion",
+            "cannot stand beside d1, d2, d3; keep one",
+        ),
+        (
+            {"boundary": {"end": {"directors": {"w": 1}}}},
+            "boundary.end.directors",
+            "'identity' or a mapping with keys d1, d2, d3, or quaternion, or rotation_vector, or",
+        ),
+        (
+            {"boundary": {"end": {"directors": {"turns": [{"w": 1}]}}}},
+            "boundary.end.directors.turns.0.w",
+            "known keys: x, y, z, d1, d2, d3",
+        ),
+        (
+            {"boundary": {"loop": {"half_twist": 1}}},
+            "boundary.loop.half_twist",
+            "unknown key; did you mean 'half_twists'? (known keys: half_twists, piece)",
+        ),
+        (
+            {"boundary": {"loop": {"half_twists": 1.5}}},
+            "boundary.loop.half_twists",
+            "found 1.5, expected a whole number",
+        ),
+        (
+            {"boundary": {"loop": {"half_twists": 1, "piece": "hal"}}},
+            "boundary.loop.piece",
+            "expected 'whole', 'half' or 'fundamental'; did you mean 'half'?",
+        ),
     ],
 )
 def test_one_problem_speaks_of_one_branch(changes: Any, path: str, message: str) -> None:
@@ -190,7 +270,7 @@ def test_all_problems_at_once() -> None:
     with pytest.raises(InvalidSceneError) as caught:
         validate(Scene, {})
     missing = {p.path for p in caught.value.problems}
-    assert missing == {("name",), ("law",), ("boundary",), ("guess",)}
+    assert missing == {("name",), ("law",), ("boundary",)}
 
 
 @pytest.mark.parametrize("data", [None, 3, "text", [], True])

@@ -16,12 +16,12 @@ from ribbonopt.pipeline import solve
 from ribbonopt.results import OWN_FILES
 from ribbonopt.scene import load_scene
 from ribbonopt.solution import Solution
+from ribbonopt.symmetry import find_flip
 from ribbonopt.views import plot_plane, plot_ribbon, plot_strains, save_figures
 from ribbonopt.views.camera import place_camera
 from ribbonopt.views.pieces import sample_pieces
 from ribbonopt.views.subject import subject_of
 from ribbonopt.views.surface import ETA_BOUND, LEAP_SLOPE, sweep
-from ribbonopt.views.symmetry import find_flip
 
 CONFIGS = Path(__file__).parents[2] / "configs"
 SCENES = ("moebius_half", "moebius_kirchhoff", "moebius_regularized", "elastica_clamped", "helix")

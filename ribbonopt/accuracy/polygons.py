@@ -1,0 +1,81 @@
+"""Closed polygons in space: writhe, half twists of a band about them, and whether they cross."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ribbonopt.arrays import Array
+
+MEETING = 1e-6  # distance, relative to the length of the polygon, at which segments meet
+
+
+def half_twists(r: Array, twist: float) -> tuple[int, float]:
+    """Nearest whole number to 2 (Tw + Wr), and the distance from it.
+
+    Parameters
+    ----------
+    r
+        Points (k, 3) of the closed centre line, the first not repeated.
+    twist
+        Twist of the directors about it, in turns.
+    """
+    value = 2 * (twist + writhe(r))
+    if not np.isfinite(value):
+        return 0, float("inf")
+    return round(value), abs(value - round(value))
+
+
+def writhe(r: Array) -> float:
+    """Writhe of the closed polygon through points r (k, 3), exactly.
+
+    Every pair of segments contributes the signed area on the sphere of the directions from which
+    they are seen to cross (Levitt 1983; Klenin and Langowski 2000, method 1a).
+    """
+    a, b, c, d = _pairs(r)
+    ac, ad, bc, bd = c - a, d - a, c - b, d - b
+    normals = [_unit(_cross(u, v)) for u, v in ((ac, ad), (ad, bd), (bd, bc), (bc, ac))]
+    area = np.zeros(ac.shape[1])
+    for k in range(4):
+        sine = np.einsum("ij,ij->j", normals[k], normals[k - 1])
+        area += np.arcsin(np.clip(sine, -1.0, 1.0))
+    side = np.einsum("ij,ij->j", _cross(d - c, b - a), ac)
+    return float(np.sign(side) @ area) / (2 * np.pi)
+
+
+def crosses_itself(r: Array) -> bool:
+    """Whether two segments of the closed polygon r (k, 3) meet, to 1e-6 of its length."""
+    a, b, c, d = _pairs(r)
+    first, second, gap = b - a, d - c, c - a
+    normal = _cross(first, second)
+    size = np.einsum("ij,ij->j", normal, normal)
+    skew = size > 0
+    first, second, gap, normal = (v[:, skew] for v in (first, second, gap, normal))
+    distance = np.abs(np.einsum("ij,ij->j", gap, normal)) / np.sqrt(size[skew])
+    # Where on each segment, from 0 to 1, the lines through them are nearest.
+    places = [np.einsum("ij,ij->j", _cross(gap, v), normal) / size[skew] for v in (second, first)]
+    inside = (np.abs(np.array(places) - 0.5) < 0.51).all(axis=0)
+    length = np.linalg.norm(np.roll(r, -1, axis=0) - r, axis=1).sum()
+    return bool((distance[inside] < MEETING * length).any())
+
+
+def _pairs(r: Array) -> list[Array]:
+    """Return the ends a, b and c, d (3, pairs) of all pairs of segments that share no point."""
+    i, j = np.triu_indices(len(r), 2)
+    apart = (i > 0) | (j < len(r) - 1)
+    i, j = i[apart], j[apart]
+    after = np.roll(r, -1, axis=0)
+    # Columns of three: numpy then works on long rows.
+    return [np.ascontiguousarray(p[k].T) for p, k in ((r, i), (after, i), (r, j), (after, j))]
+
+
+def _cross(u: Array, v: Array) -> Array:
+    """Cross products of columns (3, k)."""
+    x, y, z = u
+    a, b, c = v
+    return np.stack([y * c - z * b, z * a - x * c, x * b - y * a])
+
+
+def _unit(v: Array) -> Array:
+    """Columns (3, k) divided by their lengths; zero stays zero."""
+    size = np.sqrt(np.einsum("ij,ij->j", v, v))
+    return np.asarray(v / np.where(size > 0, size, 1.0))

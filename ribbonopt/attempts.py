@@ -1,0 +1,120 @@
+"""Attempts at one scene, one guess after another: the best so far, and what all have cost."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
+from typing import TYPE_CHECKING, Any
+
+from ribbonopt.accuracy.resistance import where_it_resists
+from ribbonopt.accuracy.verify import unverified, verify
+from ribbonopt.arrays import Array
+from ribbonopt.guess import Guess, initial_unknowns
+from ribbonopt.problem import BoundaryValueProblem, Ribbon
+from ribbonopt.scene import Scene
+from ribbonopt.solution import Solution
+from ribbonopt.solvers import SolveReport, Status
+from ribbonopt.solvers.auto import Auto
+from ribbonopt.starts.costates import with_recovered
+from ribbonopt.transcription import NLP
+
+if TYPE_CHECKING:
+    from ribbonopt.solvers import Solver
+
+
+@dataclass(eq=False)
+class Attempts:
+    """What has been tried on one scene.
+
+    Attributes
+    ----------
+    scene, p : Scene, (np,) array
+        What is asked, and its parameters [theta, widths].
+    ribbon, problem, nlp, solver
+        The structure that was built for it.
+    path : list of mappings
+        Steps so far, with their cost.
+    best : Solution or None
+        The one nearest to what is asked.
+    """
+
+    scene: Scene
+    p: Array
+    ribbon: Ribbon
+    problem: BoundaryValueProblem
+    nlp: NLP
+    solver: Solver
+    path: list[Mapping[str, Any]] = field(default_factory=list)
+    best: Solution | None = None
+    _reports: list[SolveReport] = field(default_factory=list)
+
+    def run(self, guess: Guess, *, quick: bool = False) -> bool:
+        """Solve from one guess; return whether there is a verified solution now.
+
+        `quick` leaves it at Newton's method where the solver is `auto` and the equations square.
+        """
+        w = initial_unknowns(guess, self.ribbon, self.problem, self.nlp.blocks, self.p)
+        solver = self.solver
+        if quick and isinstance(solver, Auto) and self.nlp.square:
+            solver = solver.newton
+        report = solver.solve(w, self.p)
+        self.path += [self._step(attempt) for attempt in report.attempts]
+        self._reports += report.attempts
+        solution = self._solution(report)
+        if self.best is None or _merit(solution) > _merit(self.best):
+            self.best = solution
+        return self.best.verified
+
+    @property
+    def iterations(self) -> int:
+        """Iterations of all attempts."""
+        return sum(report.iterations for report in self._reports)
+
+    @property
+    def solvers(self) -> tuple[str, ...]:
+        """Names of the solvers used, those of the automatic start among them."""
+        named = tuple(report.solver for report in self._reports)
+        return (*named, "ipopt") if any("ipopt" in step["step"] for step in self.path) else named
+
+    @property
+    def seconds(self) -> tuple[float, float]:
+        """Seconds of function evaluation and of linear algebra."""
+        reports = self._reports
+        return sum(r.evaluate for r in reports), sum(r.linear for r in reports)
+
+    def _solution(self, report: SolveReport) -> Solution:
+        converged = report.status.converged
+        p = with_recovered(self.problem, self.nlp, report, self.p) if converged else self.p
+        solution = Solution(
+            scene=self.scene,
+            problem=self.problem,
+            dense=self.nlp.blocks.dense(report.w, p),
+            status=report.status,
+            message=report.status.value,
+            iterations=report.iterations,
+            verification=unverified(),
+            multipliers=report.multipliers,
+        )
+        if not converged:
+            where = where_it_resists(report.residuals, self.nlp.layout, solution)
+            return replace(solution, message=f"{report.status.value}. {where}")
+        verification = verify(solution, self.ribbon)
+        solution = replace(solution, verification=verification)
+        if not verification.problems:
+            return solution
+        message = f"{Status.WRONG_SOLUTION.value}. " + "; ".join(verification.problems)
+        return replace(solution, status=Status.WRONG_SOLUTION, message=message)
+
+    def _step(self, attempt: SolveReport) -> dict[str, Any]:
+        name, count = self.nlp.blocks.name, self.nlp.layout.element_count
+        outcome = "" if attempt.status.converged else f" ({attempt.status.name.lower()})"
+        return {
+            "step": f"{attempt.solver}, {name} on {count} intervals{outcome}",
+            "iterations": attempt.iterations,
+            "seconds": attempt.total,
+        }
+
+
+def _merit(solution: Solution) -> int:
+    """How near to a solution: verified, of other equations, or none."""
+    return 2 * solution.verified + solution.status.converged

@@ -1,0 +1,100 @@
+"""Guesses by all the loads at one end: the shape follows by integration."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import casadi as ca
+import numpy as np
+
+from ribbonopt.arrays import Array
+from ribbonopt.mechanics import RodFields
+from ribbonopt.mechanics.boundary import start_frame, start_position
+from ribbonopt.problem import Ribbon, theta_of
+from ribbonopt.scene import LoadGuess, Scene
+
+
+@dataclass(frozen=True, eq=False)
+class IntegratedLoads:
+    """Shape that a force and a moment at the start give, by Runge-Kutta steps of order 4.
+
+    `backwards` takes what is said of the start for the end, and fractions from there.
+    """
+
+    ribbon: Ribbon
+    scene: Scene
+    loads: LoadGuess
+    backwards: bool = False
+
+    def fields(self, fraction: Array) -> RodFields:
+        """Fields at fractions (k,) of the length, increasing from 0 to 1."""
+        model, boundary, parameters = self.ribbon.model, self.scene.boundary, self.scene.parameters
+        position = start_position(boundary, parameters)
+        frame = start_frame(boundary, parameters)
+        n, m = np.array(self.loads.force), np.array(self.loads.moment)
+        start = RodFields(position[None], frame[None], n[None], m[None])
+        states, c = model.pack(start, position)
+        length = self.scene.interval[1] - self.scene.interval[0]
+        widths = np.diff(fraction) * (-length if self.backwards else length)
+        # Steps short against the strains, which the loads bound.
+        strain = np.abs(m).max() + length * np.abs(n).max()
+        substeps = int(np.clip(np.ceil(np.abs(widths).max() * strain), 1, 100))
+        theta = np.array(list(theta_of(self.scene).values()))
+        widths = np.repeat(widths / substeps, substeps)
+        step, section = self._functions()
+        count = len(widths)
+        c, theta = (np.repeat(v[:, None], count + 1, axis=1) for v in (c, theta))
+        after = step.mapaccum("steps", count)(states[0], c[:, 1:], theta[:, 1:], widths[None])
+        x = np.hstack([states.T, np.array(after)])[:, ::substeps]
+        count = len(fraction)
+        parts = section.map(count)(x, c[:, :count], theta[:, :count])
+        r, d1, d2, d3, n, m = (np.array(part).T for part in parts[:6])
+        return RodFields(r, np.stack([d1, d2, d3], axis=2), n, m)
+
+    def _functions(self) -> tuple[ca.Function, ca.Function]:
+        """One step (x, c, theta, h) -> x, and the cross section (x, c, theta) -> r, d_i, n, m."""
+        model = self.ribbon.model
+        x = ca.SX.sym("x", len(model.states))
+        c = ca.SX.sym("c", len(model.constants))
+        theta = ca.vertcat(*self.ribbon.theta.values())
+        section = self.ribbon.section(x, c)
+        u = ca.vertcat(0, section.u2, section.u3)
+        rates = ca.Function("rates", [x, c, theta], [model.rates(x, section.rod, u)])
+        h = ca.SX.sym("h")
+        k1 = rates(x, c, theta)
+        k2 = rates(x + h / 2 * k1, c, theta)
+        k3 = rates(x + h / 2 * k2, c, theta)
+        k4 = rates(x + h * k3, c, theta)
+        after = x + h / 6 * (k1 + 2 * k2 + 2 * k3 + k4)
+        return ca.Function("step", [x, c, theta, h], [after]), self.ribbon.section_function
+
+
+@dataclass(frozen=True, eq=False)
+class FollowerLoads:
+    """Shape of a ribbon clamped at the start whose end carries known loads along its directors.
+
+    Integrated from the end, then moved as a rigid body: an equilibrium, whatever the loads.
+    """
+
+    ribbon: Ribbon
+    scene: Scene
+    force: Array
+    moment: Array
+
+    def fields(self, fraction: Array) -> RodFields:
+        """Fields at fractions (k,) of the length, increasing from 0 to 1."""
+        boundary, parameters = self.scene.boundary, self.scene.parameters
+        frame = start_frame(boundary, parameters)
+        x, y, z = frame @ self.force
+        mx, my, mz = frame @ self.moment
+        loads = LoadGuess((x, y, z), (mx, my, mz))
+        whole = np.concatenate([[0.0], 1 - fraction[::-1], [1.0]])
+        found = IntegratedLoads(self.ribbon, self.scene, loads, backwards=True).fields(whole)
+        turn = frame @ found.frames[-1].T
+        inner = slice(-2, 0, -1)
+        return RodFields(
+            start_position(boundary, parameters) + (found.r[inner] - found.r[-1]) @ turn.T,
+            turn @ found.frames[inner],
+            found.n[inner] @ turn.T,
+            found.m[inner] @ turn.T,
+        )

@@ -1,0 +1,138 @@
+"""What a scene may say of the ends of a ribbon: components, frames, supports, and loops.
+
+A `Value` is a number, or a formula of the scene's `parameters` such as "1 - shortening". Vectors
+are in the lab frame unless named along directors; angles are in radians.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Literal
+
+Value = float | str
+Triple = tuple[Value, Value, Value]
+Director = Literal["d1", "d2", "d3"]
+
+
+@dataclass(frozen=True)
+class LabVector:
+    """Some components of a vector in the lab frame; those not named are left free."""
+
+    x: Value | None = None
+    y: Value | None = None
+    z: Value | None = None
+
+
+@dataclass(frozen=True)
+class AnyVector:
+    """Some components of a vector: in the lab frame (x, y, z) or along directors (d1, d2, d3)."""
+
+    x: Value | None = None
+    y: Value | None = None
+    z: Value | None = None
+    d1: Value | None = None
+    d2: Value | None = None
+    d3: Value | None = None
+
+
+@dataclass(frozen=True)
+class Directors:
+    """A whole frame: two or three of its directors, each by its lab components."""
+
+    d1: Triple | None = None
+    d2: Triple | None = None
+    d3: Triple | None = None
+
+
+@dataclass(frozen=True)
+class Quaternion:
+    """A whole frame: the unit quaternion, scalar first, that turns the lab axes to directors."""
+
+    quaternion: tuple[Value, Value, Value, Value]
+
+
+@dataclass(frozen=True)
+class RotationVector:
+    """A whole frame: axis times angle of the rotation that takes the lab axes to the directors."""
+
+    rotation_vector: Triple
+
+
+@dataclass(frozen=True)
+class Turn:
+    """One rotation by an angle about one named axis: of the lab, or a director as it then is."""
+
+    x: Value | None = None
+    y: Value | None = None
+    z: Value | None = None
+    d1: Value | None = None
+    d2: Value | None = None
+    d3: Value | None = None
+
+
+@dataclass(frozen=True)
+class Turns:
+    """A whole frame: the lab axes after these rotations, one after another."""
+
+    turns: tuple[Turn, ...]
+
+
+Rotation = Literal["identity"] | Directors | Quaternion | RotationVector | Turns
+Support = Literal["clamped", "pinned", "hinged", "sliding", "free", "held", "flip"]
+
+
+@dataclass(frozen=True)
+class End:
+    """What is prescribed at one end; without a `support`, everything not named is free.
+
+    A support says what is held and makes the loads that go with what is free vanish, unless they
+    are given (`force`, `moment`: dead loads):
+
+    - clamped: `position` and `directors`;
+    - pinned: `position`; moment zero;
+    - hinged: `position`, the director `axis` points `along`; no moment about it;
+    - sliding: `directors`, and the point lies on the line through `position` `along` a direction;
+      no force along it;
+    - free: force and moment zero;
+    - held (end only): at a `distance` from the start, by a string: force along it, moment zero;
+    - flip: on an axis of two-fold symmetry, the line through `position` `along` a direction, with
+      the director `axis` along it; no force and no moment along it.
+    """
+
+    support: Support | None = None
+    position: Triple | LabVector | None = None
+    directors: Rotation | None = None
+    d1: Triple | LabVector | None = None
+    d2: Triple | LabVector | None = None
+    d3: Triple | LabVector | None = None
+    axis: Director | None = None
+    along: Triple | None = None
+    distance: Value | None = None
+    force: Triple | AnyVector | None = None
+    moment: Triple | AnyVector | None = None
+
+
+@dataclass(frozen=True)
+class Loop:
+    """A closed band of `half_twists` (2 (twist + writhe) of its directors; negative: mirrored).
+
+    The interval is the `piece` that is solved: the whole loop, a half (flip symmetry), or the
+    fundamental one of length L / (2 |half_twists|) of a band with dihedral symmetry.
+    """
+
+    half_twists: int
+    piece: Literal["whole", "half", "fundamental"] = "whole"
+
+
+@dataclass(frozen=True)
+class Boundary:
+    """Conditions at both ends; `also` holds further equations as formulas.
+
+    With a `loop`, both ends follow from it, and only the place of a whole or half loop may be
+    given, as position and directors of the start.
+    """
+
+    start: End = End()
+    end: End = End()
+    also: tuple[str, ...] = ()
+    loop: Loop | None = None

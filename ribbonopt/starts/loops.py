@@ -1,0 +1,72 @@
+"""Loops that scenes declare, and those that their ends make without saying so."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from ribbonopt.mechanics.boundary import start_position
+from ribbonopt.mechanics.frames import DIRECTORS, components, frame_of
+from ribbonopt.mechanics.loops import end_turn
+from ribbonopt.scene import Boundary, Loop, Scene
+
+CLOSE = 1e-9
+
+
+def loop_of(scene: Scene) -> Loop | None:
+    """Return the loop that a scene declares, or that its ends make without saying so.
+
+    Undeclared loops have the fewest half twists: 0 or 1 for a whole loop, eq. (6.2); 1 for a half
+    as that of section 5.
+    """
+    boundary, parameters = scene.boundary, scene.parameters
+    if boundary.loop is not None:
+        return boundary.loop
+    places = [components(end.position, parameters) for end in (boundary.start, boundary.end)]
+    shared = {axis for axis in places[0] if places[0][axis] == places[1].get(axis)}
+    first = frame_of(boundary.start, parameters)
+    if len(shared) < 2 or not places[1].keys() <= shared or first is None:
+        return None
+    last = frame_of(boundary.end, parameters)
+    if last is None:
+        half = len(shared) == 2 and _ends_across(boundary, parameters, first, shared)
+        return Loop(1, "half") if half else None
+    for half_twists in (0, 1):
+        if np.abs(first @ end_turn(half_twists) - last).max() < CLOSE:
+            return Loop(half_twists)
+    return None
+
+
+def closed_scene(scene: Scene) -> Scene:
+    """Return a scene whose whole loop is closed in space too, as the least energy needs it.
+
+    Equations of equilibrium may leave a component of the gap to symmetry, eq. (6.2).
+    """
+    loop = loop_of(scene)
+    if scene.boundary.loop is not None or loop is None or loop.piece != "whole":
+        return scene
+    x, y, z = start_position(scene.boundary, scene.parameters)
+    end = replace(scene.boundary.end, position=(float(x), float(y), float(z)))
+    return replace(scene, boundary=replace(scene.boundary, end=end))
+
+
+def fundamental_scene(scene: Scene) -> Scene | None:
+    """Return the fundamental piece of the declared band that a scene is more of, or None."""
+    loop = scene.boundary.loop
+    if loop is None or loop.piece == "fundamental" or abs(loop.half_twists) < 2:
+        return None
+    pieces = abs(loop.half_twists) * (2 if loop.piece == "whole" else 1)
+    length = (scene.interval[1] - scene.interval[0]) / pieces
+    boundary = Boundary(loop=Loop(loop.half_twists, "fundamental"))
+    return replace(scene, boundary=boundary, interval=(0.0, length), guess="auto")
+
+
+def _ends_across(
+    boundary: Boundary, parameters: dict[str, float], first: np.ndarray, shared: set[str]
+) -> bool:
+    """Whether the end has d2 along the axis that is d1 at the start, on which its position is."""
+    (axis,) = set("xyz") - shared
+    given = {d: components(getattr(boundary.end, d), parameters) for d in DIRECTORS}
+    across = all(given[d].get(axis) == 0 for d in ("d1", "d3")) and not given["d2"]
+    return bool(across and abs(abs(first["xyz".index(axis), 0]) - 1) < CLOSE)
