@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ribbonopt.arrays import Array
 from ribbonopt.attempts import Attempts
 from ribbonopt.discretize import discretize
 from ribbonopt.errors import ConvergenceError, ModelError
@@ -75,6 +76,7 @@ class Prepared:
         best = attempts.best
         if best is None:
             raise ConvergenceError(Status.NO_START.value, Status.NO_START.name.lower())
+        best = self._refined(replace(best, path=tuple(attempts.path)))
         total = time.perf_counter() - started + self.seconds
         evaluate, linear = attempts.seconds
         timings = {
@@ -87,7 +89,6 @@ class Prepared:
         return replace(
             best,
             timings=timings,
-            path=tuple(attempts.path),
             iterations=attempts.iterations,
             skipped=skipped(scene, self.problem, attempts.solvers),
         )
@@ -97,7 +98,16 @@ class Prepared:
         attempts = self._attempts(self.scene)
         attempts.run(guess, quick=True)
         assert attempts.best is not None
-        return attempts.best
+        return self._refined(attempts.best)
+
+    def _refined(self, solution: Solution) -> Solution:
+        """Return a solution as accurate as its scene asks, if it asks."""
+        tolerance = solution.scene.tolerance
+        if tolerance is None or not solution.verified:
+            return solution
+        from ribbonopt.refinement import refine  # for scenes with a tolerance
+
+        return refine(solution, tolerance, lambda widths: self._attempts(solution.scene, widths))
 
     def start(
         self, scene: Scene | None = None, guess: Guess | None = None
@@ -148,9 +158,25 @@ class Prepared:
             return load_solution(scene.guess.solution)
         return guess_of(scene, self.ribbon)
 
-    def _attempts(self, scene: Scene) -> Attempts:
-        parts = self.ribbon, self.problem, self.nlp, self.solver
-        return Attempts(scene, self._parameters(scene), *parts)
+    def _attempts(self, scene: Scene, widths: Array | None = None) -> Attempts:
+        """Return the means to solve a scene, on its own mesh unless relative widths are given."""
+        p = self._parameters(scene)
+        if widths is None:
+            return Attempts(scene, p, self.ribbon, self.problem, self.nlp, self.solver)
+        theta = p[: len(p) - self.nlp.layout.element_count]
+        nlp, solver = self._on(len(widths))
+        return Attempts(scene, np.append(theta, widths), self.ribbon, self.problem, nlp, solver)
+
+    def _on(self, count: int) -> tuple[NLP, Solver]:
+        """Return NLP and solver on a number of elements, built once."""
+        if count not in self._sizes:
+            nlp = discretize(self.scene, self.problem, count)
+            self._sizes[count] = nlp, _solver(self.scene, nlp)
+        return self._sizes[count]
+
+    @cached_property
+    def _sizes(self) -> dict[int, tuple[NLP, Solver]]:
+        return {self.nlp.layout.element_count: (self.nlp, self.solver)}
 
     def _parameters(self, scene: Scene) -> np.ndarray:
         """Parameters p = [theta, widths] of a scene of this structure."""
@@ -196,11 +222,15 @@ def prepare(scene: Scene) -> Prepared:
     ribbon, problem = pose(posed)
     examine(ribbon, problem, np.array(list(theta_of(posed).values())))
     nlp = discretize(scene, problem)
-    options = {f.name: getattr(scene.solver, f.name) for f in fields(scene.solver)}
-    solver = solver_named(options.pop("type"), nlp, options)
+    solver = _solver(scene, nlp)
     solver.build()
     seconds = time.perf_counter() - started
     return Prepared(scene, ribbon, problem, nlp, solver, seconds)
+
+
+def _solver(scene: Scene, nlp: NLP) -> Solver:
+    options = {f.name: getattr(scene.solver, f.name) for f in fields(scene.solver)}
+    return solver_named(options.pop("type"), nlp, options)
 
 
 def refuse_unreachable(scene: Scene) -> None:

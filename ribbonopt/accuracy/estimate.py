@@ -8,7 +8,8 @@ solution is the estimate.
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
+from functools import lru_cache
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -23,13 +24,47 @@ if TYPE_CHECKING:
 ROUNDING = 1e-15
 
 
+@dataclass(frozen=True, eq=False)
+class Analysis:
+    """What the next better scheme says of a solution.
+
+    Attributes
+    ----------
+    better : Solution
+        The solution after one Newton step of that scheme.
+    local : (N,) array
+        Local error of every element: what it adds to the states at its end, each state relative to
+        its size along the ribbon.
+    """
+
+    better: Solution
+    local: Array
+
+
+@lru_cache(maxsize=2)
+def analyse(solution: Solution) -> Analysis:
+    """Analyse a solution of a square problem; LinAlgError if its equations are singular."""
+    dense = solution.dense
+    blocks, split = dense.blocks.finer()
+    widths = np.repeat(dense.blocks.widths(dense.p) / split, split)
+    p = np.concatenate([dense.theta, widths])
+    w = blocks.layout.pack(*_sampled(dense, blocks, p))
+    residuals, derivatives = blocks.linearize(w, p)
+    step = CondensedSystem(blocks, derivatives, p).solve(residuals)
+    better = replace(solution, dense=blocks.dense(w + step, p))
+    nodes = blocks.layout.unpack(w)[0]
+    size = np.maximum(np.abs(nodes).max(axis=0), 1.0)
+    local = np.abs(residuals.nodes / size).max(axis=1).reshape(-1, split).sum(axis=1)
+    return Analysis(better, local)
+
+
 def estimate_error(solution: Solution) -> dict[str, float]:
     """Estimated absolute errors of `n0`, `m0`, `u0`, `H0`, `energy` and `states`.
 
     Vectors by their largest component, in the units of the solution; states: positions, over the
     unit of length, and directors at the nodes. None of them is below rounding.
     """
-    better, units = improved(solution), solution.units
+    better, units = analyse(solution).better, solution.units
     result = {
         name: _gap(getattr(better, name), getattr(solution, name), units.of(name[0]))
         for name in ("n0", "m0", "u0")
@@ -42,16 +77,30 @@ def estimate_error(solution: Solution) -> dict[str, float]:
     return result
 
 
-def improved(solution: Solution) -> Solution:
-    """Solution after one Newton step of the next better scheme; LinAlgError if singular."""
-    dense = solution.dense
-    blocks, split = dense.blocks.finer()
-    widths = np.repeat(dense.blocks.widths(dense.p) / split, split)
-    p = np.concatenate([dense.theta, widths])
-    w = blocks.layout.pack(*_sampled(dense, blocks, p))
-    residuals, derivatives = blocks.linearize(w, p)
-    w = w + CondensedSystem(blocks, derivatives, p).solve(residuals)
-    return replace(solution, dense=blocks.dense(w, p))
+def relative_error(solution: Solution) -> tuple[float, str]:
+    """Largest estimated error over the size of what it is an error of, and the name of that.
+
+    Loads are measured by the larger of force times length and moment, strains by the largest
+    along the ribbon, states by the length.
+    """
+    errors, units = estimate_error(solution), solution.units
+    force, moment = units.of("n"), units.of("m")
+    loads = max(float(np.abs(solution.n0).max()) / force, float(np.abs(solution.m0).max()) / moment)
+    strains = float(np.abs(solution.at_stages["u"]).max()) / units.of("u")
+    sizes = {
+        "n0": loads * force,
+        "m0": loads * moment,
+        "u0": strains * units.of("u"),
+        "energy": abs(solution.energy),
+        "states": 1.0,
+    }
+    floor = np.finfo(float).tiny
+    relative = {
+        name: (errors[name] if size > floor else 0.0) / max(size, floor)
+        for name, size in sizes.items()
+    }
+    worst = max(relative, key=lambda name: relative[name])
+    return relative[worst], worst
 
 
 def _sampled(dense: Output, blocks: Blocks, p: Array) -> tuple[Array, Array, Array]:

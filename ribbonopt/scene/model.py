@@ -184,6 +184,7 @@ class Scene:
     interval: tuple[float, float] = (0.0, 1.0)
     parameters: dict[str, float] = field(default_factory=dict)
     transcription: Collocation | Shooting = Collocation()
+    tolerance: Annotated[float, Bounds(ge=1e-13, le=0.1)] | None = None
     solver: Auto | Ipopt | Newton = Auto()
     reference: Reference | None = None
     ribbon: RibbonSizes | None = None

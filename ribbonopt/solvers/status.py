@@ -45,19 +45,26 @@ class Status(Enum):
         "no equilibrium of the smooth law was found to start from, from any shape that fits the "
         "ends: give a guess, or bring the ends to an easier place first"
     )
+    TOLERANCE_MISSED = (
+        "the equations are solved, but not to the tolerance: where the law has a kink (m2 changes "
+        "sign) no mesh will do; raise the tolerance, or use a smooth law (variational)"
+    )
     UNREACHABLE = "the ends are further apart than the ribbon is long: bring them together"
 
     @property
     def converged(self) -> bool:
         """Whether the nonlinear equations are solved."""
-        return self in (Status.CONVERGED, Status.WRONG_SOLUTION)
+        return self in (Status.CONVERGED, Status.WRONG_SOLUTION, Status.TOLERANCE_MISSED)
 
     @property
     def failure(self) -> str:
         """What a solve gave instead of a solution, in a word; nothing where it gave one."""
-        if self is Status.CONVERGED:
-            return ""
-        return "wrong-solution" if self is Status.WRONG_SOLUTION else "not-converged"
+        words = {
+            Status.CONVERGED: "",
+            Status.WRONG_SOLUTION: "wrong-solution",
+            Status.TOLERANCE_MISSED: "tolerance-missed",
+        }
+        return words.get(self, "not-converged")
 
 
 @dataclass(frozen=True, eq=False)

@@ -14,7 +14,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from ribbonopt.accuracy.estimate import ROUNDING, improved
+from ribbonopt.accuracy.estimate import ROUNDING, analyse
 from ribbonopt.arrays import Array
 from ribbonopt.errors import ConvergenceError, RibbonoptError
 from ribbonopt.guess import Guess
@@ -182,7 +182,7 @@ def _estimate(solution: Solution, profile: Profile) -> float | None:
     """Own estimate of the error of n(0), m(0) alone; None for minima (no square system)."""
     if solution.problem.recovered:
         return None
-    better = improved(solution)
+    better = analyse(solution).better
     errors = errors_of(replace(profile, n0=better.n0, m0=better.m0), profile)
     return max(errors["error_n0"], errors["error_m0"], ROUNDING)
 

@@ -9,7 +9,7 @@ X_i = x_0 + h sum_j a_ij F_j with F = L f.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
+from functools import cached_property, lru_cache
 
 import casadi as ca
 
@@ -143,6 +143,7 @@ def nonzeros_of(matrix: ca.SX) -> ca.SX:
     return column
 
 
+@lru_cache(maxsize=8)
 def stage_functions(bvp: BoundaryValueProblem) -> tuple[StageFunctions, ...]:
     """Return the stage functions of every phase."""
     sigma = ca.SX.sym("sigma")
@@ -165,6 +166,7 @@ def _at(bvp: BoundaryValueProblem, phase: Phase, position: ca.SX) -> tuple[ca.SX
     return equations, None if cost is None else ca.substitute(cost, bvp.position, position)
 
 
+@lru_cache(maxsize=8)
 def condition_functions(bvp: BoundaryValueProblem) -> ConditionFunctions:
     """Return the functions of the conditions."""
     points = ca.SX.sym("points", bvp.state.numel(), len(bvp.points))

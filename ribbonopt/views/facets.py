@@ -18,7 +18,7 @@ BACK = np.array([0.93, 0.72, 0.45])  # other side, of a ribbon that has two
 LINES = np.array([0.12, 0.16, 0.24])
 EDGE, CENTRE, GENERATRIX = (0.8, 0.9), (1.0, 0.85), (0.5, 0.5)  # width in points, opacity
 SEAM = 0.35  # width in points of a face's own outline, which closes the seams between faces
-LIGHTER = 0.45  # of the way to white, for the half that follows by symmetry
+LIGHTER = 0.45  # of the way to white, for what follows by symmetry
 HAZE = 0.22  # of the way to white, for what is furthest
 
 

@@ -29,7 +29,7 @@ def plot_plane(solution: Solution, complete: bool = True) -> Figure:
     solution
         What to draw.
     complete
-        Add, dashed, the other half of a loop of which this solution is one half by symmetry.
+        Add, dashed, the rest of a band of which this solution is a piece by symmetry.
     """
     return draw_plane(subject_of(solution, complete))
 
@@ -68,7 +68,7 @@ def draw_plane(subject: Subject) -> Figure:
             label=label,
         )
     if subject.mirrored:
-        axes.plot([], [], color=BENDING, lw=1.8, ls=DASHES, label="second half by symmetry")
+        axes.plot([], [], color=BENDING, lw=1.8, ls=DASHES, label=subject.rest)
     axes.set(xlim=(left, right), ylim=(low, high), aspect="equal")
     axes.set_xlabel(subject.label(r"bending strain $u_2$", "1/m"))
     axes.set_ylabel(subject.label(r"twisting strain $u_3$", "1/m"))

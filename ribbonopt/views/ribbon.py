@@ -34,8 +34,7 @@ def plot_ribbon(
         Default: that of the ribbon, where the scene says it; else a twentieth of the length drawn,
         or less so that no generatrices cross. The figure states it.
     complete
-        Add, in a lighter tone, the other half of a loop of which this solution is one half by
-        symmetry.
+        Add, in a lighter tone, the rest of a band of which this solution is a piece by symmetry.
     """
     return draw_ribbon(subject_of(solution, complete), half_width)
 
@@ -125,7 +124,7 @@ def _caption(subject: Subject, surface: Surface) -> str:
     lines = [rf"drawn to the half-width {width} along generatrices $d_2 + \eta\, d_3$"]
     notes = []
     if subject.mirrored:
-        notes.append("second half (light) by symmetry")
+        notes.append(f"{subject.rest} (light)")
     if surface.bounded:
         notes.append(rf"$|\eta|$ drawn at most {ETA_BOUND:g}")
     if surface.crossing:

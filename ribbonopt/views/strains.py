@@ -27,7 +27,7 @@ def plot_strains(solution: Solution, complete: bool = True) -> Figure:
     solution
         What to draw.
     complete
-        Add, dashed, the other half of a loop of which this solution is one half by symmetry.
+        Add, dashed, the rest of a band of which this solution is a piece by symmetry.
     """
     return draw_strains(subject_of(solution, complete))
 
@@ -46,7 +46,7 @@ def draw_strains(subject: Subject) -> Figure:
             axes.plot(*_joined(subject.mirrored, quantity), color=colour, lw=1.5, ls=DASHES)
     top.axhline(0, color=INK, lw=0.6, zorder=0)
     if subject.mirrored:
-        top.plot([], [], color=INK, lw=1.5, ls=DASHES, label="second half by symmetry")
+        top.plot([], [], color=INK, lw=1.5, ls=DASHES, label=subject.rest)
     _label(top, bottom, subject)
     return figure
 

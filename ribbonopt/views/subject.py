@@ -1,15 +1,17 @@
-"""What a figure shows: one ribbon, or the whole of which it is one half by symmetry."""
+"""What a figure shows: one ribbon, or the whole band of which it is a piece by symmetry."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass, field
 
+from ribbonopt.accuracy.topology import closure
 from ribbonopt.scene.units import Units
 from ribbonopt.solution import Solution
-from ribbonopt.symmetry import find_flip
 
-from .pieces import Piece, sample_pieces
-from .symmetry import image
+from .pieces import ROWS, Piece, sample_pieces
+from .symmetry import continued
+
+FEWEST_ROWS = 81  # of a piece among many
 
 
 @dataclass(frozen=True)
@@ -23,7 +25,9 @@ class Subject:
     solved : tuple of Piece
         What was solved, on the arclengths `interval`.
     mirrored : tuple of Piece
-        What follows by symmetry; continues the interval to twice its length, or empty.
+        What follows by symmetry, or empty.
+    count : int
+        How many times the interval makes all of it.
     units : Units
         Of all of it.
     half_width : float or None
@@ -36,6 +40,7 @@ class Subject:
     mirrored: tuple[Piece, ...] = ()
     units: Units = field(default_factory=Units)
     half_width: float | None = None
+    count: int = 1
 
     @property
     def pieces(self) -> tuple[Piece, ...]:
@@ -46,12 +51,19 @@ class Subject:
     def end(self) -> float:
         """Arclength at the end of what is shown."""
         start, end = self.interval
-        return 2 * end - start if self.mirrored else end
+        return start + self.count * (end - start)
 
     @property
     def length(self) -> float:
         """Length of what is shown."""
         return self.end - self.interval[0]
+
+    @property
+    def rest(self) -> str:
+        """What follows by symmetry, in words."""
+        if self.count == 2:
+            return "second half by symmetry"
+        return f"{self.count - 1} of {self.count} pieces by symmetry"
 
     def label(self, quantity: str, unit: str) -> str:
         """Label of an axis: the quantity, and its unit in SI."""
@@ -59,12 +71,18 @@ class Subject:
 
 
 def subject_of(solution: Solution, complete: bool) -> Subject:
-    """Sample a solution, once for all figures; with its other half where it has one."""
+    """Sample a solution, once for all figures; with the rest of its band where it has one."""
     start, end = solution.scene.interval
-    name, interval = solution.scene.name, (float(start), float(end))
-    solved = sample_pieces(solution)
-    flip = find_flip(solution) if complete else None
-    mirrored = tuple(image(flip, piece) for piece in reversed(solved)) if flip else ()
     ribbon = solution.scene.ribbon
-    half_width = None if ribbon is None else ribbon.width / 2
-    return Subject(name, interval, solved, mirrored, solution.units, half_width)
+    band = closure(solution) if complete else None
+    count = 1 if band is None else band.pieces
+    solved = sample_pieces(solution, max(FEWEST_ROWS, min(ROWS, 2 * ROWS // count)))
+    return Subject(
+        name=solution.scene.name,
+        interval=(float(start), float(end)),
+        solved=solved,
+        mirrored=() if band is None else continued(band, solved),
+        units=solution.units,
+        half_width=None if ribbon is None else ribbon.width / 2,
+        count=count,
+    )

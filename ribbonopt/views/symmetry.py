@@ -1,14 +1,29 @@
-"""The rows of a second half that follow from those of the first by a flip."""
+"""The rows of a closed band that follow from those of the piece that was solved."""
 
 from __future__ import annotations
 
+from dataclasses import replace
+
+from ribbonopt.accuracy.topology import Band
 from ribbonopt.symmetry import Flip
 
 from .pieces import Piece
 
 
+def continued(band: Band, solved: tuple[Piece, ...]) -> tuple[Piece, ...]:
+    """Return the pieces that follow those that were solved, in order of arclength."""
+    if band.flip is None:
+        return ()
+    pair = (*solved, *(image(band.flip, piece) for piece in reversed(solved)))
+    pieces = list(pair)
+    for _ in range(band.copies - 1):
+        pair = tuple(turned(band, piece) for piece in pair)
+        pieces += pair
+    return tuple(pieces[len(solved) :])
+
+
 def image(flip: Flip, piece: Piece) -> Piece:
-    """Return the piece that follows by symmetry, in order of increasing arclength."""
+    """Return the piece that follows by a flip, in order of increasing arclength."""
     sign = -1.0 if flip.along_d2 else 1.0
     return Piece(
         s=(2 * flip.end - piece.s)[::-1],
@@ -19,5 +34,26 @@ def image(flip: Flip, piece: Piece) -> Piece:
         d1=sign * flip.rotate(piece.d1)[::-1],
         d2=-sign * flip.rotate(piece.d2)[::-1],
         d3=-flip.rotate(piece.d3)[::-1],
+        mirrored=True,
+    )
+
+
+def turned(band: Band, piece: Piece) -> Piece:
+    """Return the next image of a piece under the turn of a band, two flips further on.
+
+    The first flip is about d1. If the last is about d2 the two reverse d1 and d2, and u2 with them.
+    """
+    assert band.flip is not None
+    start, end = band.solution.scene.interval
+    sign = -1.0 if band.flip.along_d2 else 1.0
+    return replace(
+        piece,
+        s=piece.s + 2 * (end - start),
+        u2=sign * piece.u2,
+        eta=sign * piece.eta,
+        r=piece.r @ band.turn.T + band.shift,
+        d1=sign * piece.d1 @ band.turn.T,
+        d2=sign * piece.d2 @ band.turn.T,
+        d3=piece.d3 @ band.turn.T,
         mirrored=True,
     )

@@ -1,0 +1,93 @@
+"""Refinement: from a solution to one whose estimated error meets the scene's tolerance.
+
+Nodes are moved (widths are parameters: nothing is built), then elements are added, until the error
+of the answer is small enough. Each solve starts on the solution before, by Newton's method.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ribbonopt.accuracy.estimate import analyse, relative_error
+from ribbonopt.accuracy.remesh import SIZES, elements_for, redistributed, size_for
+from ribbonopt.arrays import Array
+from ribbonopt.solution import Solution
+from ribbonopt.solvers import Status
+
+if TYPE_CHECKING:
+    from ribbonopt.attempts import Attempts
+
+ROUNDS = 16
+AIM = 0.2  # share of the tolerance that a new mesh aims at
+GROWTH = 2.0  # most that the number of elements grows in a round
+
+
+def refine(
+    solution: Solution, tolerance: float, attempts_on: Callable[[Array], Attempts]
+) -> Solution:
+    """Return a verified solution whose error, relative to the sizes of the answer, is small enough.
+
+    Parameters
+    ----------
+    solution
+        A verified solution on any mesh.
+    tolerance
+        Relative error wanted, see `ribbonopt.accuracy.estimate.relative_error`.
+    attempts_on
+        Gives the means to solve on a mesh of relative widths (n,).
+
+    Returns
+    -------
+    Solution
+        With a status that says so where the tolerance could not be met.
+    """
+    path = list(solution.path)
+    order = solution.dense.blocks.order
+    for _ in range(ROUNDS):
+        error, _ = relative_error(solution)
+        if error <= tolerance:
+            return replace(solution, path=tuple(path))
+        started = time.perf_counter()
+        local = analyse(solution).local
+        widths = solution.dense.blocks.widths(solution.dense.p)
+        wanted = elements_for(local, order, AIM * tolerance / error)
+        count = size_for(min(wanted, int(GROWTH * len(widths))))
+        count = max(count, size_for(len(widths)) if wanted > len(widths) else count)
+        attempts = attempts_on(redistributed(widths, local, order, count))
+        if not attempts.run(solution, quick=True) or attempts.best is None:
+            break
+        solution = attempts.best
+        path.append(
+            {
+                "step": f"mesh of {count} intervals for an error of {error:.0e}",
+                "iterations": attempts.iterations,
+                "seconds": time.perf_counter() - started,
+            }
+        )
+        if count == SIZES[-1] and wanted > count:
+            break
+    return _missed(replace(solution, path=tuple(path)), tolerance)
+
+
+def _missed(solution: Solution, tolerance: float) -> Solution:
+    """The solution, with what keeps its error from being small enough."""
+    error, name = relative_error(solution)
+    if error <= tolerance:
+        return solution
+    local = analyse(solution).local
+    element = int(np.argmax(local))
+    a, b = solution.nodes[element], solution.nodes[element + 1]
+    return replace(
+        solution,
+        status=Status.TOLERANCE_MISSED,
+        message=(
+            f"{Status.TOLERANCE_MISSED.value}: relative error {error:.1e} of {name}, asked "
+            f"{tolerance:.1e}, on {len(local)} intervals; most of it comes from s = {a:.4g} to "
+            f"{b:.4g}"
+        ),
+    )
