@@ -32,6 +32,10 @@ class Attempts:
         What is asked, and its parameters [theta, widths].
     ribbon, problem, nlp, solver
         The structure that was built for it.
+    sheets : tuple of int
+        Kinds of the phases; empty for the law as it is.
+    switches : (k,) array or None
+        Fractions of the length where phases meet in the guesses.
     path : list of mappings
         Steps so far, with their cost.
     best : Solution or None
@@ -44,6 +48,8 @@ class Attempts:
     problem: BoundaryValueProblem
     nlp: NLP
     solver: Solver
+    sheets: tuple[int, ...] = ()
+    switches: Array | None = None
     path: list[Mapping[str, Any]] = field(default_factory=list)
     best: Solution | None = None
     _reports: list[SolveReport] = field(default_factory=list)
@@ -53,7 +59,8 @@ class Attempts:
 
         `quick` leaves it at Newton's method where the solver is `auto` and the equations square.
         """
-        w = initial_unknowns(guess, self.ribbon, self.problem, self.nlp.blocks, self.p)
+        parts = self.ribbon, self.problem, self.nlp.blocks, self.p, self.switches
+        w = initial_unknowns(guess, *parts)
         solver = self.solver
         if quick and isinstance(solver, Auto) and self.nlp.square:
             solver = solver.newton
@@ -94,6 +101,7 @@ class Attempts:
             iterations=report.iterations,
             verification=unverified(),
             multipliers=report.multipliers,
+            sheets=self.sheets,
         )
         if not converged:
             where = where_it_resists(report.residuals, self.nlp.layout, solution)
@@ -108,8 +116,9 @@ class Attempts:
     def _step(self, attempt: SolveReport) -> dict[str, Any]:
         name, count = self.nlp.blocks.name, self.nlp.layout.element_count
         outcome = "" if attempt.status.converged else f" ({attempt.status.name.lower()})"
+        phases = f" in {len(self.sheets)} phases" if self.sheets else ""
         return {
-            "step": f"{attempt.solver}, {name} on {count} intervals{outcome}",
+            "step": f"{attempt.solver}, {name} on {count} intervals{phases}{outcome}",
             "iterations": attempt.iterations,
             "seconds": attempt.total,
         }

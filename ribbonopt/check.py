@@ -7,9 +7,8 @@ from typing import Any
 import numpy as np
 
 from ribbonopt.discretize import discretize
-from ribbonopt.pipeline import refuse_unreachable
 from ribbonopt.problem import pose, theta_of
-from ribbonopt.problem.examine import examine, unknown_names
+from ribbonopt.problem.examine import examine, refuse_unreachable, unknown_names
 from ribbonopt.scene import Scene
 from ribbonopt.scene.units import in_special_units
 from ribbonopt.skipped import skipped

@@ -75,7 +75,8 @@ def _solve(options: argparse.Namespace) -> int:
 
     if not (options.out or options.plot):
         return _tell(options, solve(scene), import_seconds, None)
-    from ribbonopt.results import save_solution, staged_result
+    from ribbonopt.results import save_solution
+    from ribbonopt.staging import staged_result
 
     # Claimed before solving, so that a folder that cannot be written costs no solve.
     with staged_result(options.out or f"results/{scene.name}") as stage:
@@ -174,7 +175,7 @@ def _study(
 ) -> int:
     gc.enable()  # many scenes, and most of what they build is soon done with
     if options.out:
-        from ribbonopt.results import staged_result
+        from ribbonopt.staging import staged_result
         from ribbonopt.studies.files import save_study
         from ribbonopt.views.comparison import save_figure
 
@@ -207,7 +208,8 @@ def _schema(options: argparse.Namespace) -> int:
 
 
 def _plot(options: argparse.Namespace) -> int:
-    from ribbonopt.results import load_solution, picture_folder
+    from ribbonopt.results import load_solution
+    from ribbonopt.staging import picture_folder
     from ribbonopt.views import save_figures
 
     solution = load_solution(options.result)

@@ -1,4 +1,4 @@
-"""The path: scene, boundary-value problem, NLP, start, solver, solution, checks.
+"""The path: scene, boundary-value problem, NLP, start, solver, solution, phases, mesh, checks.
 
 `solve(scene)` walks it once. `prepare(scene)` keeps what depends on the structure of a scene only,
 so that other numbers (epsilon, loads, prescribed values, meshes) are solved without building again.
@@ -7,28 +7,28 @@ so that other numbers (epsilon, loads, prescribed values, meshes) are solved wit
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass, fields, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ribbonopt.arrays import Array
 from ribbonopt.attempts import Attempts
-from ribbonopt.discretize import discretize
+from ribbonopt.built import Built
 from ribbonopt.errors import ConvergenceError, ModelError
 from ribbonopt.guess import Guess, guess_of, initial_unknowns, words
-from ribbonopt.mechanics.boundary import gap_between_ends
 from ribbonopt.problem import BoundaryValueProblem, Ribbon, pose, theta_of
-from ribbonopt.problem.examine import examine
+from ribbonopt.problem.examine import examine, refuse_unreachable
 from ribbonopt.scene import Scene, SolutionGuess, validate_scene
 from ribbonopt.scene.units import in_special_units
 from ribbonopt.skipped import skipped
 from ribbonopt.solution import Solution
-from ribbonopt.solvers import Status, solver_named
-from ribbonopt.transcription import NLP, Mesh
+from ribbonopt.solvers import Status
+from ribbonopt.transcription import NLP
 
 if TYPE_CHECKING:
+    from ribbonopt.accuracy.arcs import Arcs
     from ribbonopt.solvers import Solver
     from ribbonopt.starts.automatic import Automatic
 
@@ -40,12 +40,34 @@ class Prepared:
     Scenes are in the user's units here; what is built of them is in units Dw = L = 1.
     """
 
-    scene: Scene
-    ribbon: Ribbon
-    problem: BoundaryValueProblem
-    nlp: NLP
-    solver: Solver
+    built: Built
     seconds: float
+    _in_phases: dict[tuple[int, ...], Built] = field(default_factory=dict)
+
+    @property
+    def scene(self) -> Scene:
+        """The scene it was built for."""
+        return self.built.scene
+
+    @property
+    def ribbon(self) -> Ribbon:
+        """Mechanics."""
+        return self.built.ribbon
+
+    @property
+    def problem(self) -> BoundaryValueProblem:
+        """Equations, in one phase."""
+        return self.built.problem
+
+    @property
+    def nlp(self) -> NLP:
+        """The program on the scene's own number of intervals."""
+        return self.built.on((self.scene.transcription.intervals,))[0]
+
+    @property
+    def solver(self) -> Solver:
+        """The solver of `nlp`."""
+        return self.built.on((self.scene.transcription.intervals,))[1]
 
     def solve(
         self, scene: Scene | None = None, guess: Guess | None = None, *, fallback: bool = True
@@ -71,12 +93,11 @@ class Prepared:
         started = time.perf_counter()
         scene = scene or self.scene
         refuse_unreachable(scene)
-        attempts = self._attempts(scene)
-        self._try_all(attempts, guess, fallback)
-        best = attempts.best
+        attempts = self.built.attempts(scene)
+        smooth = self._try_all(attempts, guess, fallback)
+        best = self._finished(attempts, smooth)
         if best is None:
             raise ConvergenceError(Status.NO_START.value, Status.NO_START.name.lower())
-        best = self._refined(replace(best, path=tuple(attempts.path)))
         total = time.perf_counter() - started + self.seconds
         evaluate, linear = attempts.seconds
         timings = {
@@ -90,31 +111,23 @@ class Prepared:
             best,
             timings=timings,
             iterations=attempts.iterations,
-            skipped=skipped(scene, self.problem, attempts.solvers),
+            skipped=skipped(scene, self.problem, attempts.solvers, best.sheets),
         )
 
     def polish(self, guess: Guess) -> Solution:
         """Solve the prepared scene from one guess that is thought to be near."""
-        attempts = self._attempts(self.scene)
+        attempts = self.built.attempts(self.scene)
         attempts.run(guess, quick=True)
-        assert attempts.best is not None
-        return self._refined(attempts.best)
-
-    def _refined(self, solution: Solution) -> Solution:
-        """Return a solution as accurate as its scene asks, if it asks."""
-        tolerance = solution.scene.tolerance
-        if tolerance is None or not solution.verified:
-            return solution
-        from ribbonopt.refinement import refine  # for scenes with a tolerance
-
-        return refine(solution, tolerance, lambda widths: self._attempts(solution.scene, widths))
+        found = self._finished(attempts, [guess] if isinstance(guess, Solution) else [])
+        assert found is not None
+        return found
 
     def start(
         self, scene: Scene | None = None, guess: Guess | None = None
     ) -> tuple[np.ndarray, np.ndarray]:
         """Return the unknowns w of the guess and the parameters p = [theta, widths] of a scene."""
         scene = scene or self.scene
-        p = self._parameters(scene)
+        p = self.built.attempts(scene).p
         source = guess or self.guess(scene)
         return initial_unknowns(source, self.ribbon, self.problem, self.nlp.blocks, p), p
 
@@ -133,23 +146,60 @@ class Prepared:
 
         return Automatic(in_special_units(self.scene))
 
-    def _try_all(self, attempts: Attempts, given: Guess | None, fallback: bool) -> None:
-        """Try the guess that is given or the scene's, then the automatic ones, until one leads on."""
+    def _try_all(self, attempts: Attempts, given: Guess | None, fallback: bool) -> list[Solution]:
+        """Try the guess that is given or the scene's, then the automatic ones, until one leads on.
+
+        Returns the solutions of the smooth law met on the way, delta decreasing.
+        """
         scene, path = in_special_units(attempts.scene), attempts.path
         started = time.perf_counter()
         own = given or self._own_guess(scene)
+        smooth: list[Solution] = []
         if own is not None:
             step = "guess: given" if given else f"guess: {words(scene.guess)}"
             path.append({"step": step, "seconds": time.perf_counter() - started})
             if attempts.run(own) or not fallback:
-                return
+                return smooth
         first: Guess | None = None
         for guess in self.automatic.guesses(scene, path):
+            if isinstance(guess, Solution):
+                smooth.insert(0, guess)
             if attempts.run(guess, quick=True):
-                return
+                return smooth
             first = first or guess
         if first is not None:
             attempts.run(first)  # all that was spared to be quick
+        return smooth
+
+    def _finished(self, attempts: Attempts, smooth: list[Solution]) -> Solution | None:
+        """Return the best attempt: in phases where m2 changes sign, to the scene's tolerance."""
+        scene, best, built = attempts.scene, attempts.best, self.built
+        path: list[Mapping[str, Any]] = list(attempts.path)
+        if self.ribbon.law.kinked and scene.formulation == "inverted" and scene.switching != "off":
+            from ribbonopt.switching import in_phases  # smooth laws do without
+
+            converged = best if best is not None and best.status.converged else None
+            phased = in_phases(converged, smooth, scene, lambda arcs: self._posed(scene, arcs))
+            if phased is not None and phased.best is not None:
+                best, built = phased.best, self._in_phases[phased.sheets]
+                path += phased.path
+        if best is None:
+            return None
+        best = replace(best, path=tuple(path))
+        if scene.tolerance is None or not best.verified:
+            return best
+        from ribbonopt.refinement import refine  # for scenes with a tolerance
+
+        return refine(best, scene.tolerance, lambda *mesh: built.attempts(scene, *mesh))
+
+    def _posed(self, scene: Scene, arcs: Arcs) -> Attempts:
+        """Return the means to solve a scene in phases."""
+        from ribbonopt.problem.switched import switched
+
+        if arcs.kinds not in self._in_phases:
+            problem = switched(self.ribbon, arcs.kinds)
+            self._in_phases[arcs.kinds] = Built(self.scene, self.ribbon, problem, arcs.kinds)
+        return self._in_phases[arcs.kinds].attempts(scene, switches=arcs.switches)
 
     def _own_guess(self, scene: Scene) -> Guess | None:
         if isinstance(scene.guess, SolutionGuess):
@@ -157,38 +207,6 @@ class Prepared:
 
             return load_solution(scene.guess.solution)
         return guess_of(scene, self.ribbon)
-
-    def _attempts(self, scene: Scene, widths: Array | None = None) -> Attempts:
-        """Return the means to solve a scene, on its own mesh unless relative widths are given."""
-        p = self._parameters(scene)
-        if widths is None:
-            return Attempts(scene, p, self.ribbon, self.problem, self.nlp, self.solver)
-        theta = p[: len(p) - self.nlp.layout.element_count]
-        nlp, solver = self._on(len(widths))
-        return Attempts(scene, np.append(theta, widths), self.ribbon, self.problem, nlp, solver)
-
-    def _on(self, count: int) -> tuple[NLP, Solver]:
-        """Return NLP and solver on a number of elements, built once."""
-        if count not in self._sizes:
-            nlp = discretize(self.scene, self.problem, count)
-            self._sizes[count] = nlp, _solver(self.scene, nlp)
-        return self._sizes[count]
-
-    @cached_property
-    def _sizes(self) -> dict[int, tuple[NLP, Solver]]:
-        return {self.nlp.layout.element_count: (self.nlp, self.solver)}
-
-    def _parameters(self, scene: Scene) -> np.ndarray:
-        """Parameters p = [theta, widths] of a scene of this structure."""
-        values = theta_of(in_special_units(scene))
-        same = tuple(values) == self.problem.parameter_names and all(
-            getattr(scene, f.name) == getattr(self.scene, f.name)
-            for f in fields(Scene)
-            if f.name in ("formulation", "states", "transcription", "solver")
-        )
-        if not same or scene.law.type != self.scene.law.type:
-            raise ModelError("this scene differs from the prepared one in more than its numbers")
-        return np.append(list(values.values()), Mesh.uniform(scene.transcription.intervals).widths)
 
 
 def solve(scene: Scene) -> Solution:
@@ -210,8 +228,7 @@ def solve(scene: Scene) -> Solution:
         return solution
     from ribbonopt.starts.several import equilibria  # few scenes ask for it
 
-    posed = in_special_units(prepared.scene)
-    return equilibria(posed, solution, prepared.automatic, prepared.polish)
+    return equilibria(prepared.scene, solution, prepared.automatic, prepared.polish)
 
 
 def prepare(scene: Scene) -> Prepared:
@@ -220,26 +237,13 @@ def prepare(scene: Scene) -> Prepared:
     scene = validate_scene(scene)
     posed = in_special_units(scene)
     ribbon, problem = pose(posed)
-    examine(ribbon, problem, np.array(list(theta_of(posed).values())))
-    nlp = discretize(scene, problem)
-    solver = _solver(scene, nlp)
-    solver.build()
-    seconds = time.perf_counter() - started
-    return Prepared(scene, ribbon, problem, nlp, solver, seconds)
-
-
-def _solver(scene: Scene, nlp: NLP) -> Solver:
-    options = {f.name: getattr(scene.solver, f.name) for f in fields(scene.solver)}
-    return solver_named(options.pop("type"), nlp, options)
-
-
-def refuse_unreachable(scene: Scene) -> None:
-    """Raise ConvergenceError if the prescribed ends are further apart than the ribbon is long."""
-    gap, length = gap_between_ends(scene), scene.interval[1] - scene.interval[0]
-    if gap > length * (1 + 1e-12):
-        raise ConvergenceError(
-            f"unreachable: the prescribed positions of the ends are {gap:.6g} apart "
-            f"(boundary.start.position, boundary.end.position), the ribbon is {length:.6g} long "
-            "(interval); bring them together or lengthen the ribbon",
-            status=Status.UNREACHABLE.name.lower(),
+    if scene.tolerance is not None and problem.recovered:
+        raise ModelError(
+            "tolerance: the energy formulation has no estimate of its error; leave it out, or use "
+            "another formulation",
+            "tolerance",
         )
+    examine(ribbon, problem, np.array(list(theta_of(posed).values())))
+    built = Built(scene, ribbon, problem)
+    built.on((scene.transcription.intervals,))[1].build()
+    return Prepared(built, time.perf_counter() - started)

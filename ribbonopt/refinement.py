@@ -18,6 +18,7 @@ from ribbonopt.accuracy.remesh import SIZES, elements_for, redistributed, size_f
 from ribbonopt.arrays import Array
 from ribbonopt.solution import Solution
 from ribbonopt.solvers import Status
+from ribbonopt.transcription import Mesh
 
 if TYPE_CHECKING:
     from ribbonopt.attempts import Attempts
@@ -28,7 +29,7 @@ GROWTH = 2.0  # most that the number of elements grows in a round
 
 
 def refine(
-    solution: Solution, tolerance: float, attempts_on: Callable[[Array], Attempts]
+    solution: Solution, tolerance: float, attempts_on: Callable[[Mesh, Array], Attempts]
 ) -> Solution:
     """Return a verified solution whose error, relative to the sizes of the answer, is small enough.
 
@@ -39,7 +40,7 @@ def refine(
     tolerance
         Relative error wanted, see `ribbonopt.accuracy.estimate.relative_error`.
     attempts_on
-        Gives the means to solve on a mesh of relative widths (n,).
+        Gives the means to solve on a mesh, phases meeting at given fractions of the length.
 
     Returns
     -------
@@ -47,35 +48,45 @@ def refine(
         With a status that says so where the tolerance could not be met.
     """
     path = list(solution.path)
-    order = solution.dense.blocks.order
     for _ in range(ROUNDS):
         error, _ = relative_error(solution)
         if error <= tolerance:
             return replace(solution, path=tuple(path))
         started = time.perf_counter()
-        local = analyse(solution).local
-        widths = solution.dense.blocks.widths(solution.dense.p)
-        wanted = elements_for(local, order, AIM * tolerance / error)
-        count = size_for(min(wanted, int(GROWTH * len(widths))))
-        count = max(count, size_for(len(widths)) if wanted > len(widths) else count)
-        attempts = attempts_on(redistributed(widths, local, order, count))
+        mesh, short = _better_mesh(solution, AIM * tolerance / error)
+        attempts = attempts_on(mesh, solution.joined.ends[1:-1])
         if not attempts.run(solution, quick=True) or attempts.best is None:
             break
         solution = attempts.best
         path.append(
             {
-                "step": f"mesh of {count} intervals for an error of {error:.0e}",
+                "step": f"mesh of {sum(mesh.elements)} intervals for an error of {error:.0e}",
                 "iterations": attempts.iterations,
                 "seconds": time.perf_counter() - started,
             }
         )
-        if count == SIZES[-1] and wanted > count:
+        if short:
             break
     return _missed(replace(solution, path=tuple(path)), tolerance)
 
 
+def _better_mesh(solution: Solution, reduction: float) -> tuple[Mesh, bool]:
+    """Return a mesh that reduces the error by a factor, and whether it is as fine as any may be."""
+    blocks, local = solution.dense.blocks, analyse(solution).local
+    widths, phases, short = blocks.widths(solution.dense.p), [], False
+    for part in blocks.layout.phase_slices():
+        h, e = widths[part], local[part]
+        wanted = elements_for(e, blocks.order, reduction)
+        count = size_for(min(wanted, int(GROWTH * len(h))))
+        if wanted > len(h):
+            count = max(count, size_for(len(h)))
+        short = short or (count == SIZES[-1] and wanted > count)
+        phases.append(redistributed(h, e, blocks.order, count))
+    return Mesh(tuple(phases)), short
+
+
 def _missed(solution: Solution, tolerance: float) -> Solution:
-    """The solution, with what keeps its error from being small enough."""
+    """Return the solution, with what keeps its error from being small enough."""
     error, name = relative_error(solution)
     if error <= tolerance:
         return solution

@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-SMALL = 1e-3  # below which numbers are written with a power of ten
+SMALL = 1e-3  # largest component of what is written with powers of ten
 
 
 def report(summary: Mapping[str, Any]) -> str:
@@ -63,14 +63,15 @@ def _others(equilibria: Sequence[Mapping[str, Any]]) -> list[str]:
 
 def _row(label: str, value: float | Sequence[float] | None, error: float | None) -> str:
     values = value if isinstance(value, Sequence) else [value]
-    numbers = ", ".join(_number(v, error) for v in values)
+    small = 0 < max(abs(v or 0.0) for v in values) < SMALL
+    numbers = ", ".join(_number(v, error, small) for v in values)
     text = f"({numbers})" if isinstance(value, Sequence) else numbers
     bar = "" if error is None else f"  +- {error:.0e}"
     return f"  {label:<25}{text}{bar}"
 
 
-def _number(value: float | None, error: float | None) -> str:
-    """Fixed-point number down to the last digit that the error leaves standing."""
+def _number(value: float | None, error: float | None, small: bool) -> str:
+    """Write a number, `small` ones with a power of ten, to the last digit that the error leaves."""
     if value is None:
         return "unknown"
     if error is None:
@@ -79,9 +80,10 @@ def _number(value: float | None, error: float | None) -> str:
         return "0"
     # Twice the bar, so that the last digit printed still stands after rounding.
     decimals = -math.ceil(math.log10(4 * error))
-    digits = decimals + math.floor(math.log10(abs(value)))
-    if abs(value) < SMALL and digits >= 0:
-        return f"{value:.{min(15, digits)}e}"
+    if small:
+        value = round(value, decimals)
+        digits = decimals + math.floor(math.log10(abs(value))) if value else 0
+        return f"{value:.{min(15, digits)}e}" if value else "0"
     text = f"{value:.{max(0, min(15, decimals))}f}"
     return "0" if float(text) == 0 else text
 

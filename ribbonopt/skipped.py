@@ -7,11 +7,14 @@ from ribbonopt.scene import Scene
 
 
 def skipped(
-    scene: Scene, problem: BoundaryValueProblem, solvers: tuple[str, ...] = ()
+    scene: Scene,
+    problem: BoundaryValueProblem,
+    solvers: tuple[str, ...] = (),
+    sheets: tuple[int, ...] = (),
 ) -> tuple[str, ...]:
     """Say what a scene does not need and what is therefore not made, each with its reason.
 
-    `solvers` are those that were used; before a solve, none.
+    `solvers` are those that were used, `sheets` the phases; before a solve, none.
     """
     result = []
     if scene.states == "reduced":
@@ -23,5 +26,8 @@ def skipped(
         result.append("IPOPT and the sparse Jacobian (Newton condenses element by element)")
     if scene.guess != "auto":
         result.append("automatic start (the guess is given)")
-    result.append("mesh refinement and further formulations (not asked for)")
+    if solvers and not sheets:
+        result.append("phases (the law is smooth, m2 keeps its sign, or the scene says so)")
+    if scene.tolerance is None:
+        result.append("mesh refinement (no tolerance is asked for)")
     return tuple(result)

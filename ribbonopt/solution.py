@@ -7,10 +7,10 @@ from dataclasses import dataclass, field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
-import casadi as ca
 import numpy as np
 
 from ribbonopt.arrays import Array
+from ribbonopt.joined import Joined, Phases
 from ribbonopt.mechanics import RodFields
 from ribbonopt.problem import BoundaryValueProblem
 from ribbonopt.scene import Scene
@@ -81,6 +81,8 @@ class Solution:
         Other equilibria of the scene, where several starts were asked for, by increasing energy.
     times : int
         How many of those starts led here.
+    sheets : tuple of int
+        Kinds of the phases: sign of m2, or 0 for a mixture of both sheets; empty for one phase.
     """
 
     scene: Scene
@@ -96,6 +98,7 @@ class Solution:
     skipped: tuple[str, ...] = ()
     others: tuple[Solution, ...] = ()
     times: int = 1
+    sheets: tuple[int, ...] = ()
 
     @property
     def verified(self) -> bool:
@@ -111,7 +114,18 @@ class Solution:
     def nodes(self) -> Array:
         """Arclengths (N + 1,) of the mesh nodes."""
         start, end = self.scene.interval
-        return start + (end - start) * self.dense.nodes(0)
+        return start + (end - start) * self.joined.nodes
+
+    @cached_property
+    def joined(self) -> Joined:
+        """All phases read as one."""
+        return Joined(self.problem, self.dense)
+
+    @property
+    def switch_points(self) -> Array:
+        """Arclengths (k,) where one phase ends and the next begins."""
+        start, end = self.scene.interval
+        return start + (end - start) * self.joined.ends[1:-1]
 
     def sample(self, s: Any, expression: str) -> Array:
         """Return a named output, or a formula of named outputs, at arclengths s.
@@ -154,28 +168,25 @@ class Solution:
             raise ValueError(f"arclengths are expected in [{start}, {end}], found {s}")
         if len(s) == 0:
             return {name: value[:0] for name, value in self.outputs(np.array([start])).items()}
-        return self._named(self.dense.states(0, sigma), self.dense.algebraic(0, sigma), sigma)
+        x, z = self.joined.values(sigma)
+        return self._named(x, z, sigma, self.joined.phase_of(sigma))
 
     def integral(self, name: str) -> float:
         """Integral over s of a scalar named output, by the scheme's own quadrature."""
         start, end = self.scene.interval
-        return float((end - start) * self._stages[2] @ self.at_stages[name])
-
-    @cached_property
-    def _stages(self) -> tuple[Array, Array, Array]:
-        return self.dense.stages(0)
+        return float((end - start) * self.joined.stages[2] @ self.at_stages[name])
 
     @cached_property
     def at_stages(self) -> dict[str, Array]:
         """All named outputs at the stages, where the solver itself evaluated the equations."""
-        v, sigma, _ = self._stages
+        v, sigma, _, phase = self.joined.stages
         nx = self.problem.state.numel()
-        return self._named(v[:, :nx], v[:, nx:], sigma)
+        return self._named(v[:, :nx], v[:, nx:], sigma, phase)
 
     def fields(self, fraction: Array) -> RodFields:
         """Fields at fractions (k,) of the length, units Dw = L = 1: a solution is a guess."""
-        x, z = self.dense.states(0, fraction), self.dense.algebraic(0, fraction)
-        o = self._in_special_units(x, z, fraction)
+        x, z = self.joined.values(fraction)
+        o = self._in_special_units(x, z, fraction, self.joined.phase_of(fraction))
         return RodFields(o["r"], np.stack([o["d1"], o["d2"], o["d3"]], axis=2), o["n"], o["m"])
 
     @cached_property
@@ -216,23 +227,15 @@ class Solution:
         """Twist of the directors about the centre line, in turns."""
         return self.integral("u3") / (2 * np.pi)
 
-    def _named(self, x: Array, z: Array, sigma: Array) -> dict[str, Array]:
-        values = self._in_special_units(x, z, sigma)
+    def _named(self, x: Array, z: Array, sigma: Array, phase: Phases) -> dict[str, Array]:
+        values = self._in_special_units(x, z, sigma, phase)
         if self.scene.ribbon is None:
             return values
         return {name: value * self.units.of(name) for name, value in values.items()}
 
-    def _in_special_units(self, x: Array, z: Array, sigma: Array) -> dict[str, Array]:
-        function, names = self.problem.output_functions[0]
+    def _in_special_units(
+        self, x: Array, z: Array, sigma: Array, phase: Phases
+    ) -> dict[str, Array]:
         start, end = self.scene.interval
         s = (start + (end - start) * sigma) / self.units.length
-        count = len(s)
-        c = ca.repmat(ca.DM(self.dense.constants), 1, count)
-        theta = ca.repmat(ca.DM(self.dense.theta), 1, count)
-        values = np.array(function(x.T, z.T, c, theta, s[None])).T
-        ends = np.cumsum(list(names.values()))
-        parts = np.split(values, ends[:-1], axis=1)
-        return {
-            name: part[:, 0] if part.shape[1] == 1 else part
-            for name, part in zip(names, parts, strict=True)
-        }
+        return self.joined.named(x, z, s, phase)

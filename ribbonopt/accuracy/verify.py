@@ -42,8 +42,13 @@ def verify(solution: Solution, ribbon: Ribbon) -> Verification:
             "mesh or use scheme: gauss"
         )
     # The convexified energy itself allows |eta| > 1, as a mixture of both sheets.
+    if solution.sheets:
+        from .arcs import phase_problems  # few scenes have phases
+
+        problems += phase_problems(solution)
     if ribbon.law.bounds_eta and not solution.problem.recovered:
-        eta = np.abs(nodes["eta"])
+        mixed = np.append(solution.sheets, 1)[solution.joined.phase_of(solution.joined.nodes)] == 0
+        eta = np.where(mixed, 0.0, np.abs(nodes["eta"]))
         if not eta.max() <= 1 + TOLERANCE + residual:
             s = solution.nodes[int(eta.argmax())]
             problems.append(
@@ -74,9 +79,10 @@ def _worst_condition(solution: Solution, ribbon: Ribbon) -> tuple[str, float]:
     c, theta = ca.SX.sym("c", len(ribbon.model.constants)), solution.problem.parameters
     verdicts = ribbon.verdicts(start, end, c)
     function = ca.Function("verdicts", [start, end, c, theta], [ca.vertcat(*verdicts.values())])
-    ends = solution.dense.states(0, np.array([0.0, 1.0]))
+    ends, _ = solution.joined.values(np.array([0.0, 1.0]))
     ends = ends[:, :count]
-    values = function(ends[0], ends[1], solution.constants, solution.dense.theta)
+    constants = solution.constants[: c.numel()]  # without the lengths of phases
+    values = function(ends[0], ends[1], constants, solution.dense.theta)
     # Relative to the loads, absolute in lengths and directors (L = 1).
     n0, m0 = solution.n0 / solution.units.force, solution.m0 / solution.units.moment
     scale = 1 + max(np.linalg.norm(n0), np.linalg.norm(m0))

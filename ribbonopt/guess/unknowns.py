@@ -23,20 +23,30 @@ class Guess(Protocol):
 
 
 def initial_unknowns(
-    guess: Guess, ribbon: Ribbon, problem: BoundaryValueProblem, blocks: Blocks, p: Array
+    guess: Guess,
+    ribbon: Ribbon,
+    problem: BoundaryValueProblem,
+    blocks: Blocks,
+    p: Array,
+    switches: Array | None = None,
 ) -> Array:
-    """Unknowns w (nw,) of the discretised problem (one phase) that stand for a guess.
+    """Unknowns w (nw,) of the discretised problem that stand for a guess.
 
-    `p` holds theta and the relative widths of the elements.
+    `p` holds theta and the relative widths of the elements; `switches` are the fractions of the
+    length where phases meet, if there are several.
     """
     layout, widths = blocks.layout, blocks.widths(p)
     theta = p[: len(p) - layout.element_count]
-    nodes = np.concatenate([[0.0], np.cumsum(widths)])
-    nodes[-1] = 1.0
-    positions = np.hstack([nodes[:-1, None], blocks.stage_positions(p)])
-    fractions = np.append(positions.ravel(), 1.0)
+    ends = np.concatenate([[0.0], [] if switches is None else switches, [1.0]])
+    local = blocks.stage_positions(p)
+    parts = []
+    for i, s in enumerate(layout.phase_slices()):
+        nodes = np.concatenate([[0.0], np.cumsum(widths[s])])[:-1]
+        positions = np.hstack([nodes[:, None], local[s]])
+        parts.append(ends[i] + (ends[i + 1] - ends[i]) * positions)
+    fractions = np.append(np.concatenate(parts).ravel(), 1.0)
     # A Radau scheme has its last stage on the next node: one value serves both.
-    unique, where = np.unique(fractions, return_inverse=True)
+    unique, where = np.unique(np.minimum(fractions, 1.0), return_inverse=True)
     fields = guess.fields(unique)
     reference = theta[[problem.parameter_names.index(f"reference.{axis}") for axis in "xyz"]]
     x, constants = ribbon.model.pack(fields, reference)
@@ -44,8 +54,12 @@ def initial_unknowns(
     count = layout.nx - x.shape[1]
     x, z = np.hstack([x, more[:, :count]])[where], more[:, count:][where]
     body = np.hstack([x, z])[:-1].reshape(layout.element_count, layout.stages + 1, -1)
-    ends = np.vstack([body[:, 0, : layout.nx], x[-1:]])
-    return layout.pack(ends, body[:, 1:], constants[: layout.nc])
+    nodes = np.vstack([body[:, 0, : layout.nx], x[-1:]])
+    if switches is not None and len(switches):
+        names = [problem.parameter_names.index(f"interval.{end}") for end in ("start", "end")]
+        total = theta[names[1]] - theta[names[0]]
+        constants = np.concatenate([constants, total * np.diff(ends)[:-1]])
+    return layout.pack(nodes, body[:, 1:], constants[: layout.nc])
 
 
 def _estimates(problem: BoundaryValueProblem, fields: RodFields, theta: Array) -> Array:

@@ -21,7 +21,6 @@ import casadi as ca
 
 from .implicit import Implicit, gradient_form, norm_form, polynomial_form
 from .relations import (
-    GUARD,
     Pair,
     blended_strain,
     convexified_energy,
@@ -30,6 +29,7 @@ from .relations import (
     sadowsky_complementary_energy,
     sadowsky_energy,
     sheet_moment,
+    sheet_sum,
 )
 
 
@@ -44,10 +44,16 @@ class ConstitutiveLaw(ABC):
     smooth: bool = True
     #: `moment` is a closed form, cheap to evaluate and to differentiate
     closed_moment: bool = True
+    #: strains have a kink or a jump where m2 changes sign; `sheet_strain` continues either side
+    kinked: bool = False
 
     @abstractmethod
     def strain(self, m2: ca.SX, m3: ca.SX) -> Pair:
         """Strains (u2, u3) at the moments (m2, m3)."""
+
+    def sheet_strain(self, m2: ca.SX, m3: ca.SX, chi: int) -> Pair:
+        """Strains of the side chi = sign(m2), continued analytically beyond m2 = 0."""
+        return self.strain(m2, m3)
 
     @abstractmethod
     def moment(self, u2: ca.SX, u3: ca.SX) -> Pair:
@@ -96,6 +102,10 @@ class Sadowsky(ConstitutiveLaw):
 
     bounds_eta = True
     smooth = False
+    kinked = True
+
+    def sheet_strain(self, m2: ca.SX, m3: ca.SX, chi: int) -> Pair:
+        return SingleSheet(ca.SX(chi)).strain(m2, m3)
 
     def implicit(self, m2: ca.SX, m3: ca.SX) -> Implicit:
         # The gradient of W_S itself: eqs. (2.4)-(2.5) have solutions in the forbidden region too.
@@ -132,7 +142,7 @@ class SingleSheet(ConstitutiveLaw):
 
     def strain(self, m2: ca.SX, m3: ca.SX) -> Pair:
         M = norm(m2, m3)
-        p = self._sum(M, m2, m3)
+        p = sheet_sum(m2, m3, self.chi)
         return self.chi * p**2 / (4 * M), m3 * p / (4 * M)
 
     def moment(self, u2: ca.SX, u3: ca.SX) -> Pair:
@@ -142,53 +152,27 @@ class SingleSheet(ConstitutiveLaw):
         return sadowsky_energy(u2, u3)
 
     def complementary_energy(self, m2: ca.SX, m3: ca.SX) -> ca.SX:
-        return self._sum(norm(m2, m3), m2, m3) ** 2 / 8
-
-    def _sum(self, M: ca.SX, m2: ca.SX, m3: ca.SX) -> ca.SX:
-        """Chi m2 + M, without cancellation where chi m2 < 0."""
-        a = self.chi * m2
-        return ca.if_else(a >= 0, M + a, (m3**2 + GUARD**2) / (M + ca.fabs(a)))
+        return sheet_sum(m2, m3, self.chi) ** 2 / 8
 
 
-@dataclass(frozen=True, eq=False)
-class Regularized(ConstitutiveLaw):
-    """Sadowsky's law smoothed by epsilon, eq. (6.1); not the gradient of an energy."""
+class _Blended(ConstitutiveLaw):
+    """The family of eq. (C 1) in rho and epsilon; not the gradient of an energy."""
 
+    rho: ca.SX | float
     epsilon: ca.SX
     variational = False
     closed_moment = False
-
-    def implicit(self, m2: ca.SX, m3: ca.SX) -> Implicit:
-        return polynomial_form(1, self.epsilon, self.strain(m2, m3), m2, m3)
-
-    def strain(self, m2: ca.SX, m3: ca.SX) -> Pair:
-        return blended_strain(m2, m3, 1, self.epsilon)
-
-    def moment(self, u2: ca.SX, u3: ca.SX) -> Pair:
-        return inverse(self.strain, u2, u3)
-
-    def energy(self, u2: ca.SX, u3: ca.SX) -> None:
-        return None
-
-    def complementary_energy(self, m2: ca.SX, m3: ca.SX) -> None:
-        return None
-
-
-@dataclass(frozen=True, eq=False)
-class Homotopy(ConstitutiveLaw):
-    """From rod (rho = 0) to regularised ribbon (rho = 1), eq. (C 1); no energy in between."""
-
-    rho: ca.SX
-    epsilon: ca.SX
-    variational = False
-    closed_moment = False
-
-    def implicit(self, m2: ca.SX, m3: ca.SX) -> Implicit:
-        return polynomial_form(self.rho, self.epsilon, self.strain(m2, m3), m2, m3)
+    kinked = True
 
     def strain(self, m2: ca.SX, m3: ca.SX) -> Pair:
         return blended_strain(m2, m3, self.rho, self.epsilon)
 
+    def sheet_strain(self, m2: ca.SX, m3: ca.SX, chi: int) -> Pair:
+        return blended_strain(m2, m3, self.rho, self.epsilon, chi)
+
+    def implicit(self, m2: ca.SX, m3: ca.SX) -> Implicit:
+        return polynomial_form(self.rho, self.epsilon, self.strain(m2, m3), m2, m3)
+
     def moment(self, u2: ca.SX, u3: ca.SX) -> Pair:
         return inverse(self.strain, u2, u3)
 
@@ -197,6 +181,22 @@ class Homotopy(ConstitutiveLaw):
 
     def complementary_energy(self, m2: ca.SX, m3: ca.SX) -> None:
         return None
+
+
+@dataclass(frozen=True, eq=False)
+class Regularized(_Blended):
+    """Sadowsky's law smoothed by epsilon, eq. (6.1)."""
+
+    epsilon: ca.SX
+    rho = 1
+
+
+@dataclass(frozen=True, eq=False)
+class Homotopy(_Blended):
+    """From rod (rho = 0) to regularised ribbon (rho = 1), eq. (C 1)."""
+
+    rho: ca.SX
+    epsilon: ca.SX
 
 
 @dataclass(frozen=True, eq=False)

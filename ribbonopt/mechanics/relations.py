@@ -44,10 +44,28 @@ def sheet_moment(u2: ca.SX, u3: ca.SX) -> Pair:
     return (u2 - u3) * (1 + eta) * (1 + eta**2), 2 * u3 * (1 + eta**2)
 
 
-def blended_strain(m2: ca.SX, m3: ca.SX, rho: ca.SX | float, epsilon: ca.SX) -> Pair:
-    """Eq. (C 1) with numerators and denominators multiplied by M + mu."""
-    M, mu = norm(m2, m3), ca.fabs(m2)
-    s = M + mu
+def sheet_sum(m2: ca.SX, m3: ca.SX, chi: ca.SX | float) -> ca.SX:
+    """Chi m2 + M, without cancellation where chi m2 < 0."""
+    M, a = norm(m2, m3), chi * m2
+    return ca.if_else(a >= 0, M + a, (m3**2 + GUARD**2) / (M + ca.fabs(a)))
+
+
+def blended_strain(
+    m2: ca.SX,
+    m3: ca.SX,
+    rho: ca.SX | float,
+    epsilon: ca.SX,
+    chi: float | None = None,
+) -> Pair:
+    """Eq. (C 1) with numerators and denominators multiplied by M + mu.
+
+    With a sheet chi, mu = |m2| is continued as chi m2: analytic where m2 changes sign.
+    """
+    if chi is None:
+        mu = ca.fabs(m2)
+        s = norm(m2, m3) + mu
+    else:
+        mu, s = chi * m2, sheet_sum(m2, m3, chi)
     torsion = s + rho * (m3**2 / s)
     bending = (1 - rho) * s + rho * (2 * mu + epsilon * s) + TINY
     return m2 * s**2 / (bending * torsion), m3 * s / (2 * torsion)

@@ -5,8 +5,10 @@ from __future__ import annotations
 import numpy as np
 
 from ribbonopt.arrays import Array
-from ribbonopt.errors import ModelError
+from ribbonopt.errors import ConvergenceError, ModelError
 from ribbonopt.mechanics import MODELS, RodModel
+from ribbonopt.mechanics.boundary import gap_between_ends
+from ribbonopt.scene import Scene
 
 from .contract import BoundaryValueProblem
 from .linearized import linearize
@@ -108,3 +110,15 @@ def _refuse_repeated(names: list[str], samples: list[Sample]) -> None:
                 "remove one",
                 _key(names[j]),
             )
+
+
+def refuse_unreachable(scene: Scene) -> None:
+    """Raise ConvergenceError if the prescribed ends are further apart than the ribbon is long."""
+    gap, length = gap_between_ends(scene), scene.interval[1] - scene.interval[0]
+    if gap > length * (1 + 1e-12):
+        raise ConvergenceError(
+            f"unreachable: the prescribed positions of the ends are {gap:.6g} apart "
+            f"(boundary.start.position, boundary.end.position), the ribbon is {length:.6g} long "
+            "(interval); bring them together or lengthen the ribbon",
+            status="unreachable",
+        )

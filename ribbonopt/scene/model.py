@@ -185,6 +185,7 @@ class Scene:
     parameters: dict[str, float] = field(default_factory=dict)
     transcription: Collocation | Shooting = Collocation()
     tolerance: Annotated[float, Bounds(ge=1e-13, le=0.1)] | None = None
+    switching: Literal["auto", "off"] | tuple[float, ...] = "auto"
     solver: Auto | Ipopt | Newton = Auto()
     reference: Reference | None = None
     ribbon: RibbonSizes | None = None

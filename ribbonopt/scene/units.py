@@ -75,7 +75,7 @@ def in_special_units(scene: Scene) -> Scene:
     if scene.ribbon is None:
         return scene
     units, boundary, parameters = units_of(scene), scene.boundary, scene.parameters
-    start, end = scene.interval
+    (start, end), switches = scene.interval, scene.switching
     own = {UNIT_LENGTH: units.length, UNIT_FORCE: units.force} if boundary.also else {}
     return replace(
         scene,
@@ -84,6 +84,7 @@ def in_special_units(scene: Scene) -> Scene:
         boundary=_boundary(boundary, units, parameters),
         guess=_guess(scene.guess, units),
         reference=_reference(scene.reference, units),
+        switching=switches if isinstance(switches, str) else _over(switches, units.length),
         ribbon=None,
     )
 

@@ -21,7 +21,7 @@ from ribbonopt.solution import Solution
 from ribbonopt.solvers import SolveReport
 
 from .energy import LeastEnergy
-from .first import follower_loads, loads_an_end, shapes_for, start_place
+from .first import compresses, follower_loads, shapes_for, start_place
 from .follow import Followed, Follower
 from .loops import closed_scene, fundamental_scene
 from .unfold import Unfolded
@@ -82,7 +82,7 @@ class Automatic:
         """Equilibria on the way down, the nearest to the scene's law last."""
         law, guess = _first_law(scene.law), ShapeGuess(shape)
         last = scene.law.delta if isinstance(scene.law, Variational) else LAST
-        if isinstance(shape, Chord) and shape.straight and not loads_an_end(scene):
+        if isinstance(shape, Chord) and shape.straight and not compresses(scene, shape):
             rod = law if isinstance(law, Kirchhoff) else Variational(delta=ROD)
             return list(self._follow(scene, rod, guess, last, path).points)
         points: list[Solution] = []

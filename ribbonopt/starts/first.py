@@ -37,13 +37,14 @@ def shapes_for(scene: Scene) -> Iterator[Shape]:
     chord = float(np.linalg.norm(end[0] - start[0]))
     # A strip that buckles: chord / length = 1 - bow^2 / 4.
     bow = 2 * np.sqrt(max(0.0, 1 - chord / length))
-    if chord > length * (1 - 1e-9) and loads_an_end(scene):
+    plain = Chord(start, end, length)
+    if chord > length * (1 - 1e-9) and compresses(scene, plain):
         bow = SMALL_BOW
-    yield Chord(start, end, length, bow)
+    yield replace(plain, bow=bow)
     if bow:
-        yield Chord(start, end, length, -0.5 * bow)
+        yield replace(plain, bow=-0.5 * bow)
     for turns in (1.0, -1.0):
-        yield Chord(start, end, length, 0.5 * bow, turns)
+        yield replace(plain, bow=0.5 * bow, turns=turns)
 
 
 def start_place(scene: Scene) -> Place:
@@ -52,9 +53,9 @@ def start_place(scene: Scene) -> Place:
     return start_position(boundary, parameters), start_frame(boundary, parameters)
 
 
-def loads_an_end(scene: Scene) -> bool:
-    """Whether a force with a potential acts on an end: dead, and not zero."""
-    return bool(np.any(dead_force_of(scene)))
+def compresses(scene: Scene, chord: Chord) -> bool:
+    """Whether a dead force pushes the ends together: a straight strip may buckle under it."""
+    return bool(dead_force_of(scene) @ (chord.end[0] - chord.start[0]) < 0)
 
 
 def dead_force_of(scene: Scene) -> Array:

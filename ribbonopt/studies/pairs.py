@@ -97,12 +97,14 @@ class Pair:
         return TRANSCRIPTIONS[self.transcription]
 
     def scene(self, scene: Scene, mesh: Mesh) -> Scene:
-        """Return the scene, solved this way on a mesh."""
+        """Return the scene, solved this way on a mesh: neither phases nor another mesh help."""
         return replace(
             scene,
             formulation=FORMULATIONS[self.formulation],
             states=self.states,
             transcription=mesh,
+            switching="off",
+            tolerance=None,
         )
 
 

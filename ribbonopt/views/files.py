@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from pathlib import Path
 
 from ribbonopt.errors import OutputError
@@ -10,7 +11,7 @@ from ribbonopt.solution import Solution
 from .plane import draw_plane
 from .ribbon import draw_ribbon
 from .strains import draw_strains
-from .subject import subject_of
+from .subject import Subject, subject_of
 
 
 def save_figures(
@@ -20,6 +21,8 @@ def save_figures(
     complete: bool = True,
 ) -> list[Path]:
     """Write strains.png, plane.png and ribbon.png into an existing folder.
+
+    Those of other equilibria of the scene go to `equilibria/2` in it, and so on.
 
     Parameters
     ----------
@@ -40,7 +43,20 @@ def save_figures(
     OutputError
         If a file cannot be written.
     """
-    subject = subject_of(solution, complete)
+    paths = _save(subject_of(solution, complete), Path(folder), half_width)
+    for i, other in enumerate(solution.others, start=2):
+        inner = Path(folder) / "equilibria" / str(i)
+        subject = subject_of(other, complete)
+        subject = replace(subject, name=f"{subject.name}, equilibrium {i}")
+        try:
+            inner.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise OutputError(f"{inner}: cannot be written ({error.strerror})") from error
+        paths += _save(subject, inner, half_width)
+    return paths
+
+
+def _save(subject: Subject, folder: Path, half_width: float | None) -> list[Path]:
     figures = {
         "strains.png": draw_strains(subject),
         "plane.png": draw_plane(subject),
@@ -48,7 +64,7 @@ def save_figures(
     }
     paths = []
     for file, figure in figures.items():
-        path = Path(folder) / file
+        path = folder / file
         try:
             figure.savefig(path)
         except OSError as error:

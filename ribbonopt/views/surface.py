@@ -23,6 +23,8 @@ WIDTH_SHARE = 1 / 20  # half-width by default, of the length drawn
 REGULAR_SLOPE = 0.8  # half_width |eta'| by default at most this
 LEAP_SLOPE = 0.7  # half_width |eta'| where eta leaps
 LEAST_LEAP = 1e-3
+LEAP_SHARE = 1 / 5  # half-width by default at most, of the usual distance between leaps
+CLOSE = 1e-4  # of the length: ends nearer than this meet
 FINE = 1e-6  # of the length: rows closer than this do not count for eta'
 
 
@@ -77,14 +79,12 @@ class Surface:
     @property
     def closed(self) -> bool:
         """Whether the ribbon ends where it starts."""
-        first, last = self.sheets[0].piece, self.sheets[-1].piece
-        return float(np.linalg.norm(first.r[0] - last.r[-1])) < 1e-3 * self.half_width
+        return _closing(tuple(sheet.piece for sheet in self.sheets)) != 0
 
     @property
     def one_sided(self) -> bool:
         """Whether the ribbon closes with its face turned over."""
-        first, last = self.sheets[0].piece, self.sheets[-1].piece
-        return self.closed and float(first.d1[0] @ last.d1[-1]) < -0.999
+        return _closing(tuple(sheet.piece for sheet in self.sheets)) < 0
 
 
 def sweep(pieces: tuple[Piece, ...], half_width: float | None = None) -> Surface:
@@ -95,7 +95,8 @@ def sweep(pieces: tuple[Piece, ...], half_width: float | None = None) -> Surface
     pieces
         In order of arclength.
     half_width
-        Default: a twentieth of the length, or less so that no generatrices cross.
+        Default: a twentieth of the length, or less so that no generatrices cross and those that
+        fan out where eta leaps leave room between.
 
     Raises
     ------
@@ -105,9 +106,16 @@ def sweep(pieces: tuple[Piece, ...], half_width: float | None = None) -> Surface
     if half_width is not None and not half_width > 0:
         raise ModelError(f"half_width is expected to be positive, found {half_width}")
     regular = _regular_half_width(pieces)
-    length = pieces[-1].s[-1] - pieces[0].s[0]
-    w = min(WIDTH_SHARE * length, REGULAR_SLOPE * regular) if half_width is None else half_width
-    leaps = [False, *(_leap(a, b) for a, b in pairwise(pieces)), False]
+    leaps = [_leap(a, b) for a, b in pairwise(pieces)]
+    seam = _leap_at_seam(pieces)
+    leaps = [seam, *leaps, seam]
+    w = half_width
+    if w is None:
+        length = pieces[-1].s[-1] - pieces[0].s[0]
+        where = [pieces[0].s[0], *(piece.s[-1] for piece in pieces)]
+        apart = np.diff(np.array(where)[leaps])
+        usual = float(np.median(apart)) if len(apart) else np.inf
+        w = min(WIDTH_SHARE * length, LEAP_SHARE * usual, REGULAR_SLOPE * regular)
     sheets = tuple(
         Sheet(piece, _drawn_eta(piece, w, *ends), w)
         for piece, ends in zip(pieces, pairwise(leaps), strict=True)
@@ -131,8 +139,24 @@ def _bounded(eta: Array) -> Array:
     return np.clip(eta, -ETA_BOUND, ETA_BOUND)
 
 
-def _leap(a: Piece, b: Piece) -> bool:
-    return bool(np.abs(_bounded(b.eta)[0] - _bounded(a.eta)[-1]) > LEAST_LEAP)
+def _leap(a: Piece, b: Piece, sign: int = 1) -> bool:
+    return bool(np.abs(sign * _bounded(b.eta)[0] - _bounded(a.eta)[-1]) > LEAST_LEAP)
+
+
+def _leap_at_seam(pieces: tuple[Piece, ...]) -> bool:
+    """Whether eta leaps where a closed ribbon returns; it changes sign as the face turns over."""
+    sign = _closing(pieces)
+    return sign != 0 and _leap(pieces[-1], pieces[0], sign)
+
+
+def _closing(pieces: tuple[Piece, ...]) -> int:
+    """Return 1 for a ribbon that returns to its start, -1 with its face turned over, else 0."""
+    first, last = pieces[0], pieces[-1]
+    gap = float(np.linalg.norm(first.r[0] - last.r[-1]))
+    facing = float(first.d1[0] @ last.d1[-1])
+    if gap > CLOSE * (last.s[-1] - first.s[0]) or abs(facing) < 0.999:
+        return 0
+    return 1 if facing > 0 else -1
 
 
 def _drawn_eta(piece: Piece, w: float, leaps_before: bool, leaps_after: bool) -> Array:

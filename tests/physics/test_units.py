@@ -49,6 +49,9 @@ SCENES = {
     "moebius, energy": "law: {type: variational, delta: 0.1}\nformulation: energy\n" + MOEBIUS,
     "moebius, shooting": "law: {type: single_sheet, chi: 1}\n"
     "transcription: {type: shooting, scheme: rk8, steps: 4, intervals: 5}\n" + MOEBIUS,
+    "moebius, phases": SADOWSKY
+    + "interval: [0, <1 L>]\nboundary: {loop: {half_twists: 1}}\nswitching: [<0.5 L>]\n"
+    + "guess: {moebius: {half_twists: 1}}\n",
     "moebius, rod": "law: {type: kirchhoff, B2: 1, B3: 1.5}\n" + MOEBIUS,
     "loaded, from strains": SADOWSKY
     + """interval: [<3 L>, <4 L>]

@@ -20,6 +20,7 @@ EXPECTED = {
     "moebius_kirchhoff",
     "moebius_regularized",
     "moebius_variational",
+    "ribbon_si",
 }
 NAMES = sorted(path.stem for path in CONFIGS.glob("*.yaml"))
 each_scene = pytest.mark.parametrize("name", NAMES)

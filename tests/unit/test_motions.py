@@ -18,6 +18,7 @@ from ribbonopt.problem.examine import examine
 from ribbonopt.problem.linearized import Linearized, linearize
 from ribbonopt.problem.motions import along_itself, rigid, unopposed
 from ribbonopt.scene import Scene, load_scene, loads_scene
+from ribbonopt.scene.units import in_special_units
 
 CONFIGS = Path(__file__).parents[2] / "configs"
 NAMES = sorted(path.stem for path in CONFIGS.glob("*.yaml"))
@@ -216,7 +217,7 @@ def test_the_place_that_is_proposed_for_a_free_ribbon_is_accepted() -> None:
 @pytest.mark.parametrize("name", NAMES)
 @pytest.mark.parametrize("seed", [0.3, 0.8, 0.55])
 def test_shipped_scenes_hold_the_ribbon(name: str, seed: float) -> None:
-    conditions = linearized(load_scene(CONFIGS / f"{name}.yaml"))
+    conditions = linearized(in_special_units(load_scene(CONFIGS / f"{name}.yaml")))
     z = conditions.satisfied(seed)
     assert z is not None
     assert np.abs(conditions.at(z)[0]).max() < 1e-9
@@ -225,7 +226,7 @@ def test_shipped_scenes_hold_the_ribbon(name: str, seed: float) -> None:
 
 @pytest.mark.parametrize("name", NAMES)
 def test_shipped_scenes_are_not_refused(name: str) -> None:
-    looked_at(load_scene(CONFIGS / f"{name}.yaml"))
+    looked_at(in_special_units(load_scene(CONFIGS / f"{name}.yaml")))
 
 
 numbers = st.floats(-1, 1, allow_subnormal=False)

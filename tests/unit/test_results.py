@@ -9,9 +9,10 @@ import pytest
 from ribbonopt import results
 from ribbonopt.errors import OutputError
 from ribbonopt.pipeline import prepare, solve
-from ribbonopt.results import load_solution, save_solution, staged_result
+from ribbonopt.results import load_solution, save_solution
 from ribbonopt.scene import load_scene
 from ribbonopt.solution import Solution
+from ribbonopt.staging import staged_result
 
 Solved = Callable[..., Solution]
 NAMES = ("r", "d1", "d2", "d3", "n", "m", "u")

@@ -99,9 +99,11 @@ def test_every_number_with_a_dimension_is_divided_by_its_unit() -> None:
     assert (found.parameters, found.law, found.name) == ({"half": 0.5}, SCENE.law, "a")
 
 
-def test_distances_are_lengths() -> None:
+def test_distances_and_places_of_switches_are_lengths() -> None:
     held = replace(SCENE, boundary=Boundary(end=End(support="held", distance="3 * half")))
     assert in_special_units(held).boundary.end.distance == 0.75
+    assert in_special_units(replace(SCENE, switching=(1.5,))).switching == (0.75,)
+    assert in_special_units(replace(SCENE, switching="off")).switching == "off"
 
 
 @pytest.mark.parametrize(

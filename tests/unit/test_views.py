@@ -13,7 +13,7 @@ from matplotlib.text import Text
 
 from ribbonopt.errors import ModelError, OutputError
 from ribbonopt.pipeline import solve
-from ribbonopt.results import OWN_FILES
+from ribbonopt.staging import OWN_FILES
 from ribbonopt.scene import load_scene
 from ribbonopt.solution import Solution
 from ribbonopt.symmetry import find_flip

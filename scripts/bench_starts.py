@@ -1,0 +1,196 @@
+"""How far the starts reach: random clamps, noise on a start, and scenes without their guess.
+
+    python scripts/bench_starts.py [--out results/bench_starts] [--count 200] [--seeds 50]
+                                   [--repeat 5]
+
+Everything is seeded; failures are counted with their messages, and times are those of all solves,
+failures included. Writes `bench_starts.json` and `bench_starts.png`.
+"""
+
+from __future__ import annotations
+
+import argparse
+import json
+import os
+from pathlib import Path
+from typing import Any
+
+# Small matrices: threads of the linear algebra cost more than they bring.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+os.environ.setdefault("OMP_NUM_THREADS", "1")
+
+import numpy as np
+from bench_path import ROOT, medians
+from starts_clamps import bench_clamps
+from starts_noise import LEVELS, METHODS, QUOTED, SAME, bench_noise
+
+from ribbonopt.pipeline import solve
+from ribbonopt.scene import load_scene
+from ribbonopt.studies.machine import machine
+from ribbonopt.summary import versions
+
+BLUE, RED, GREEN, GREY, LIGHT = "#1f5fa8", "#c2410c", "#2f7d32", "#777777", "#b8b8b8"
+
+
+def main() -> None:
+    """Run all parts, print the tables, write JSON and figure."""
+    parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--out", type=Path, default=Path("results") / "bench_starts")
+    parser.add_argument("--count", type=int, default=200, help="random clamps")
+    parser.add_argument("--seeds", type=int, default=50, help="seeds at each level of noise")
+    parser.add_argument("--repeat", type=int, default=5, help="runs of each scene from nothing")
+    options = parser.parse_args()
+    options.out.mkdir(parents=True, exist_ok=True)
+    result = {
+        "machine": machine(),
+        "versions": versions(),
+        "clamps": bench_clamps(options.count),
+        "noise": bench_noise(options.seeds),
+        "noise_quoted": QUOTED,
+        "nothing": bench_nothing(options.repeat),
+    }
+    report(result)
+    (options.out / "bench_starts.json").write_text(json.dumps(result, indent=2) + "\n")
+    draw(result, options.out / "bench_starts.png")
+    print(f"written: {options.out / 'bench_starts.json'}, {options.out / 'bench_starts.png'}")
+
+
+def bench_nothing(repeat: int) -> list[dict[str, Any]]:
+    """Time whole solves, building included, of every scene from its own guess and from none."""
+    rows = []
+    for path in sorted((ROOT / "configs").glob("*.yaml")):
+        scenes = {"auto": load_scene(path, ["guess=auto"])}
+        if load_scene(path).guess != "auto":
+            scenes["own"] = load_scene(path)
+        solutions = {name: solve(scene) for name, scene in scenes.items()}
+        runs = {name: lambda scene=scene: solve(scene) for name, scene in scenes.items()}
+        auto, own = solutions["auto"], solutions.get("own")
+        off, other = None, ""
+        if own is not None:  # signs may differ by symmetry
+            loads = [np.abs(np.append(s.n0, s.m0)) for s in (auto, own)]
+            off = float(np.abs(loads[0] - loads[1]).max() / max(loads[1].max(), 1e-300))
+            if off > SAME:
+                other = f"another equilibrium: energy {auto.energy:.6g}, own {own.energy:.6g}"
+        rows.append(
+            {
+                "scene": path.stem,
+                "verified": {name: solution.verified for name, solution in solutions.items()},
+                "message": auto.message,
+                "ms": {name: 1e3 * value for name, value in medians(repeat, runs).items()},
+                "difference": off,
+                "other": other,
+            }
+        )
+    return rows
+
+
+def report(result: dict[str, Any]) -> None:
+    """Print the tables."""
+    print(f"random clamps (the first, with what is built: {result['clamps']['first_s']:.2f} s)")
+    for name, row in result["clamps"]["summary"].items():
+        median, ninety, largest = row["ms"]
+        cpu = " / ".join(f"{value:.0f}" for value in row["cpu_ms"])
+        print(
+            f"  {name:<16} {row['verified']} of {row['count']} verified; median {median:.0f}, "
+            f"90 % {ninety:.0f}, largest {largest:.0f} ms (CPU {cpu}); "
+            f"{row['ipopt_iterations']:g} iterations of IPOPT\n"
+            f"    by number of shapes {row['shapes']}, of minimisations again "
+            f"{row['minimised_again']}; failures {row['failures']}, seeds {row['failed_seeds']}"
+        )
+    print(f"half Moebius found, noise {', '.join(f'{level:.0%}' for level in LEVELS)}")
+    for method, rows in by_method(result["noise"]).items():
+        found = " / ".join(f"{row['found']}" for row in rows)
+        ms = " / ".join(f"{row['ms_median']:.0f}" for row in rows)
+        print(f"  {method:<28} {found} of {rows[0]['seeds']}; median {ms} ms")
+        print(
+            "".join(f"    {r['level']:.0%}: {r['not_found']}\n" for r in rows if r["not_found"]),
+            end="",
+        )
+    for name, counts in QUOTED.items():
+        print(f"  {name:<28} {' / '.join(map(str, counts))} of 50, not measured here")
+    print("from nothing, whole solves in ms (loads against those from the scene's own guess)")
+    for row in result["nothing"]:
+        own, off = row["ms"].get("own"), row["difference"]
+        beside = "own guess: none" if own is None else f"own guess {own:7.1f}, differ by {off:.0e}"
+        failed = row["other"]
+        if not all(row["verified"].values()):
+            failed = f"NOT VERIFIED: {row['verified']}, {row['message']}"
+        print(f"  {row['scene']:<22} auto {row['ms']['auto']:7.1f}  {beside}  {failed}".rstrip())
+
+
+def by_method(rows: list[dict[str, Any]]) -> dict[str, list[dict[str, Any]]]:
+    """Return the rows of each method, by level of noise."""
+    return {method: [row for row in rows if row["method"] == method] for method in METHODS}
+
+
+def draw(result: dict[str, Any], path: Path) -> None:
+    """Draw times of the clamps, success rates, and times from nothing."""
+    from matplotlib.backends.backend_agg import FigureCanvasAgg
+    from matplotlib.figure import Figure
+
+    figure = Figure(figsize=(15, 4.8), layout="constrained")
+    FigureCanvasAgg(figure)
+    left, middle, right = figure.subplots(1, 3)
+    _times(left, result["clamps"])
+    _rates(middle, result)
+    _nothing(right, result["nothing"])
+    for axes in (left, middle, right):
+        axes.spines[["top", "right"]].set_visible(False)
+    figure.savefig(path, dpi=150)
+
+
+def _times(axes: Any, clamps: dict[str, Any]) -> None:
+    """Histogram of the times of random clamps."""
+    ms = {name: [row["ms"] for row in rows] for name, rows in clamps["rows"].items()}
+    every = np.concatenate(list(ms.values()))
+    bins = np.geomspace(0.9 * every.min(), 1.1 * every.max(), 40)
+    for (name, values), colour in zip(ms.items(), (BLUE, RED), strict=True):
+        good = clamps["summary"][name]["verified"]
+        label = f"{name}: {good} of {len(values)} solved"
+        axes.hist(values, bins, color=colour, alpha=0.8, label=label)
+    axes.set(xscale="log", xlabel="time of one solve (ms), failures included", ylabel="solves")
+    axes.set_title("random clamps")
+    ticks = [k * 10**e for e in range(1, 6) for k in (1, 2, 5)]
+    axes.set_xticks([t for t in ticks if bins[0] < t < bins[-1]])
+    axes.set_xticks([], minor=True)
+    axes.xaxis.set_major_formatter("{x:g}")
+    axes.set_ylim(0, 1.3 * axes.get_ylim()[1])
+    axes.legend(frameon=False, fontsize=9, loc="upper left")
+
+
+def _rates(axes: Any, result: dict[str, Any]) -> None:
+    """Bars: share found from starts with noise; quoted figures in grey."""
+    rates = {
+        name: [row["found"] / row["seeds"] for row in rows]
+        for name, rows in by_method(result["noise"]).items()
+    }
+    rates |= {name: [count / 50 for count in counts] for name, counts in QUOTED.items()}
+    width, places = 0.16, np.arange(len(LEVELS))
+    colours = (BLUE, GREEN, RED, GREY, LIGHT)
+    for i, ((name, shares), colour) in enumerate(zip(rates.items(), colours, strict=True)):
+        bars = axes.bar(places + (i - 2) * width, shares, 0.92 * width, color=colour, label=name)
+        axes.bar_label(bars, [f"{100 * share:.0f}" for share in shares], fontsize=7, padding=1)
+    axes.set_xticks(places, [f"{level:.0%} noise" for level in LEVELS])
+    axes.set(ylabel="share that found the band", title="half Moebius, noise on the start")
+    axes.set_ylim(0, 1.42)
+    axes.set_yticks([0, 0.5, 1], ["0", "50 %", "100 %"])
+    axes.legend(frameon=False, fontsize=8, ncols=2, loc="upper center")
+
+
+def _nothing(axes: Any, rows: list[dict[str, Any]]) -> None:
+    """Bars: whole solves of each scene from nothing and from its own guess."""
+    places = np.arange(len(rows))[::-1]
+    for name, colour, shift in (("auto", BLUE, 0.2), ("own", GREY, -0.2)):
+        ms = [row["ms"].get(name, 0) for row in rows]
+        label = {"auto": "no guess", "own": "the scene's own guess"}[name]
+        axes.barh(places + shift, ms, 0.38, color=colour, label=label)
+    names = [row["scene"] + ("\n(another equilibrium)" if row["other"] else "") for row in rows]
+    failed = ["" if all(row["verified"].values()) else " (failed)" for row in rows]
+    axes.set_yticks(places, map("".join, zip(names, failed, strict=True)), fontsize=8)
+    axes.set(xlabel="whole solve, building included (ms)", title="scenes of configs/")
+    axes.set_ylim(-0.7, len(rows) + 0.6)
+    axes.legend(frameon=False, fontsize=9, loc="upper left", ncols=2)
+
+
+if __name__ == "__main__":
+    main()
