@@ -7,14 +7,12 @@ so that other numbers (epsilon, loads, prescribed values, meshes) are solved wit
 from __future__ import annotations
 
 import time
-from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ribbonopt.attempts import Attempts
 from ribbonopt.built import Built
 from ribbonopt.errors import ConvergenceError, ModelError
 from ribbonopt.guess import Guess, guess_of, initial_unknowns, words
@@ -22,13 +20,13 @@ from ribbonopt.problem import BoundaryValueProblem, Ribbon, pose, theta_of
 from ribbonopt.problem.examine import examine, refuse_unreachable
 from ribbonopt.scene import Scene, SolutionGuess, validate_scene
 from ribbonopt.scene.units import in_special_units
+from ribbonopt.search import Search
 from ribbonopt.skipped import skipped
 from ribbonopt.solution import Solution
 from ribbonopt.solvers import Status
 from ribbonopt.transcription import NLP
 
 if TYPE_CHECKING:
-    from ribbonopt.accuracy.arcs import Arcs
     from ribbonopt.solvers import Solver
     from ribbonopt.starts.automatic import Automatic
 
@@ -42,7 +40,7 @@ class Prepared:
 
     built: Built
     seconds: float
-    _in_phases: dict[tuple[int, ...], Built] = field(default_factory=dict)
+    _phased: dict[tuple[int, ...], Built] = field(default_factory=dict)
 
     @property
     def scene(self) -> Scene:
@@ -93,13 +91,13 @@ class Prepared:
         started = time.perf_counter()
         scene = scene or self.scene
         refuse_unreachable(scene)
-        attempts = self.built.attempts(scene)
-        smooth = self._try_all(attempts, guess, fallback)
-        best = self._finished(attempts, smooth)
+        search = Search(scene, self.built, self._phased)
+        self._try_all(search, guess, fallback)
+        best = self._finished(search)
         if best is None:
             raise ConvergenceError(Status.NO_START.value, Status.NO_START.name.lower())
         total = time.perf_counter() - started + self.seconds
-        evaluate, linear = attempts.seconds
+        evaluate, linear = search.seconds
         timings = {
             "build": self.seconds,
             "evaluate": evaluate,
@@ -110,15 +108,15 @@ class Prepared:
         return replace(
             best,
             timings=timings,
-            iterations=attempts.iterations,
-            skipped=skipped(scene, self.problem, attempts.solvers, best.sheets),
+            iterations=search.iterations,
+            skipped=skipped(scene, self.problem, search.solvers, best.sheets),
         )
 
     def polish(self, guess: Guess) -> Solution:
         """Solve the prepared scene from one guess that is thought to be near."""
-        attempts = self.built.attempts(self.scene)
-        attempts.run(guess, quick=True)
-        found = self._finished(attempts, [guess] if isinstance(guess, Solution) else [])
+        search = Search(self.scene, self.built, self._phased)
+        _ = search.run_smooth(guess) if isinstance(guess, Solution) else search.run(guess)
+        found = self._finished(search)
         assert found is not None
         return found
 
@@ -146,60 +144,50 @@ class Prepared:
 
         return Automatic(in_special_units(self.scene))
 
-    def _try_all(self, attempts: Attempts, given: Guess | None, fallback: bool) -> list[Solution]:
-        """Try the guess that is given or the scene's, then the automatic ones, until one leads on.
-
-        Returns the solutions of the smooth law met on the way, delta decreasing.
-        """
-        scene, path = in_special_units(attempts.scene), attempts.path
+    def _try_all(self, search: Search, given: Guess | None, fallback: bool) -> None:
+        """Try the guess given or the scene's, then the automatic ones, until one leads on."""
+        scene = in_special_units(search.scene)
         started = time.perf_counter()
         own = given or self._own_guess(scene)
-        smooth: list[Solution] = []
         if own is not None:
             step = "guess: given" if given else f"guess: {words(scene.guess)}"
-            path.append({"step": step, "seconds": time.perf_counter() - started})
-            if attempts.run(own) or not fallback:
-                return smooth
+            search.path.append({"step": step, "seconds": time.perf_counter() - started})
+            if search.run(own) or not fallback:
+                return
         first: Guess | None = None
-        for guess in self.automatic.guesses(scene, path):
+        for guess in self.automatic.guesses(scene, search.path):
             if isinstance(guess, Solution):
-                smooth.insert(0, guess)
-            if attempts.run(guess, quick=True):
-                return smooth
+                done = search.run_smooth(guess)
+            else:
+                done = search.run(guess, quick=True)
+            if done:
+                return
             first = first or guess
-        if first is not None:
-            attempts.run(first)  # all that was spared to be quick
-        return smooth
+        if first is not None and not search.needs_phases:
+            search.run(first)  # all that was spared to be quick
 
-    def _finished(self, attempts: Attempts, smooth: list[Solution]) -> Solution | None:
-        """Return the best attempt: in phases where m2 changes sign, to the scene's tolerance."""
-        scene, best, built = attempts.scene, attempts.best, self.built
-        path: list[Mapping[str, Any]] = list(attempts.path)
-        if self.ribbon.law.kinked and scene.formulation == "inverted" and scene.switching != "off":
-            from ribbonopt.switching import in_phases  # smooth laws do without
-
-            converged = best if best is not None and best.status.converged else None
-            phased = in_phases(converged, smooth, scene, lambda arcs: self._posed(scene, arcs))
-            if phased is not None and phased.best is not None:
-                best, built = phased.best, self._in_phases[phased.sheets]
-                path += phased.path
+    def _finished(self, search: Search) -> Solution | None:
+        """Return the best solution found, on a mesh that meets the scene's tolerance."""
+        best, scene = search.best, search.scene
         if best is None:
             return None
-        best = replace(best, path=tuple(path))
+        best = replace(best, path=tuple(search.path))
+        if search.smooth and (not best.verified or (search.jumps(best) and not best.sheets)):
+            return self._regularized(best, search.smooth[-1]) or best
         if scene.tolerance is None or not best.verified:
             return best
         from ribbonopt.refinement import refine  # for scenes with a tolerance
 
-        return refine(best, scene.tolerance, lambda *mesh: built.attempts(scene, *mesh))
+        return refine(best, scene.tolerance, lambda *mesh: search.on_mesh(best.sheets, *mesh))
 
-    def _posed(self, scene: Scene, arcs: Arcs) -> Attempts:
-        """Return the means to solve a scene in phases."""
-        from ribbonopt.problem.switched import switched
-
-        if arcs.kinds not in self._in_phases:
-            problem = switched(self.ribbon, arcs.kinds)
-            self._in_phases[arcs.kinds] = Built(self.scene, self.ribbon, problem, arcs.kinds)
-        return self._in_phases[arcs.kinds].attempts(scene, switches=arcs.switches)
+    def _regularized(self, best: Solution, smooth: Solution) -> Solution | None:
+        """Return the equilibrium of the smooth law, labelled, where the exact law has none found."""
+        scene = replace(best.scene, law=smooth.scene.law, switching="off", guess="auto", starts=1)
+        found = prepare(scene).solve(guess=smooth, fallback=False)
+        if not found.verified or type(scene.law) is type(best.scene.law):
+            return None
+        path, status = (*best.path, *found.path), Status.REGULARIZED
+        return replace(found, status=status, message=status.value, path=path)
 
     def _own_guess(self, scene: Scene) -> Guess | None:
         if isinstance(scene.guess, SolutionGuess):
@@ -228,7 +216,9 @@ def solve(scene: Scene) -> Solution:
         return solution
     from ribbonopt.starts.several import equilibria  # few scenes ask for it
 
-    return equilibria(prepared.scene, solution, prepared.automatic, prepared.polish)
+    return equilibria(
+        in_special_units(prepared.scene), solution, prepared.automatic, prepared.polish
+    )
 
 
 def prepare(scene: Scene) -> Prepared:

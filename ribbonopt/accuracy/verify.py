@@ -7,6 +7,8 @@ loop must close with the half twists that were asked.
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import casadi as ca
 import numpy as np
 
@@ -19,6 +21,9 @@ TOLERANCE = 1e-8
 
 def verify(solution: Solution, ribbon: Ribbon) -> Verification:
     """Check a solution against its scene."""
+    if not (np.diff(solution.joined.ends) > 0).all():
+        problem = "a phase between two sign changes of m2 has no length"
+        return replace(unverified(), problems=(problem,))
     worst_name, worst = _worst_condition(solution, ribbon)
     residual = float(solution.dense.residual_between_nodes().max())
     nodes = solution.outputs(solution.nodes)

@@ -45,6 +45,10 @@ class Status(Enum):
         "no equilibrium of the smooth law was found to start from, from any shape that fits the "
         "ends: give a guess, or bring the ends to an easier place first"
     )
+    REGULARIZED = (
+        "no equilibrium of the law asked for was found that is valid everywhere; this is one of "
+        "the smooth law (variational), near which it should be"
+    )
     TOLERANCE_MISSED = (
         "the equations are solved, but not to the tolerance: where the law has a kink (m2 changes "
         "sign) no mesh will do; raise the tolerance, or use a smooth law (variational)"
@@ -54,7 +58,12 @@ class Status(Enum):
     @property
     def converged(self) -> bool:
         """Whether the nonlinear equations are solved."""
-        return self in (Status.CONVERGED, Status.WRONG_SOLUTION, Status.TOLERANCE_MISSED)
+        return self in (
+            Status.CONVERGED,
+            Status.WRONG_SOLUTION,
+            Status.REGULARIZED,
+            Status.TOLERANCE_MISSED,
+        )
 
     @property
     def failure(self) -> str:
@@ -62,6 +71,7 @@ class Status(Enum):
         words = {
             Status.CONVERGED: "",
             Status.WRONG_SOLUTION: "wrong-solution",
+            Status.REGULARIZED: "regularized",
             Status.TOLERANCE_MISSED: "tolerance-missed",
         }
         return words.get(self, "not-converged")

@@ -10,9 +10,9 @@ import pytest
 from matplotlib.text import Text
 
 from ribbonopt.pipeline import solve
-from ribbonopt.staging import OWN_FILES
 from ribbonopt.scene import load_scene
 from ribbonopt.solution import Solution
+from ribbonopt.staging import OWN_FILES
 from ribbonopt.views import plot_plane, plot_ribbon, plot_strains, save_figures
 from ribbonopt.views.subject import Subject, subject_of
 from ribbonopt.views.surface import ETA_BOUND, sweep
