@@ -172,7 +172,8 @@ class Prepared:
         if best is None:
             return None
         best = replace(best, path=tuple(search.path))
-        if search.smooth and (not best.verified or (search.jumps(best) and not best.sheets)):
+        wrong = not best.verified or (search.jumps(best) and not best.sheets)
+        if wrong and search.needs_phases and search.smooth:
             return self._regularized(best, search.smooth[-1]) or best
         if scene.tolerance is None or not best.verified:
             return best
@@ -181,10 +182,10 @@ class Prepared:
         return refine(best, scene.tolerance, lambda *mesh: search.on_mesh(best.sheets, *mesh))
 
     def _regularized(self, best: Solution, smooth: Solution) -> Solution | None:
-        """Return the equilibrium of the smooth law, labelled, where the exact law has none found."""
+        """Return the equilibrium of the smooth law, labelled: none was found of the exact one."""
         scene = replace(best.scene, law=smooth.scene.law, switching="off", guess="auto", starts=1)
         found = prepare(scene).solve(guess=smooth, fallback=False)
-        if not found.verified or type(scene.law) is type(best.scene.law):
+        if not found.verified:
             return None
         path, status = (*best.path, *found.path), Status.REGULARIZED
         return replace(found, status=status, message=status.value, path=path)

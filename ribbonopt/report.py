@@ -30,6 +30,7 @@ def report(summary: Mapping[str, Any]) -> str:
         *(["  (force and moment recovered from the costates)"] * (s["loads_from"] == "costates")),
         _row("energy", s["energy"], errors["energy"]),
         _row("invariant H(0)", s["H0"], errors["H0"]),
+        *_phases(s),
         "",
         f"  drift along the ribbon   {_drifts(s['invariant_drift'])}",
         f"  conditions hold to {_short(s['worst_condition'])}, equations between the stages to "
@@ -44,6 +45,19 @@ def report(summary: Mapping[str, Any]) -> str:
         *(f"    {reason}" for reason in s["skipped"]),
     ]
     return "\n".join(lines)
+
+
+def _phases(s: Mapping[str, Any]) -> list[str]:
+    """Lines on half twists and on sign changes of m2, where there are any."""
+    lines = []
+    if s["half_twists"] is not None:
+        lines.append(f"  half twists              {s['half_twists']}")
+    if s["phases"]:
+        at = ", ".join(f"{point:.6g}" for point in s["switch_points"])
+        words = {1: "m2 > 0", -1: "m2 < 0", 0: "m2 = 0 (mixture)"}
+        arcs = ", ".join(words[kind] for kind in s["phases"])
+        lines.append(f"  phases                   {arcs}; switches at s = {at}")
+    return lines
 
 
 def _others(equilibria: Sequence[Mapping[str, Any]]) -> list[str]:

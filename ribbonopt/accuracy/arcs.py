@@ -28,14 +28,19 @@ class Arcs:
 
 
 def sign_changes(solution: Solution) -> Arcs:
-    """Return the arcs on which m2 keeps its sign, as far as the stages can tell."""
-    f, m2, _ = _sampled(solution)
-    size = np.abs(m2) > NEGLIGIBLE * _scale(solution)
-    f, m2 = f[size], m2[size]
+    """Return the arcs between sign changes of m2, as far as the stages can tell.
+
+    Where m3 vanishes too (a planar ribbon) the law is smooth: such changes do not count.
+    """
+    f, m2, m3, _ = _sampled(solution)
+    scale = _scale(solution)
+    size = np.abs(m2) > NEGLIGIBLE * scale
+    f, m2, m3 = f[size], m2[size], m3[size]
     if not len(m2):
         return Arcs((1,), np.empty(0))
     signs = np.sign(m2).astype(int)
-    at = np.flatnonzero(signs[1:] != signs[:-1])
+    twisted = np.abs(m3) > NEGLIGIBLE * scale
+    at = np.flatnonzero((signs[1:] != signs[:-1]) & (twisted[1:] | twisted[:-1]))
     # Between the two points m2 is straight, to the accuracy of a first guess.
     switches = f[at] + (f[at + 1] - f[at]) * m2[at] / (m2[at] - m2[at + 1])
     kinds = (int(signs[0]), *(int(signs[i + 1]) for i in at))
@@ -80,16 +85,16 @@ def _interleaved(arcs: Arcs, mixtures: list[tuple[float, float]]) -> Arcs:
 
 def _beyond(solution: Solution) -> list[tuple[float, float]]:
     """Fractions between which |eta| is beyond that of one sheet."""
-    f, _, eta = _sampled(solution)
+    f, _, _, eta = _sampled(solution)
     beyond = np.concatenate([[False], np.abs(eta) > BEYOND, [False]])
     edges = np.flatnonzero(beyond[1:] != beyond[:-1])
     return [(f[a], f[b - 1]) for a, b in zip(edges[::2], edges[1::2], strict=True)]
 
 
-def _sampled(solution: Solution) -> tuple[Array, Array, Array]:
-    """Fractions, m2 and eta at the stages."""
+def _sampled(solution: Solution) -> tuple[Array, Array, Array, Array]:
+    """Fractions, m2, m3 and eta at the stages."""
     o = solution.at_stages
-    return solution.joined.stages[1], o["m2"], o["eta"]
+    return solution.joined.stages[1], o["m2"], o["m3"], o["eta"]
 
 
 def _scale(solution: Solution) -> float:

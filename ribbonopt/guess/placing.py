@@ -9,7 +9,7 @@ import numpy as np
 
 from ribbonopt.arrays import Array
 from ribbonopt.mechanics import MODELS, RodFields
-from ribbonopt.mechanics.boundary import start_position
+from ribbonopt.mechanics.boundary import ENDS, start_position
 from ribbonopt.mechanics.conditions import Component, Direction, EndName, Frame
 from ribbonopt.mechanics.rotations import matrix_of, turns_about
 from ribbonopt.problem import Ribbon
@@ -30,12 +30,16 @@ def place_ends(ribbon: Ribbon, scene: Scene, theta: Array) -> tuple[Place, Place
     that the ends alone cannot meet), the last of them is returned.
     """
     length = scene.interval[1] - scene.interval[0]
-    first, last = (_frame(ribbon, end) for end in ("start", "end"))
-    start, end = start_position(scene.boundary, scene.parameters), _position(ribbon, "end")
-    first, last = _completed(first, last, _known_chord(ribbon, start))
+    first, last = (_frame(ribbon, name) for name in ENDS)
+    start, end = (_position(ribbon, name) for name in ENDS)
+    if np.isnan(start).any() and np.isnan(end).all():
+        start = start_position(scene.boundary, scene.parameters)
+    first, last = _completed(first, last, _known_chord(start, end))
     tangent = first[:, 2] + last[:, 2]
     tangent = tangent / max(float(np.linalg.norm(tangent)), 1.0)
-    slack = SLACK if np.isfinite(end).any() else 1.0
+    slack = SLACK if np.isfinite(start).any() and np.isfinite(end).any() else 1.0
+    start = np.where(np.isfinite(start), start, end - slack * length * tangent)
+    start = np.where(np.isfinite(start), start, 0.0)
     end = np.where(np.isfinite(end), end, start + slack * length * tangent)
     fields = RodFields(
         np.stack([start, end]), np.stack([first, last]), np.zeros((2, 3)), np.zeros((2, 3))
@@ -99,8 +103,8 @@ def _completed(first: Array | None, last: Array | None, chord: Array | None) -> 
     return first, last
 
 
-def _known_chord(ribbon: Ribbon, start: Array) -> Array | None:
-    chord = _position(ribbon, "end") - start
+def _known_chord(start: Array, end: Array) -> Array | None:
+    chord = end - start
     size = float(np.linalg.norm(chord))
     return chord / size if np.isfinite(size) and size > 1e-9 else None
 

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
+from ribbonopt.errors import ConvergenceError
 from ribbonopt.guess import Guess, ShapeGuess
 from ribbonopt.guess.shapes import Chord, Shape
 from ribbonopt.scene import Kirchhoff, Law, Scene, Variational
@@ -21,7 +22,7 @@ from ribbonopt.solution import Solution
 from ribbonopt.solvers import SolveReport
 
 from .energy import LeastEnergy
-from .first import compresses, follower_loads, shapes_for, start_place
+from .first import compresses, follower_loads, loaded, shapes_for, start_place
 from .follow import Followed, Follower
 from .loops import closed_scene, fundamental_scene
 from .unfold import Unfolded
@@ -84,7 +85,15 @@ class Automatic:
         last = scene.law.delta if isinstance(scene.law, Variational) else LAST
         if isinstance(shape, Chord) and shape.straight and not compresses(scene, shape):
             rod = law if isinstance(law, Kirchhoff) else Variational(delta=ROD)
-            return list(self._follow(scene, rod, guess, last, path).points)
+            followed = self._follow(scene, rod, guess, last, path)
+            if not followed.points and not loaded(scene):
+                raise ConvergenceError(
+                    "the ribbon is straight and without stress: it cannot bend in its own plane, "
+                    "so that the loads of its ends there are not determined; shorten or turn it, "
+                    "if only a little",
+                    "indeterminate",
+                )
+            return list(followed.points)
         points: list[Solution] = []
         start: Guess = guess
         for _ in range(1 + AGAIN):

@@ -41,6 +41,8 @@ def shapes_for(scene: Scene) -> Iterator[Shape]:
     if chord > length * (1 - 1e-9) and compresses(scene, plain):
         bow = SMALL_BOW
     yield replace(plain, bow=bow)
+    if plain.straight and not bow:
+        return
     if bow:
         yield replace(plain, bow=-0.5 * bow)
     for turns in (1.0, -1.0):
@@ -51,6 +53,13 @@ def start_place(scene: Scene) -> Place:
     """Position and frame of the start, those of the lab where they are not prescribed."""
     boundary, parameters = scene.boundary, scene.parameters
     return start_position(boundary, parameters), start_frame(boundary, parameters)
+
+
+def loaded(scene: Scene) -> bool:
+    """Whether any load but a pull along the straight ribbon is prescribed to be other than zero."""
+    return any(
+        isinstance(c, Component) and not c.kinematic and c.value != 0 for c in conditions_of(scene)
+    )
 
 
 def compresses(scene: Scene, chord: Chord) -> bool:

@@ -25,6 +25,7 @@ MESH = Collocation(scheme="gauss", degree=3, intervals=30)
 TOLERANCE, MAX_ITERATIONS = 1e-8, 30
 NEAR = 0.05  # residual of the conditions, over 1 + size of the loads, that Newton may close at once
 LEAST_STEP = 1 / 64
+MOST_STEPS = 40
 FACTOR, LEAST_FACTOR = 0.33, 0.95  # delta from one step to the next, first and where to give up
 
 
@@ -103,7 +104,7 @@ class _Run:
                 self._keep()
                 continue
             factor = float(np.sqrt(factor))
-            if factor > LEAST_FACTOR:
+            if factor > LEAST_FACTOR or self.steps > MOST_STEPS:
                 return False
         return True
 

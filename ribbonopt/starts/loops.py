@@ -23,6 +23,8 @@ def loop_of(scene: Scene) -> Loop | None:
     boundary, parameters = scene.boundary, scene.parameters
     if boundary.loop is not None:
         return boundary.loop
+    if {boundary.start.support, boundary.end.support} - {None, "clamped"}:
+        return None
     places = [components(end.position, parameters) for end in (boundary.start, boundary.end)]
     shared = {axis for axis in places[0] if places[0][axis] == places[1].get(axis)}
     first = frame_of(boundary.start, parameters)

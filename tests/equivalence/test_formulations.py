@@ -121,7 +121,7 @@ def test_energy_needs_a_law_with_an_energy(configs: Path, law: str) -> None:
 
 def test_energy_refuses_loads_without_a_potential(configs: Path) -> None:
     follower = [ENERGY, "boundary.end.force={d1: 1, d2: 0, d3: 0}"]
-    with pytest.raises(ModelError, match=r"boundary.end.force.d1, other than zero, has no potential"):
+    with pytest.raises(ModelError, match=r"force.d1, other than zero, has no potential"):
         prepare(load_scene(configs / "cantilever.yaml", follower))
 
 

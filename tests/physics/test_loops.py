@@ -30,8 +30,12 @@ from ribbonopt.solution import Solution
 Array = np.ndarray
 SMOOTH, PAPER = Variational(delta=0.01), Regularized(epsilon=0.01)
 TWISTS = (2, 3, -3, 5)
-each_law = pytest.mark.parametrize("law", [SMOOTH, PAPER], ids=lambda law: law.type)
 each_band = pytest.mark.parametrize("half_twists", TWISTS)
+each_band_and_law = pytest.mark.parametrize(
+    ("half_twists", "law"),
+    [*((k, SMOOTH) for k in TWISTS), (3, PAPER), (-3, PAPER)],
+    ids=lambda value: getattr(value, "type", str(value)),
+)
 
 
 def pieces(half_twists: int, piece: str) -> int:
@@ -77,10 +81,12 @@ def test_one_half_twist_is_the_moebius_ribbon_of_the_paper(piece: str) -> None:
 
 
 @pytest.mark.parametrize("delta", VARIATIONAL)
-@pytest.mark.parametrize("piece", ["whole", "half"])
-@pytest.mark.parametrize("formulation", ["inverted", "energy"])
+@pytest.mark.parametrize(
+    ("piece", "formulation"), [("whole", "inverted"), ("half", "inverted"), ("half", "energy")]
+)
 def test_one_half_twist_under_the_smooth_law(delta: float, piece: str, formulation: str) -> None:
-    found = band(1, piece, Variational(delta=delta), 24, formulation=formulation)
+    share = 24 if piece == "whole" or delta < 0.1 else 12
+    found = band(1, piece, Variational(delta=delta), share, formulation=formulation)
     u2, H = VARIATIONAL[delta]
     assert agrees(float(found.u0[1]), u2)
     assert agrees(float(found.start["H"]), H)
@@ -99,8 +105,9 @@ def test_three_half_twists_as_two_other_programs_have_them(piece: str) -> None:
         assert n @ m == pytest.approx(-1199.8 * sign, abs=1.0)
 
 
-@pytest.mark.parametrize("law", [Sadowsky(), SMOOTH], ids=lambda law: law.type)
-@pytest.mark.parametrize("piece", ["whole", "half", "fundamental"])
+@pytest.mark.parametrize(
+    ("law", "piece"), [(SMOOTH, "whole"), (SMOOTH, "half"), (Sadowsky(), "fundamental")]
+)
 def test_two_half_twists_make_the_figure_of_eight(law: Law, piece: str) -> None:
     # Planar elastica whose ends meet: 2 E(k) = K(k); the smooth law may leave the plane a little.
     m = brentq(lambda m: 2 * ellipe(m) - ellipk(m), 0.5, 0.99)
@@ -129,8 +136,7 @@ def ends(found: Solution) -> tuple[Array, Array]:
     return found.sample(s, "r"), frames
 
 
-@each_law
-@each_band
+@each_band_and_law
 def test_whole_loops_close(half_twists: int, law: Law) -> None:
     r, frames = ends(band(half_twists, "whole", law))
     sign = (-1.0) ** half_twists
@@ -138,15 +144,15 @@ def test_whole_loops_close(half_twists: int, law: Law) -> None:
     np.testing.assert_allclose(frames[1], frames[0] * [sign, sign, 1], atol=1e-9)
 
 
-@each_law
-@each_band
+@each_band_and_law
 @pytest.mark.parametrize("piece", ["whole", "half", "fundamental"])
 def test_half_twists_are_as_many_as_asked(half_twists: int, piece: str, law: Law) -> None:
     assert count_half_twists(band(half_twists, piece, law)) == half_twists
 
 
-@each_law
-@pytest.mark.parametrize("half_twists", [3, -3, 5])
+@pytest.mark.parametrize(
+    ("half_twists", "law"), [(3, SMOOTH), (5, SMOOTH), (3, PAPER)], ids=["3", "5", "3 (6.1)"]
+)
 def test_all_pieces_are_of_one_band(half_twists: int, law: Law) -> None:
     # The same mesh on each: only rounding differs.
     piece, half, whole = (band(half_twists, p, law) for p in ("fundamental", "half", "whole"))
@@ -207,7 +213,7 @@ def strains(m2: float, m3: float, delta: float) -> tuple[float, float]:
     return m2 * (q + M) ** 2 / (4 * q * M), m3 * (q + M) * (q + delta**2 * M) / (4 * q * M)
 
 
-@pytest.mark.parametrize(("half_twists", "share"), [(3, 1.0), (-3, 1.0), (5, 0.2)])
+@pytest.mark.parametrize(("half_twists", "share"), [(3, 1.0), (5, 0.2)])
 def test_integration_from_the_start_follows_the_loop(half_twists: int, share: float) -> None:
     # All of it for three; that of five is unstable as an initial-value problem, so one fifth.
     delta = 0.1
@@ -229,7 +235,7 @@ def test_integration_from_the_start_follows_the_loop(half_twists: int, share: fl
         np.testing.assert_allclose(end[3:12].reshape(3, 3), np.diag([-1, -1, 1]), atol=1e-9)
 
 
-@pytest.mark.parametrize(("half_twists", "piece"), [(1, "whole"), (3, "whole"), (3, "half")])
+@pytest.mark.parametrize(("half_twists", "piece"), [(1, "whole"), (3, "half")])
 def test_a_loop_placed_elsewhere_is_the_loop_moved(half_twists: int, piece: str) -> None:
     rotation = Rotation.from_quat([0.1, -0.7, 0.4, 0.5])
     q = np.roll(rotation.as_quat(), 1)

@@ -29,7 +29,7 @@ from ribbonopt.solution import Solution
 
 Array = np.ndarray
 WAYS = ("quaternion", "turns", "directors of the lab")
-SEEDS = (1, 2, 3)
+SEEDS = (1, 2)
 IDENTITY = np.eye(3)
 S = np.linspace(0, 1, 9)
 
@@ -168,9 +168,8 @@ def test_a_generic_ribbon_is_found_without_a_guess_elsewhere(seed: int) -> None:
     assert_moved(found, generic(), Q, shift, 1e-10)
 
 
-@pytest.mark.parametrize("axis", [0, 1, 2])
-@pytest.mark.parametrize("guess", ["auto", "loads"])
-def test_the_image_in_a_mirror_is_an_equilibrium(guess: str, axis: int) -> None:
+@pytest.mark.parametrize(("axis", "guess"), [(0, "loads"), (1, "auto"), (2, "loads")])
+def test_the_image_in_a_mirror_is_an_equilibrium(axis: int, guess: str) -> None:
     mirror = np.diag([-1.0 if i == axis else 1.0 for i in range(3)])
     original = generic()
     # Forces are mirrored as arrows are, moments as turns: the other way round.

@@ -5,7 +5,7 @@ from collections.abc import Sequence
 
 import numpy as np
 import pytest
-from hypothesis import assume, example, given
+from hypothesis import assume, example, given, settings
 from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
@@ -75,6 +75,7 @@ def test_columns_are_the_directors() -> None:
     np.testing.assert_array_equal(found, [[0, 0, 1], [1, 0, 0], [0, 1, 0]])
 
 
+@settings(max_examples=40)
 @given(quaternions)
 @example((1.0, 0.0, 0.0, 0.0))
 @example((0.0, 0.6, 0.0, 0.8))
@@ -90,6 +91,7 @@ def test_a_quaternion_turns_the_lab_axes_to_the_directors() -> None:
     np.testing.assert_allclose(found, [[1, 0, 0], [0, 0, -1], [0, 1, 0]], atol=EPS)
 
 
+@settings(max_examples=40)
 @given(triples)
 @example((0.0, 0.0, 0.0))
 @example((0.0, 1e-300, 0.0))
@@ -103,6 +105,7 @@ def test_rotation_vectors_are_axis_times_angle(vector: tuple[float, ...]) -> Non
     np.testing.assert_allclose(found, expected, rtol=0, atol=atol)
 
 
+@settings(max_examples=40)
 @given(quaternions, st.sampled_from([*PAIRS, DIRECTORS]))
 def test_two_directors_are_as_good_as_three(q: tuple[float, ...], names: Sequence[str]) -> None:
     expected = Rotation.from_quat(q).as_matrix()
@@ -111,6 +114,7 @@ def test_two_directors_are_as_good_as_three(q: tuple[float, ...], names: Sequenc
     np.testing.assert_allclose(frame_of(end, {}), expected, rtol=0, atol=2 * EPS)
 
 
+@settings(max_examples=40)
 @given(quaternions, st.sampled_from([*PAIRS, DIRECTORS]), st.integers(0, 99))
 def test_directors_that_are_nearly_a_frame_become_one(
     q: tuple[float, ...], names: Sequence[str], seed: int
@@ -123,6 +127,7 @@ def test_directors_that_are_nearly_a_frame_become_one(
     assert np.abs(found - exact).max() < 3e-6
 
 
+@settings(max_examples=40)
 @given(turns)
 def test_turns_about_lab_axes_come_before_and_those_about_directors_after(
     steps: list[tuple[str, float]],
@@ -135,6 +140,7 @@ def test_turns_about_lab_axes_come_before_and_those_about_directors_after(
     np.testing.assert_allclose(turned(*steps), expected, rtol=0, atol=2 * EPS * (3 + size))
 
 
+@settings(max_examples=40)
 @given(triples)
 def test_turns_are_the_euler_angles_of_scipy(angle: tuple[float, ...]) -> None:
     lab = turned(*zip("xyz", angle, strict=True))
@@ -156,6 +162,7 @@ def test_turns_by_hand() -> None:
     np.testing.assert_allclose(turned(("x", quarter), ("d3", quarter)), own, atol=EPS)
 
 
+@settings(max_examples=40)
 @given(quaternions)
 @example((math.cos(0.4), 0.0, math.sin(0.4), 0.0))
 @example((0.0, 0.6, 0.0, 0.8))
@@ -210,6 +217,7 @@ def test_numbers_may_be_formulas_of_parameters() -> None:
     np.testing.assert_allclose(half, expected, atol=EPS)
 
 
+@settings(max_examples=40)
 @given(triples)
 def test_the_turn_vector_is_the_shortest_rotation_vector(vector: tuple[float, ...]) -> None:
     rotation = Rotation.from_rotvec(vector)

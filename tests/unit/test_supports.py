@@ -39,7 +39,7 @@ Array = np.ndarray
 SUPPORTS: tuple[Support, ...] = get_args(Support)
 AT_START = tuple(s for s in SUPPORTS if s != "held")
 each_support = pytest.mark.parametrize("support", SUPPORTS)
-each_seed = pytest.mark.parametrize("seed", range(3))
+each_seed = pytest.mark.parametrize("seed", range(2))
 each_model = pytest.mark.parametrize("states", ["reduced", "full"])
 
 
@@ -355,9 +355,9 @@ def ends_at(distance: float) -> dict[str, tuple[End, End]]:
     }
 
 
-@pytest.mark.parametrize("law", [Sadowsky(), Variational(delta=0.1)])
 @pytest.mark.parametrize("ends", ends_at(0.74101961))
-def test_hinges_hold_the_pinned_elastica(ends: str, law: Law) -> None:
+def test_hinges_hold_the_pinned_elastica(ends: str) -> None:
+    law = Variational(delta=0.1) if "loaded" in ends else Sadowsky()  # planar: the same
     found = equilibrium(*ends_at(0.74101961)[ends], law)
     np.testing.assert_allclose(tip(found), [0, 0, 0.74101961], atol=1e-8)
     np.testing.assert_allclose(found.n0, [0, 0, -(np.pi**2) * 1.1517196], atol=1e-5)
@@ -368,7 +368,7 @@ def test_hinges_hold_the_pinned_elastica(ends: str, law: Law) -> None:
     assert largest == pytest.approx(np.sqrt(np.pi**2 * 1.1517196), rel=1e-6)
 
 
-@pytest.mark.parametrize("distance", [0.2, 0.74101961, 0.95])
+@pytest.mark.parametrize("distance", [0.2, 0.74101961])
 def test_a_string_holds_the_pinned_elastica(distance: float) -> None:
     k = pinned_modulus(distance)
     found = equilibrium(CLAMP, End("held", distance=distance))
@@ -422,8 +422,9 @@ def sphere(points: Array) -> tuple[Array, float, float]:
     return centre, radius, float(np.abs(off).max())
 
 
-@pytest.mark.parametrize("moment", [(0, 3.2, 2.4), (0, 2.0, -6.0), (0.5, 3.2, 2.4)])
-@pytest.mark.parametrize("start", [False, True])
+@pytest.mark.parametrize(
+    ("moment", "start"), [((0, 3.2, 2.4), False), ((0.5, 2, -6), False), ((0, 2, 1), True)]
+)
 def test_a_moment_on_a_free_end_bends_the_ribbon_on_a_sphere(moment: Any, start: bool) -> None:
     free = End("free", moment=moment)
     ends = (free, CLAMP) if start else (CLAMP, free)

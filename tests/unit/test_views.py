@@ -13,9 +13,9 @@ from matplotlib.text import Text
 
 from ribbonopt.errors import ModelError, OutputError
 from ribbonopt.pipeline import solve
-from ribbonopt.staging import OWN_FILES
 from ribbonopt.scene import load_scene
 from ribbonopt.solution import Solution
+from ribbonopt.staging import OWN_FILES
 from ribbonopt.symmetry import find_flip
 from ribbonopt.views import plot_plane, plot_ribbon, plot_strains, save_figures
 from ribbonopt.views.camera import place_camera
