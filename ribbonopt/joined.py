@@ -61,12 +61,14 @@ class Joined:
         phase = self.phase_of(fraction)
         x = np.empty((len(fraction), self.problem.state.numel()))
         z = np.empty((len(fraction), self.problem.algebraic.numel()))
-        for i in np.unique(phase):
+        for i in range(len(self.problem.phases)):
             rows = phase == i
+            if not rows.any():
+                continue
             a, b = self.ends[i], self.ends[i + 1]
             local = np.clip((fraction[rows] - a) / (b - a), 0.0, 1.0)
-            x[rows] = self.dense.states(int(i), local)
-            z[rows] = self.dense.algebraic(int(i), local)
+            x[rows] = self.dense.states(i, local)
+            z[rows] = self.dense.algebraic(i, local)
         return x, z
 
     @cached_property
@@ -84,10 +86,11 @@ class Joined:
         """Named outputs at states (k, nx), algebraic (k, nz), arclengths and phases (k,)."""
         sizes = self.problem.output_functions[0][1]
         column = np.empty((len(s), sum(sizes.values())))
-        for i in np.unique(phase):
-            function, _ = self.problem.output_functions[int(i)]
+        for i, (function, _) in enumerate(self.problem.output_functions):
             rows = phase == i
             count = int(rows.sum())
+            if not count:
+                continue
             c = ca.repmat(ca.DM(self.dense.constants), 1, count)
             theta = ca.repmat(ca.DM(self.dense.theta), 1, count)
             column[rows] = np.array(function(x[rows].T, z[rows].T, c, theta, s[rows][None])).T

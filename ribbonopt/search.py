@@ -21,7 +21,6 @@ from ribbonopt.arrays import Array
 from ribbonopt.attempts import Attempts
 from ribbonopt.built import Built
 from ribbonopt.guess import Guess
-from ribbonopt.problem.switched import switched
 from ribbonopt.scene import Scene
 from ribbonopt.solution import Solution
 from ribbonopt.transcription import Mesh
@@ -133,6 +132,8 @@ class Search:
 
     def _run_phases(self, arcs: Arcs, source: Solution) -> bool:
         if arcs.kinds not in self.phased:
+            from ribbonopt.problem.switched import switched  # most ribbons keep their sign
+
             problem = switched(self.built.ribbon, arcs.kinds)
             built = Built(self.built.scene, self.built.ribbon, problem, arcs.kinds)
             self.phased[arcs.kinds] = built

@@ -12,7 +12,6 @@ import numpy as np
 
 from ribbonopt.accuracy.estimate import estimate_error
 from ribbonopt.accuracy.topology import count_half_twists
-from ribbonopt.accuracy.validity import warnings_of
 from ribbonopt.problem import formulation_name
 from ribbonopt.solution import Solution
 from ribbonopt.version import VERSION
@@ -65,10 +64,19 @@ def summarize(solution: Solution) -> dict[str, Any]:
         "timings": dict(solution.timings),
         "versions": versions(),
         "units": solution.units.name,
-        "warnings": warnings_of(solution),
+        "warnings": _warnings(solution),
     }
     finite: dict[str, Any] = _finite(summary)
     return finite
+
+
+def _warnings(solution: Solution) -> list[str]:
+    """Return reasons to doubt the model, which only sizes in SI can give."""
+    if solution.scene.ribbon is None:
+        return []
+    from ribbonopt.accuracy.validity import warnings_of
+
+    return warnings_of(solution)
 
 
 def _equilibrium(solution: Solution) -> dict[str, Any]:

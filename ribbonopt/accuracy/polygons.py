@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterator
+
 import numpy as np
 
 from ribbonopt.arrays import Array
 
+AT_ONCE = 4096  # pairs
 MEETING = 1e-6  # distance, relative to the length of the polygon, at which segments meet
 
 
@@ -31,7 +34,12 @@ def writhe(r: Array) -> float:
     Every pair of segments contributes the signed area on the sphere of the directions from which
     they are seen to cross (Levitt 1983; Klenin and Langowski 2000, method 1a).
     """
-    a, b, c, d = _pairs(r)
+    return sum(map(_seen_areas, _pairs(r))) / (2 * np.pi)
+
+
+def _seen_areas(segments: list[Array]) -> float:
+    """Sum of the signed areas of pairs of segments."""
+    a, b, c, d = segments
     ac, ad, bc, bd = c - a, d - a, c - b, d - b
     normals = [_unit(_cross(u, v)) for u, v in ((ac, ad), (ad, bd), (bd, bc), (bc, ac))]
     area = np.zeros(ac.shape[1])
@@ -39,12 +47,18 @@ def writhe(r: Array) -> float:
         sine = np.einsum("ij,ij->j", normals[k], normals[k - 1])
         area += np.arcsin(np.clip(sine, -1.0, 1.0))
     side = np.einsum("ij,ij->j", _cross(d - c, b - a), ac)
-    return float(np.sign(side) @ area) / (2 * np.pi)
+    return float(np.sign(side) @ area)
 
 
 def crosses_itself(r: Array) -> bool:
     """Whether two segments of the closed polygon r (k, 3) meet, to 1e-6 of its length."""
-    a, b, c, d = _pairs(r)
+    length = float(np.linalg.norm(np.roll(r, -1, axis=0) - r, axis=1).sum())
+    return any(_meet(segments, MEETING * length) for segments in _pairs(r))
+
+
+def _meet(segments: list[Array], distance_of_meeting: float) -> bool:
+    """Whether two segments of a pair are that near to one another."""
+    a, b, c, d = segments
     first, second, gap = b - a, d - c, c - a
     normal = _cross(first, second)
     size = np.einsum("ij,ij->j", normal, normal)
@@ -54,18 +68,24 @@ def crosses_itself(r: Array) -> bool:
     # Where on each segment, from 0 to 1, the lines through them are nearest.
     places = [np.einsum("ij,ij->j", _cross(gap, v), normal) / size[skew] for v in (second, first)]
     inside = (np.abs(np.array(places) - 0.5) < 0.51).all(axis=0)
-    length = np.linalg.norm(np.roll(r, -1, axis=0) - r, axis=1).sum()
-    return bool((distance[inside] < MEETING * length).any())
+    return bool((distance[inside] < distance_of_meeting).any())
 
 
-def _pairs(r: Array) -> list[Array]:
-    """Return the ends a, b and c, d (3, pairs) of all pairs of segments that share no point."""
+def _pairs(r: Array) -> Iterator[list[Array]]:
+    """Yield the ends a, b and c, d (3, pairs) of all pairs of segments that share no point.
+
+    A few at a time: all at once would take more memory than the rest of a solve.
+    """
     i, j = np.triu_indices(len(r), 2)
     apart = (i > 0) | (j < len(r) - 1)
     i, j = i[apart], j[apart]
     after = np.roll(r, -1, axis=0)
-    # Columns of three: numpy then works on long rows.
-    return [np.ascontiguousarray(p[k].T) for p, k in ((r, i), (after, i), (r, j), (after, j))]
+    for start in range(0, len(i), AT_ONCE):
+        part = slice(start, start + AT_ONCE)
+        first, second = i[part], j[part]
+        ends = (r, first), (after, first), (r, second), (after, second)
+        # Columns of three: numpy then works on long rows.
+        yield [np.ascontiguousarray(p[k].T) for p, k in ends]
 
 
 def _cross(u: Array, v: Array) -> Array:

@@ -8,12 +8,11 @@ from ribbonopt.accuracy.remesh import SIZES, elements_for, redistributed, size_f
 Array = np.ndarray
 
 
-def layer_errors(widths: Array, order: int, rate: float = 200.0) -> Array:
-    """Local errors h^(order + 1) times a density of errors that is a layer at 0.3."""
+def layer_errors(widths: Array, order: int, rate: float = 100.0) -> Array:
+    """Local errors h^(order + 1) of elements whose h is measured in layers: one is at 0.3."""
     nodes = np.concatenate([[0.0], np.cumsum(widths)])
-    middles = (nodes[1:] + nodes[:-1]) / 2
-    density = 1.0 + rate * np.exp(-rate * np.abs(middles - 0.3))
-    return (density * widths) ** (order + 1)
+    stretched = nodes + 2 * np.arctan(rate * (nodes - 0.3)) / np.pi
+    return np.diff(stretched) ** (order + 1)
 
 
 @pytest.mark.parametrize("order", [2, 6, 12])

@@ -9,10 +9,12 @@ import casadi as ca
 import numpy as np
 import pytest
 from references import CANTILEVER_DEFLECTION, ELASTICA, agrees
+from scipy.integrate import solve_bvp
 from scipy.optimize import brentq
 from scipy.spatial.transform import Rotation
 from scipy.special import ellipe, ellipk
 
+from ribbonopt.errors import ConvergenceError
 from ribbonopt.mechanics.boundary import conditions_of
 from ribbonopt.mechanics.placement import LoadAlong, OnLine
 from ribbonopt.mechanics.rod import RodFields
@@ -31,6 +33,8 @@ from ribbonopt.scene import (
     Sadowsky,
     Scene,
     Support,
+    Turn,
+    Turns,
     Variational,
 )
 from ribbonopt.solution import Solution
@@ -336,11 +340,45 @@ def test_a_dead_load_on_a_slider_shortens_the_elastica(place: float, guess: Any)
     assert agrees(float(abs(found.sample(0.5, "dot(r, ex)"))), ELASTICA[0.25].deflection)
 
 
-def test_a_slider_that_is_pulled_leaves_the_ribbon_straight() -> None:
-    end = End("sliding", (0, 0, 0), directors="identity", along=(0, 0, 1), force=AnyVector(z=10))
+def pulled_elastica(angle: float, pull: float) -> tuple[float, float, float]:
+    """Force across, distance and energy of a planar elastica clamped on a line, by scipy.
+
+    Its tangent is along the line at the start, at an angle to it at the end, where it is pulled.
+    """
+
+    def rates(s: Array, y: Array, p: Array) -> Array:
+        theta, curvature, *_ = y
+        n1 = p[0] * np.cos(theta) - pull * np.sin(theta)  # along d1; m2' = -n1
+        return np.array([curvature, -n1, np.sin(theta), np.cos(theta), curvature**2 / 2])
+
+    def ends(a: Array, b: Array, p: Array) -> Array:
+        return np.array([a[0], a[2], a[3], a[4], b[0] - angle, b[2]])
+
+    s = np.linspace(0, 1, 21)
+    found = solve_bvp(
+        rates, ends, s, np.stack([angle * s, 0 * s, 0 * s, s, 0 * s]), p=[0.0], tol=1e-9
+    )
+    assert found.success
+    return float(found.p[0]), float(found.y[3, -1]), float(found.y[4, -1])
+
+
+@pytest.mark.parametrize("place", [0.0, 1.0])
+def test_a_slider_is_pulled_along_its_line(place: float) -> None:
+    across, distance, energy = pulled_elastica(0.5, 10.0)
+    turned = Turns((Turn(y=0.5),))
+    end = End("sliding", (0, 0, place), turned, along=(0, 0, 1), force=AnyVector(z=10))
     found = equilibrium(CLAMP, end)
-    assert found.energy < 1e-12
-    np.testing.assert_allclose(tip(found), [0, 0, 1], atol=1e-12)
+    np.testing.assert_allclose(found.n0, [across, 0, 10], atol=1e-6)
+    np.testing.assert_allclose(tip(found), [0, 0, distance], atol=1e-8)
+    assert found.energy == pytest.approx(energy, rel=1e-7)
+
+
+@pytest.mark.parametrize("place", [0.0, 1.0])
+def test_a_straight_ribbon_that_is_pulled_is_told_and_not_bent_to_a_loop(place: float) -> None:
+    # It cannot bend in its own plane: n2 and m1 are not determined, whatever pulls it.
+    end = End("sliding", (0, 0, place), "identity", along=(0, 0, 1), force=AnyVector(z=10))
+    with pytest.raises(ConvergenceError, match="straight"):
+        equilibrium(CLAMP, end)
 
 
 def ends_at(distance: float) -> dict[str, tuple[End, End]]:
