@@ -93,32 +93,14 @@ class Prepared:
         refuse_unreachable(scene)
         search = Search(scene, self.built, self._phased)
         self._try_all(search, guess, fallback)
-        best = self._finished(search)
-        if best is None:
-            raise ConvergenceError(Status.NO_START.value, Status.NO_START.name.lower())
-        total = time.perf_counter() - started + self.seconds
-        evaluate, linear = search.seconds
-        timings = {
-            "build": self.seconds,
-            "evaluate": evaluate,
-            "linear": linear,
-            "rest": total - self.seconds - evaluate - linear,
-            "total": total,
-        }
-        return replace(
-            best,
-            timings=timings,
-            iterations=search.iterations,
-            skipped=skipped(scene, self.problem, search.solvers, best.sheets),
-        )
+        return self._told(search, time.perf_counter() - started)
 
     def polish(self, guess: Guess) -> Solution:
         """Solve the prepared scene from one guess that is thought to be near."""
+        started = time.perf_counter()
         search = Search(self.scene, self.built, self._phased)
         _ = search.run_smooth(guess) if isinstance(guess, Solution) else search.run(guess)
-        found = self._finished(search)
-        assert found is not None
-        return found
+        return self._told(search, time.perf_counter() - started)
 
     def start(
         self, scene: Scene | None = None, guess: Guess | None = None
@@ -180,6 +162,26 @@ class Prepared:
         from ribbonopt.refinement import refine  # for scenes with a tolerance
 
         return refine(best, scene.tolerance, lambda *mesh: search.on_mesh(best.sheets, *mesh))
+
+    def _told(self, search: Search, seconds: float) -> Solution:
+        """Return the best solution found, with what it has cost."""
+        best = self._finished(search)
+        if best is None:
+            raise ConvergenceError(Status.NO_START.value, Status.NO_START.name.lower())
+        evaluate, linear = search.seconds
+        timings = {
+            "build": self.seconds,
+            "evaluate": evaluate,
+            "linear": linear,
+            "rest": seconds - evaluate - linear,
+            "total": seconds + self.seconds,
+        }
+        return replace(
+            best,
+            timings=timings,
+            iterations=search.iterations,
+            skipped=skipped(search.scene, self.problem, search.solvers, best.sheets),
+        )
 
     def _regularized(self, best: Solution, smooth: Solution) -> Solution | None:
         """Return the equilibrium of the smooth law, labelled: none was found of the exact one."""

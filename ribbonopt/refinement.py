@@ -23,7 +23,9 @@ from ribbonopt.transcription import Mesh
 if TYPE_CHECKING:
     from ribbonopt.attempts import Attempts
 
-ROUNDS = 16
+ROUNDS = 20
+SAFE = 0.5  # share of the tolerance that the estimate, itself in error, must meet
+SLOW = 0.3  # share of the error before that a round should leave
 AIM = 0.2  # share of the tolerance that a new mesh aims at
 GROWTH = 2.0  # most that the number of elements grows in a round
 
@@ -47,13 +49,15 @@ def refine(
     Solution
         With a status that says so where the tolerance could not be met.
     """
-    path = list(solution.path)
+    path, before = list(solution.path), np.inf
     for _ in range(ROUNDS):
         error, _ = relative_error(solution)
-        if error <= tolerance:
+        if error <= SAFE * tolerance:
             return replace(solution, path=tuple(path))
         started = time.perf_counter()
-        mesh, short = _better_mesh(solution, AIM * tolerance / error)
+        # Where moving the nodes no longer helps much, there are too few of them.
+        mesh, short = _better_mesh(solution, AIM * tolerance / error, error > SLOW * before)
+        before = error
         attempts = attempts_on(mesh, solution.joined.ends[1:-1])
         if not attempts.run(solution, quick=True) or attempts.best is None:
             break
@@ -70,13 +74,19 @@ def refine(
     return _missed(replace(solution, path=tuple(path)), tolerance)
 
 
-def _better_mesh(solution: Solution, reduction: float) -> tuple[Mesh, bool]:
-    """Return a mesh that reduces the error by a factor, and whether it is as fine as any may be."""
+def _better_mesh(solution: Solution, reduction: float, grow: bool) -> tuple[Mesh, bool]:
+    """Return a mesh that reduces the error by a factor, and whether it is as fine as any may be.
+
+    The number of elements wanted is that of errors which fall with the order of the scheme; before
+    they do, `grow` asks for more in any case.
+    """
     blocks, local = solution.dense.blocks, analyse(solution).local
     widths, phases, short = blocks.widths(solution.dense.p), [], False
     for part in blocks.layout.phase_slices():
         h, e = widths[part], local[part]
-        wanted = elements_for(e, blocks.order, reduction)
+        wanted = max(elements_for(e, blocks.order, reduction), len(h) // 2)
+        if grow:
+            wanted = max(wanted, len(h) + len(h) // 4 + 1)
         count = size_for(min(wanted, int(GROWTH * len(h))))
         if wanted > len(h):
             count = max(count, size_for(len(h)))
@@ -97,8 +107,8 @@ def _missed(solution: Solution, tolerance: float) -> Solution:
         solution,
         status=Status.TOLERANCE_MISSED,
         message=(
-            f"{Status.TOLERANCE_MISSED.value}: relative error {error:.1e} of {name}, asked "
-            f"{tolerance:.1e}, on {len(local)} intervals; most of it comes from s = {a:.4g} to "
-            f"{b:.4g}"
+            f"{Status.TOLERANCE_MISSED.value}. The relative error of {name} is {error:.1e}, asked "
+            f"was {tolerance:.1e}, on {len(local)} intervals; most of it comes from s = {a:.4g} to "
+            f"s = {b:.4g}"
         ),
     )

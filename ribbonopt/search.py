@@ -55,7 +55,13 @@ class Search:
         return self._kept(self.built.attempts(self.scene))
 
     def run(self, guess: Guess, *, quick: bool = False) -> bool:
-        """Try a guess without phases, and in phases if m2 changes sign in what comes out."""
+        """Try a guess without phases, and in phases if m2 changes sign in what comes out.
+
+        A guess that has phases itself is tried in these first.
+        """
+        if isinstance(guess, Solution) and guess.sheets and self.phases_help:
+            if self._run_phases(Arcs(guess.sheets, guess.joined.ends[1:-1]), guess):
+                return True
         if not self.plain.run(guess, quick=quick):
             return False
         found = self.plain.best
@@ -125,9 +131,9 @@ class Search:
         if not self.phases_help:
             return False
         if isinstance(self.scene.switching, tuple):
-            arcs = _given(source, self.scene)
-        else:
-            arcs = sign_changes(source)
+            if self._run_phases(_given(source, self.scene), source):
+                return True
+        arcs = sign_changes(source)
         return len(arcs.kinds) > 1 and self._run_phases(arcs, source)
 
     def _run_phases(self, arcs: Arcs, source: Solution) -> bool:

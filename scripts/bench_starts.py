@@ -94,9 +94,13 @@ def report(result: dict[str, Any]) -> None:
             f"  {name:<16} {row['verified']} of {row['count']} verified; median {median:.0f}, "
             f"90 % {ninety:.0f}, largest {largest:.0f} ms (CPU {cpu}); "
             f"{row['ipopt_iterations']:g} iterations of IPOPT\n"
-            f"    by number of shapes {row['shapes']}, of minimisations again "
-            f"{row['minimised_again']}; failures {row['failures']}, seeds {row['failed_seeds']}"
+            f"    failures {row['failures']}, seeds {row['failed_seeds'][:10]}"
         )
+        if name == "automatic start":
+            again = row["minimised_again"]
+            print(f"    by number of shapes {row['shapes']}, of minimisations again {again}")
+    both = result["clamps"]["energy_where_both"]
+    print(f"  energy from the automatic start against the other, where both solved: {both}")
     print(f"half Moebius found, noise {', '.join(f'{level:.0%}' for level in LEVELS)}")
     for method, rows in by_method(result["noise"]).items():
         found = " / ".join(f"{row['found']}" for row in rows)

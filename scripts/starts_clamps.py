@@ -50,7 +50,16 @@ def bench_clamps(count: int) -> dict[str, Any]:
         scene = replace(scene, guess=SIMPLEST)
         rows["simplest guess"].append(attempt(prepared, scene, fallback=False))
     summary = {name: summarised(found) for name, found in rows.items()}
-    return {"first_s": first, "summary": summary, "rows": rows}
+    pairs = zip(*([row["energy"] for row in found] for found in rows.values()), strict=True)
+    both = Counter(compared(a, b) for a, b in pairs if None not in (a, b))
+    return {"first_s": first, "summary": summary, "energy_where_both": dict(both), "rows": rows}
+
+
+def compared(energy: float, other: float) -> str:
+    """Return how an energy compares with another: other equilibria of the same clamps exist."""
+    if abs(energy - other) <= 1e-6 * other:
+        return "same"
+    return "lower" if energy < other else "higher"
 
 
 def attempt(prepared: Prepared, scene: Scene, *, fallback: bool) -> dict[str, Any]:

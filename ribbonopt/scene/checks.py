@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import is_dataclass
+from itertools import pairwise
 from typing import Any, get_origin
 
 from .ends import Boundary, Loop
@@ -41,6 +42,8 @@ def check(scene: Scene) -> list[Problem]:
         problems += check_loop(boundary.loop, boundary, scene.guess)
     else:
         problems += check_supports(boundary, values)
+    if isinstance(scene.switching, tuple):
+        problems += _switching(scene.switching, scene.interval)
     if scene.ribbon is not None:
         problems += [*_sizes(scene.ribbon), *_fits(scene, scene.ribbon)]
     return problems
@@ -51,6 +54,17 @@ def _interval(interval: tuple[float, float]) -> Iterator[Problem]:
     if not start < end:
         message = "must go from a smaller to a larger arclength"
         yield Problem(("interval",), message, f"[{start:g}, {end:g}]")
+
+
+def _switching(switching: tuple[float, ...], interval: tuple[float, float]) -> Iterator[Problem]:
+    ends = (interval[0], *switching, interval[1])
+    if not switching or any(b <= a for a, b in pairwise(ends)):
+        message = (
+            "expected arclengths inside the interval, increasing, such as [{:g}]; or auto, off"
+        )
+        middle = (interval[0] + interval[1]) / 2
+        found = ", ".join(f"{s:g}" for s in switching)
+        yield Problem(("switching",), message.format(middle), f"[{found}]")
 
 
 def _formulas(value: Any, annotation: Any, path: Path) -> Iterator[tuple[Path, str]]:

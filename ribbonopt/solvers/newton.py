@@ -55,7 +55,9 @@ class Newton:
         if not self.nlp.square:
             return _Run(self, w, p).report(Status.NOT_SQUARE)
         run = _Run(self, np.array(w, dtype=float), np.asarray(p, dtype=float))
-        if relaxed is not None and isinstance(self.system, ElementSystem):
+        if relaxed is not None:
+            if not isinstance(self.system, ElementSystem):
+                raise TypeError("conditions can be relaxed where the program has element blocks")
             run.system = RelaxedSystem(self.system, relaxed)
         with np.errstate(all="ignore"):
             return run.report(run.iterate())

@@ -50,8 +50,9 @@ class Status(Enum):
         "the smooth law (variational), near which it should be"
     )
     TOLERANCE_MISSED = (
-        "the equations are solved, but not to the tolerance: where the law has a kink (m2 changes "
-        "sign) no mesh will do; raise the tolerance, or use a smooth law (variational)"
+        "the equations are solved, but the error of the answer is larger than the tolerance: start "
+        "on more intervals or a higher degree (transcription), or raise the tolerance; where the "
+        "law is nearly Sadowsky's and m2 changes sign, law: sadowsky itself is easier"
     )
     UNREACHABLE = "the ends are further apart than the ribbon is long: bring them together"
 

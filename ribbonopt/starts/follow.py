@@ -85,12 +85,12 @@ class _Run:
         if not self._step(self.law, residuals):
             return False
         while share < 1:
-            share = min(1.0, share + step)
-            if self._step(self.law, (1 - share) * residuals):
-                step = min(2 * step, 0.5)
+            following = min(1.0, share + step)
+            if self._step(self.law, (1 - following) * residuals):
+                share, step = following, min(2 * step, 0.5)
                 continue
-            share, step = share - step, step / 4
-            if step < LEAST_STEP:
+            step /= 4
+            if step < LEAST_STEP or self.steps > MOST_STEPS:
                 return False
         return self._keep()
 

@@ -27,6 +27,8 @@ def loop_of(scene: Scene) -> Loop | None:
         return None
     places = [components(end.position, parameters) for end in (boundary.start, boundary.end)]
     shared = {axis for axis in places[0] if places[0][axis] == places[1].get(axis)}
+    if components(boundary.end.force, parameters):
+        return None  # a load moves this end
     first = frame_of(boundary.start, parameters)
     if len(shared) < 2 or not places[1].keys() <= shared or first is None:
         return None

@@ -75,14 +75,8 @@ def equilibria(
     step = {"step": f"{scene.starts - 1} more starts: {count} in all", "seconds": seconds}
     lowest, *others = (replace(f.solution, times=f.times) for f in found)
     spent = {name: first.timings.get(name, 0.0) + seconds for name in ("rest", "total")}
-    return replace(
-        lowest,
-        others=tuple(others),
-        path=(*first.path, step),
-        timings={**first.timings, **spent},
-        skipped=first.skipped,
-        iterations=first.iterations,
-    )
+    timings = {**first.timings, **spent}
+    return replace(lowest, others=tuple(others), path=(*lowest.path, step), timings=timings)
 
 
 def potential(solution: Solution) -> float:

@@ -53,7 +53,7 @@ def rates(rho: float, epsilon: float) -> Callable[[float, Array], Array]:
         _, m2, m3 = d @ m
         M, mu = np.hypot(m2, m3), abs(m2)
         lam = (M - mu) / (M + mu)
-        u2 = m2 / ((2 * mu / (M + mu) + epsilon if rho == 1 else 1 - rho * (lam - epsilon)))
+        u2 = m2 / (2 * mu / (M + mu) + epsilon if rho == 1 else 1 - rho * (lam - epsilon))
         u2, u3 = u2 / (1 + rho * lam), m3 / (2 * (1 + rho * lam))
         turn = np.cross(u2 * d[1] + u3 * d[2], d)
         return np.concatenate([d[2], turn.ravel(), np.zeros(3), np.cross(n, d[2])])
@@ -113,11 +113,17 @@ def test_regularized_to_ten_digits(configs: Path, epsilon: float) -> None:
 @pytest.mark.parametrize("epsilon", [1e-4, 1e-6, 1e-8])
 def test_nearly_sadowsky(configs: Path, epsilon: float) -> None:
     law = SMOOTHED.format(epsilon)
-    truth = half(configs, law, "tolerance=1e-11")
+    truth = solve(load_scene(configs / "moebius_half.yaml", [law, "tolerance=1e-11"]))
     assert misses_of_the_half(truth.n0, truth.m0, 1, epsilon) < 1e-10
     found = whole(configs, law, "tolerance=1e-9")
     assert found.sheets == (1, -1)
     assert gap(found, truth.n0, truth.m0) < 1e-9
+
+
+@pytest.mark.parametrize("epsilon", [1e-4, 1e-6, 1e-8])
+def test_layer_at_the_end_of_the_half_meets_a_tolerance(configs: Path, epsilon: float) -> None:
+    # (6.1) changes within chi m2 = -epsilon |m3| / 2 of m2 = 0, here the end of the interval
+    assert half(configs, SMOOTHED.format(epsilon), "tolerance=1e-11").verified
 
 
 @pytest.mark.parametrize("epsilon", [0, 0.01])

@@ -33,7 +33,7 @@ TWISTS = (2, 3, -3, 5)
 each_band = pytest.mark.parametrize("half_twists", TWISTS)
 each_band_and_law = pytest.mark.parametrize(
     ("half_twists", "law"),
-    [*((k, SMOOTH) for k in TWISTS), (3, PAPER), (-3, PAPER)],
+    [*((k, SMOOTH) for k in TWISTS), (3, PAPER)],
     ids=lambda value: getattr(value, "type", str(value)),
 )
 
@@ -80,9 +80,14 @@ def test_one_half_twist_is_the_moebius_ribbon_of_the_paper(piece: str) -> None:
     np.testing.assert_allclose(mirrored.m0, found.m0 * [1, 1, -1], atol=1e-8)
 
 
-@pytest.mark.parametrize("delta", VARIATIONAL)
 @pytest.mark.parametrize(
-    ("piece", "formulation"), [("whole", "inverted"), ("half", "inverted"), ("half", "energy")]
+    ("delta", "piece", "formulation"),
+    [
+        (0.01, "whole", "inverted"),
+        (0.1, "whole", "inverted"),
+        (0.1, "half", "inverted"),
+        (0.1, "half", "energy"),
+    ],
 )
 def test_one_half_twist_under_the_smooth_law(delta: float, piece: str, formulation: str) -> None:
     share = 24 if piece == "whole" or delta < 0.1 else 12
@@ -96,7 +101,7 @@ def test_one_half_twist_under_the_smooth_law(delta: float, piece: str, formulati
 @pytest.mark.parametrize("piece", ["whole", "half", "fundamental"])
 def test_three_half_twists_as_two_other_programs_have_them(piece: str) -> None:
     # The fundamental piece lies elsewhere; its components along the directors are the same.
-    for half_twists, sign in ((3, 1), (-3, -1)):
+    for half_twists, sign in ((3, 1), (-3, -1)) if piece == "half" else ((3, 1),):
         found = band(half_twists, piece, PAPER)
         n, m = (along_directors(found, name) for name in "nm")
         np.testing.assert_allclose(np.abs(n), [0, 157.21, 101.74], atol=5e-3)
@@ -235,7 +240,7 @@ def test_integration_from_the_start_follows_the_loop(half_twists: int, share: fl
         np.testing.assert_allclose(end[3:12].reshape(3, 3), np.diag([-1, -1, 1]), atol=1e-9)
 
 
-@pytest.mark.parametrize(("half_twists", "piece"), [(1, "whole"), (3, "half")])
+@pytest.mark.parametrize(("half_twists", "piece"), [(3, "whole"), (3, "half")])
 def test_a_loop_placed_elsewhere_is_the_loop_moved(half_twists: int, piece: str) -> None:
     rotation = Rotation.from_quat([0.1, -0.7, 0.4, 0.5])
     q = np.roll(rotation.as_quat(), 1)

@@ -1,10 +1,12 @@
 """Ribbons clamped at random places and orientations, solved from nothing, integrated again.
 
-An equilibrium with a mixture (section 4) is unstable as an initial-value problem, with growth rates
-of about 1 / sqrt(delta): errors of rounding in n(0), m(0) become errors of order one at the far end.
-There the integration is started again on the solution at equal parts of the length; the number of
-parts is the least power of two with which all joints close, and is bounded.
+An equilibrium with a mixture (section 4) is unstable as an initial-value problem, with growth
+rates of about 1 / sqrt(delta): errors of rounding in n(0), m(0) become errors of order one at the
+far end. There the integration is started again on the solution at equal parts of the length; the
+number of parts is the least power of two with which all joints close, and is bounded.
 """
+
+from itertools import pairwise
 
 import numpy as np
 import pytest
@@ -63,7 +65,7 @@ def gap(solution: Solution, parts: int) -> float:
     assert isinstance(end.directors, Directors)
     asked = np.concatenate([end.position, end.directors.d1, end.directors.d2, end.directors.d3])
     worst = 0.0
-    for a, b in zip(joints[:-1], joints[1:], strict=True):
+    for a, b in pairwise(joints):
         path = solve_ivp(
             rates, (a, b), state(solution, a), "DOP853", rtol=1e-11, atol=1e-12, args=(solution.n0,)
         )

@@ -22,6 +22,7 @@ from ribbonopt.scene import (
     Boundary,
     Collocation,
     End,
+    LabVector,
     LoadGuess,
     Loop,
     Sadowsky,
@@ -193,6 +194,12 @@ def test_a_point_of_a_line_is_no_place_of_an_end(support: Any) -> None:
     # The line that an end moves on may be given by the point where the ribbon starts.
     end = End(support, (0, 0, 0), along=(0, 0, 1))
     end = replace(end, directors="identity") if support == "sliding" else replace(end, axis="d3")
+    assert loop_of(scene(CLAMP, end)) is None
+
+
+def test_an_end_that_a_dead_load_moves_closes_no_loop() -> None:
+    # (6.2) leaves one component of the gap to symmetry, with n1(0) = 0; this end slides.
+    end = End(position=LabVector(x=0, y=0), directors="identity", force=AnyVector(z=-45))
     assert loop_of(scene(CLAMP, end)) is None
 
 
