@@ -188,11 +188,11 @@ def _nothing(axes: Any, rows: list[dict[str, Any]]) -> None:
         ms = [row["ms"].get(name, 0) for row in rows]
         label = {"auto": "no guess", "own": "the scene's own guess"}[name]
         axes.barh(places + shift, ms, 0.38, color=colour, label=label)
-    names = [row["scene"] + ("\n(another equilibrium)" if row["other"] else "") for row in rows]
+    names = [row["scene"] + (" (another)" if row["other"] else "") for row in rows]
     failed = ["" if all(row["verified"].values()) else " (failed)" for row in rows]
     axes.set_yticks(places, map("".join, zip(names, failed, strict=True)), fontsize=8)
     axes.set(xlabel="whole solve, building included (ms)", title="scenes of configs/")
-    axes.set_ylim(-0.7, len(rows) + 0.6)
+    axes.set_ylim(-0.7, 1.08 * len(rows) + 0.6)
     axes.legend(frameon=False, fontsize=9, loc="upper left", ncols=2)
 
 

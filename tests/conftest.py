@@ -1,15 +1,19 @@
 """Fixtures of all tests: the shipped scenes, and their solutions, each solved once."""
 
+import os
 from collections.abc import Callable
 from functools import cache
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import pytest
 from hypothesis import settings
 
-from ribbonopt.pipeline import solve
-from ribbonopt.scene import load_scene
-from ribbonopt.solution import Solution
+if TYPE_CHECKING:
+    from ribbonopt.solution import Solution
+
+# Before numpy is loaded: workers share the cores, and small matrices gain nothing from threads.
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 # The same examples in every run; a busy machine may take its time.
 settings.register_profile("tests", deadline=None, derandomize=True)
@@ -25,11 +29,13 @@ def configs() -> Path:
 
 
 @pytest.fixture(scope="session")
-def solved() -> Callable[..., Solution]:
+def solved() -> "Callable[..., Solution]":
     """Return the cached solver of shipped scenes: `solved(name, *overrides)`."""
+    from ribbonopt.pipeline import solve
+    from ribbonopt.scene import load_scene
 
     @cache
-    def solution(name: str, *overrides: str) -> Solution:
+    def solution(name: str, *overrides: str) -> "Solution":
         result = solve(load_scene(CONFIGS / f"{name}.yaml", overrides))
         assert result.verified, f"{name} {overrides}: {result.message}"
         return result

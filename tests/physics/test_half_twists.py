@@ -140,6 +140,7 @@ BANDS = [("moebius_half",), ("moebius_half", MIRRORED), ("moebius_regularized",)
 FIGURE_OF_EIGHT = ("moebius_whole", "boundary.loop.half_twists=2", "law={type: sadowsky}")
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize("loop", BANDS, ids=" ".join)
 def test_the_edges_link_the_centre_line_as_often(solved: Solved, loop: tuple[str, ...]) -> None:
     band = closure(solved(*loop))

@@ -234,6 +234,7 @@ def test_jumps_in_place_of_a_mixture_are_refused(
     assert "m2 has the wrong sign" in best.message
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(
     ("sheets", "says"),
     [

@@ -45,6 +45,7 @@ def test_noise_is_survived(half: Prepared, level: float, least: int) -> None:
     assert sum(solution.verified for solution in found) >= least
 
 
+@pytest.mark.slow
 @pytest.mark.parametrize(("level", "least"), [(0.1, 50), (0.3, 47)])
 def test_newton_and_ipopt_survive_moderate_noise_alone(
     half: Prepared, level: float, least: int

@@ -241,6 +241,7 @@ def test_clamps_hold_the_ribbon(r0: str, w0: str, r1: str, w1: str) -> None:
     looked_at(scene_of(f"{{start: {end % (r0, w0)}, end: {end % (r1, w1)}}}"))
 
 
+@pytest.mark.slow
 @given(triples, triples, triples, st.sampled_from(["%s", "{d1: 0, d2: 1, d3: %.3s}"]))
 def test_a_clamp_and_loads_hold_the_ribbon(r: str, force: str, moment: str, form: str) -> None:
     start = f"{{position: {r}, directors: identity}}"

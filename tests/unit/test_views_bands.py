@@ -146,6 +146,7 @@ def test_figures_say_how_much_follows_by_symmetry(plot):
     assert (box.min >= 0).all() and (box.max <= figure.get_size_inches()).all()
 
 
+@pytest.mark.slow
 def test_other_equilibria_are_drawn_into_their_folders(tmp_path):
     solution = solved(3, "fundamental")
     paths = save_figures(replace(solution, others=(solution, solution)), tmp_path)
