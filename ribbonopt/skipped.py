@@ -22,7 +22,8 @@ def skipped(
         result.append("nine director components (a unit quaternion carries the frame)")
     if all(phase.cost is None for phase in problem.phases):
         result.append("second derivatives (nothing is minimised)")
-    if problem.square and scene.solver.type != "ipopt" and "ipopt" not in solvers:
+    may_need_it = scene.guess == "auto" if not solvers else "ipopt" in solvers
+    if problem.square and scene.solver.type != "ipopt" and not may_need_it:
         result.append("IPOPT and the sparse Jacobian (Newton condenses element by element)")
     if scene.guess != "auto":
         result.append("automatic start (the guess is given)")
