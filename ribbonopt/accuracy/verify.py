@@ -9,7 +9,6 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-import casadi as ca
 import numpy as np
 
 from ribbonopt.arrays import Array
@@ -79,23 +78,21 @@ def unverified() -> Verification:
 
 def _worst_condition(solution: Solution, ribbon: Ribbon) -> tuple[str, float]:
     """Name and size of the condition that is furthest from what was asked."""
-    count = len(ribbon.model.states)
-    start, end = ca.SX.sym("start", count), ca.SX.sym("end", count)
-    c, theta = ca.SX.sym("c", len(ribbon.model.constants)), solution.problem.parameters
-    verdicts = ribbon.verdicts(start, end, c)
-    function = ca.Function("verdicts", [start, end, c, theta], [ca.vertcat(*verdicts.values())])
+    names, function = ribbon.verdicts_function
+    count, constants = len(ribbon.model.states), len(ribbon.model.constants)
     ends, _ = solution.joined.values(np.array([0.0, 1.0]))
     ends = ends[:, :count]
-    constants = solution.constants[: c.numel()]  # without the lengths of phases
-    values = function(ends[0], ends[1], constants, solution.dense.theta)
+    # Without further states, and without the lengths of phases.
+    known = ends[0], ends[1], solution.constants[:constants], solution.dense.theta
+    values = function(*known)
     # Relative to the loads, absolute in lengths and directors (L = 1).
     n0, m0 = solution.n0 / solution.units.force, solution.m0 / solution.units.moment
     scale = 1 + max(np.linalg.norm(n0), np.linalg.norm(m0))
     sizes = np.abs(np.array(values).ravel())
-    loads = np.array(["force" in n or "moment" in n or "also" in n for n in verdicts])
+    loads = np.array(["force" in n or "moment" in n or "also" in n for n in names])
     sizes = np.where(np.isfinite(sizes), sizes / np.where(loads, scale, 1.0), np.inf)
     index = int(sizes.argmax())
-    return list(verdicts)[index], float(sizes[index])
+    return names[index], float(sizes[index])
 
 
 def _drift(values: Array, scale: float | None = None) -> float:

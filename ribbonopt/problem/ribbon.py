@@ -78,6 +78,15 @@ class Ribbon:
         context = self.context(start, end, c)
         return _merge(*(cond.verdicts(context) for cond in self.conditions))
 
+    @cached_property
+    def verdicts_function(self) -> tuple[tuple[str, ...], ca.Function]:
+        """Names, and function (start, end, c, theta) of what to verify, built once."""
+        start, end = (ca.SX.sym(name, len(self.model.states)) for name in ("start", "end"))
+        c = ca.SX.sym("c", len(self.model.constants))
+        verdicts = self.verdicts(start, end, c)
+        inputs = [start, end, c, ca.vertcat(*self.theta.values())]
+        return tuple(verdicts), ca.Function("verdicts", inputs, [ca.vertcat(*verdicts.values())])
+
     def context(self, start: ca.SX, end: ca.SX, c: ca.SX) -> Context:
         """Both ends, for conditions."""
         sections: dict[EndName, CrossSection] = {
