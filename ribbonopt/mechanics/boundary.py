@@ -7,7 +7,7 @@ import numpy as np
 from ribbonopt.scene import Boundary, End, Scene
 
 from .conditions import Component, Condition, Direction, EndName, Frame
-from .frames import DIRECTORS, Parameters, components, frame_of
+from .frames import DIRECTORS, Parameters, components, frame_of, number
 
 ENDS: tuple[EndName, EndName] = ("start", "end")
 
@@ -44,7 +44,10 @@ def start_frame(boundary: Boundary, parameters: Parameters) -> np.ndarray:
 
 
 def gap_between_ends(scene: Scene) -> float:
-    """Distance between the ends in the lab components that are prescribed at both."""
+    """Distance between the ends: of a string, or in the components prescribed at both."""
+    distance = scene.boundary.end.distance
+    if distance is not None:
+        return number(distance, scene.parameters)
     start, end = (
         components(e.position, scene.parameters) if e.support not in ("sliding", "flip") else {}
         for e in (scene.boundary.start, scene.boundary.end)

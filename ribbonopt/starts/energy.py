@@ -32,7 +32,6 @@ TOLERANCE, MAX_ITERATIONS = 1e-6, 120
 class LeastEnergy:
     """The problem of least energy of a scene's structure, built once."""
 
-    scene: Scene
     ribbon: Ribbon
     problem: BoundaryValueProblem
     nlp: NLP
@@ -46,7 +45,7 @@ class LeastEnergy:
         problem = minimum(ribbon)
         nlp = discretize(scene, problem)
         solver = Ipopt(nlp, TOLERANCE, MAX_ITERATIONS)
-        return cls(scene, ribbon, problem, nlp, solver)
+        return cls(ribbon, problem, nlp, solver)
 
     def theta(self, scene: Scene, law: Law) -> Array:
         """Parameters (nt,) of a scene of this structure."""
