@@ -7,7 +7,7 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 from ribbonopt.accuracy.resistance import where_it_resists
-from ribbonopt.accuracy.verify import unverified, verify
+from ribbonopt.accuracy.verify import verify
 from ribbonopt.arrays import Array
 from ribbonopt.guess import Guess, initial_unknowns
 from ribbonopt.problem import BoundaryValueProblem, Ribbon
@@ -15,7 +15,7 @@ from ribbonopt.scene import Scene
 from ribbonopt.solution import Solution
 from ribbonopt.solvers import SolveReport, Status
 from ribbonopt.solvers.auto import Auto
-from ribbonopt.starts.costates import with_recovered
+from ribbonopt.starts.found import solution_of
 from ribbonopt.transcription import NLP
 
 if TYPE_CHECKING:
@@ -79,9 +79,8 @@ class Attempts:
 
     @property
     def solvers(self) -> tuple[str, ...]:
-        """Names of the solvers used, those of the automatic start among them."""
-        named = tuple(report.solver for report in self._reports)
-        return (*named, "ipopt") if any("ipopt" in step["step"] for step in self.path) else named
+        """Names of the solvers used."""
+        return tuple(report.solver for report in self._reports)
 
     @property
     def seconds(self) -> tuple[float, float]:
@@ -90,20 +89,9 @@ class Attempts:
         return sum(r.evaluate for r in reports), sum(r.linear for r in reports)
 
     def _solution(self, report: SolveReport) -> Solution:
-        converged = report.status.converged
-        p = with_recovered(self.problem, self.nlp, report, self.p) if converged else self.p
-        solution = Solution(
-            scene=self.scene,
-            problem=self.problem,
-            dense=self.nlp.blocks.dense(report.w, p),
-            status=report.status,
-            message=report.status.value,
-            iterations=report.iterations,
-            verification=unverified(),
-            multipliers=report.multipliers,
-            sheets=self.sheets,
-        )
-        if not converged:
+        parts = self.scene, self.problem, self.nlp, report, self.p, self.sheets
+        solution = solution_of(*parts)
+        if not report.status.converged:
             where = where_it_resists(report.residuals, self.nlp.layout, solution)
             return replace(solution, message=f"{report.status.value}. {where}")
         verification = verify(solution, self.ribbon)

@@ -4,10 +4,8 @@ from __future__ import annotations
 
 from typing import Any
 
-import numpy as np
-
 from ribbonopt.discretize import discretize
-from ribbonopt.problem import pose, theta_of
+from ribbonopt.problem import pose, theta_values
 from ribbonopt.problem.examine import examine, refuse_unreachable, unknown_names
 from ribbonopt.scene import Scene
 from ribbonopt.scene.units import in_special_units
@@ -26,7 +24,7 @@ def check_scene(scene: Scene) -> dict[str, Any]:
     """
     posed = in_special_units(scene)
     ribbon, problem = pose(posed)
-    examine(ribbon, problem, np.array(list(theta_of(posed).values())))
+    examine(ribbon, problem, theta_values(posed))
     refuse_unreachable(scene)
     nlp = discretize(scene, problem)
     return {

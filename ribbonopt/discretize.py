@@ -23,7 +23,6 @@ def transcription_of(scene: Scene) -> Collocation | MultipleShooting:
     return MultipleShooting.named(settings.scheme, settings.degree, settings.steps)
 
 
-def discretize(scene: Scene, problem: BoundaryValueProblem, intervals: int | None = None) -> NLP:
-    """Return the NLP of a scene's problem, on its own number of intervals unless given."""
-    count = scene.transcription.intervals if intervals is None else intervals
-    return transcription_of(scene).transcribe(problem, (count,))
+def discretize(scene: Scene, problem: BoundaryValueProblem) -> NLP:
+    """Return the NLP of a scene's problem on its own number of intervals."""
+    return transcription_of(scene).transcribe(problem, (scene.transcription.intervals,))

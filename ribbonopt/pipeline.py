@@ -16,7 +16,7 @@ import numpy as np
 from ribbonopt.built import Built
 from ribbonopt.errors import ConvergenceError, ModelError
 from ribbonopt.guess import Guess, guess_of, initial_unknowns, words
-from ribbonopt.problem import BoundaryValueProblem, Ribbon, pose, theta_of
+from ribbonopt.problem import BoundaryValueProblem, Ribbon, pose, theta_values
 from ribbonopt.problem.examine import examine, refuse_unreachable
 from ribbonopt.scene import Scene, SolutionGuess, validate_scene
 from ribbonopt.scene.units import in_special_units
@@ -236,7 +236,7 @@ def prepare(scene: Scene) -> Prepared:
             "another formulation",
             "tolerance",
         )
-    examine(ribbon, problem, np.array(list(theta_of(posed).values())))
+    examine(ribbon, problem, theta_values(posed))
     built = Built(scene, ribbon, problem)
     built.on((scene.transcription.intervals,))[1].build()
     return Prepared(built, time.perf_counter() - started)

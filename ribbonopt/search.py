@@ -105,8 +105,9 @@ class Search:
 
     @property
     def solvers(self) -> tuple[str, ...]:
-        """Names of the solvers used."""
-        return tuple(name for attempts in self._all for name in attempts.solvers)
+        """Names of the solvers used, IPOPT of the automatic start among them."""
+        named = tuple(name for attempts in self._all for name in attempts.solvers)
+        return (*named, "ipopt") if any("ipopt" in step["step"] for step in self.path) else named
 
     @property
     def seconds(self) -> tuple[float, float]:

@@ -10,7 +10,7 @@ import numpy as np
 from ribbonopt.arrays import Array
 from ribbonopt.mechanics import RodFields
 from ribbonopt.mechanics.boundary import start_frame, start_position
-from ribbonopt.problem import Ribbon, theta_of
+from ribbonopt.problem import Ribbon, theta_values
 from ribbonopt.scene import LoadGuess, Scene
 
 
@@ -39,7 +39,7 @@ class IntegratedLoads:
         # Steps short against the strains, which the loads bound.
         strain = np.abs(m).max() + length * np.abs(n).max()
         substeps = int(np.clip(np.ceil(np.abs(widths).max() * strain), 1, 100))
-        theta = np.array(list(theta_of(self.scene).values()))
+        theta = theta_values(self.scene)
         widths = np.repeat(widths / substeps, substeps)
         step, section = self._functions()
         count = len(widths)

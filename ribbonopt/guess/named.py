@@ -13,7 +13,7 @@ from ribbonopt.errors import ModelError
 from ribbonopt.mechanics import RodFields
 from ribbonopt.mechanics.boundary import start_frame, start_position
 from ribbonopt.mechanics.frames import number
-from ribbonopt.problem import Ribbon, theta_of
+from ribbonopt.problem import Ribbon, theta_values
 from ribbonopt.scene import (
     ArcGuess,
     HelixGuess,
@@ -105,7 +105,7 @@ def _moments(scene: Scene, ribbon: Ribbon) -> Callable[[Array], Array]:
     u = ca.SX.sym("u", 2)
     theta = ca.vertcat(*ribbon.theta.values())
     moments = ca.Function("m", [u, theta], [ca.vertcat(*ribbon.law.moment(u[0], u[1]))])
-    values = np.array(list(theta_of(scene).values()))
+    values = theta_values(scene)
 
     def law(strains: Array) -> Array:
         count = len(strains)

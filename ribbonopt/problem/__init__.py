@@ -6,7 +6,7 @@ from importlib import import_module
 from ribbonopt.scene import Algebraic, Scene
 
 from .contract import BoundaryValueProblem, Phase
-from .ribbon import Ribbon, ribbon_of, theta_of
+from .ribbon import Ribbon, ribbon_of, theta_of, theta_values
 
 Formulation = Callable[[Ribbon, Scene], BoundaryValueProblem]
 
@@ -42,4 +42,5 @@ __all__ = [
     "pose",
     "ribbon_of",
     "theta_of",
+    "theta_values",
 ]

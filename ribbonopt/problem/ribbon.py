@@ -11,7 +11,9 @@ from dataclasses import dataclass, fields
 from functools import cached_property
 
 import casadi as ca
+import numpy as np
 
+from ribbonopt.arrays import Array
 from ribbonopt.errors import ModelError
 from ribbonopt.mechanics.boundary import conditions_of, start_position
 from ribbonopt.mechanics.conditions import Condition, Context, CrossSection, EndName
@@ -123,6 +125,11 @@ def theta_of(scene: Scene) -> dict[str, float]:
     if scene.formulation == "energy":
         values |= dict.fromkeys(RECOVERED, 0.0)
     return values
+
+
+def theta_values(scene: Scene) -> Array:
+    """Return the parameters theta (nt,) of a scene."""
+    return np.array(list(theta_of(scene).values()))
 
 
 def _merge(*parts: dict[str, ca.SX]) -> dict[str, ca.SX]:

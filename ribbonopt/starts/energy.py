@@ -10,11 +10,9 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ribbonopt.accuracy.verify import unverified
-from ribbonopt.arrays import Array
 from ribbonopt.discretize import discretize
 from ribbonopt.guess import Guess, initial_unknowns
-from ribbonopt.problem import BoundaryValueProblem, Ribbon, ribbon_of, theta_of
+from ribbonopt.problem import BoundaryValueProblem, Ribbon, ribbon_of, theta_values
 from ribbonopt.problem.energy import minimum
 from ribbonopt.scene import Collocation, Law, Scene
 from ribbonopt.solution import Solution
@@ -22,7 +20,7 @@ from ribbonopt.solvers import SolveReport
 from ribbonopt.solvers.ipopt import Ipopt
 from ribbonopt.transcription import NLP, Mesh
 
-from .costates import with_recovered
+from .found import solution_of
 
 MESH = Collocation(scheme="gauss", degree=3, intervals=16)
 TOLERANCE, MAX_ITERATIONS = 1e-6, 120
@@ -47,27 +45,14 @@ class LeastEnergy:
         solver = Ipopt(nlp, TOLERANCE, MAX_ITERATIONS)
         return cls(ribbon, problem, nlp, solver)
 
-    def theta(self, scene: Scene, law: Law) -> Array:
-        """Parameters (nt,) of a scene of this structure."""
-        return np.array(list(theta_of(_posed(scene, law)).values()))
-
     def solve(self, scene: Scene, law: Law, guess: Guess) -> tuple[SolveReport, Solution]:
         """Solve for the numbers of a scene; the solution is worth nothing unless converged."""
-        p = np.concatenate([self.theta(scene, law), Mesh.uniform(MESH.intervals).widths])
+        widths = Mesh.uniform(MESH.intervals).widths
+        p = np.concatenate([theta_values(_posed(scene, law)), widths])
         w = initial_unknowns(guess, self.ribbon, self.problem, self.nlp.blocks, p)
         report = self.solver.solve(w, p)
-        p = with_recovered(self.problem, self.nlp, report, p)
-        solution = Solution(
-            scene=_posed(scene, law),
-            problem=self.problem,
-            dense=self.nlp.blocks.dense(report.w, p),
-            status=report.status,
-            message=report.status.value,
-            iterations=report.iterations,
-            verification=unverified(),
-            multipliers=report.multipliers,
-        )
-        return report, solution
+        posed = _posed(scene, law)
+        return report, solution_of(posed, self.problem, self.nlp, report, p)
 
 
 def _posed(scene: Scene, law: Law) -> Scene:

@@ -16,7 +16,7 @@ from ribbonopt.mechanics.boundary import conditions_of, start_frame, start_posit
 from ribbonopt.mechanics.conditions import Component, Frame
 from ribbonopt.mechanics.frames import DIRECTORS
 from ribbonopt.mechanics.placement import LoadAlong
-from ribbonopt.problem import ribbon_of, theta_of
+from ribbonopt.problem import ribbon_of, theta_values
 from ribbonopt.scene import Scene
 
 from .loops import loop_of
@@ -31,7 +31,7 @@ def shapes_for(scene: Scene) -> Iterator[Shape]:
         yield loop_shape(scene, loop, start_place(scene))
         return
     posed = replace(scene, formulation="energy", states="reduced")
-    theta = np.array(list(theta_of(posed).values()))
+    theta = theta_values(posed)
     start, end = place_ends(ribbon_of(posed), posed, theta)
     length = scene.interval[1] - scene.interval[0]
     chord = float(np.linalg.norm(end[0] - start[0]))
@@ -56,7 +56,7 @@ def start_place(scene: Scene) -> Place:
 
 
 def loaded(scene: Scene) -> bool:
-    """Whether any load but a pull along the straight ribbon is prescribed to be other than zero."""
+    """Whether a component of a force or moment is prescribed to be other than zero."""
     return any(
         isinstance(c, Component) and not c.kinematic and c.value != 0 for c in conditions_of(scene)
     )

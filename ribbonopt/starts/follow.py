@@ -14,7 +14,7 @@ from ribbonopt.accuracy.verify import unverified
 from ribbonopt.arrays import Array
 from ribbonopt.discretize import discretize
 from ribbonopt.guess import Guess, initial_unknowns
-from ribbonopt.problem import BoundaryValueProblem, Ribbon, pose, theta_of
+from ribbonopt.problem import BoundaryValueProblem, Ribbon, pose, theta_values
 from ribbonopt.scene import Collocation, Law, Scene, Variational
 from ribbonopt.solution import Solution
 from ribbonopt.solvers import Status
@@ -133,7 +133,7 @@ class _Run:
         return True
 
     def _p(self, law: Law) -> Array:
-        theta = list(theta_of(_posed(self.scene, law)).values())
+        theta = theta_values(_posed(self.scene, law))
         return np.concatenate([theta, Mesh.uniform(MESH.intervals).widths])
 
 

@@ -19,7 +19,7 @@ from ribbonopt.arrays import Array
 from ribbonopt.errors import ConvergenceError, RibbonoptError
 from ribbonopt.guess import Guess
 from ribbonopt.pipeline import Prepared, prepare
-from ribbonopt.problem import ribbon_of, theta_of
+from ribbonopt.problem import ribbon_of, theta_values
 from ribbonopt.scene import Scene
 from ribbonopt.scene.units import Units, in_special_units
 from ribbonopt.solution import Solution
@@ -95,7 +95,7 @@ class LawResidual:
     @cached_property
     def _strain(self) -> ca.Function:
         scene = in_special_units(self.scene)
-        ribbon, values = ribbon_of(scene), list(theta_of(scene).values())
+        ribbon, values = ribbon_of(scene), theta_values(scene)
         m2, m3 = ca.SX.sym("m2"), ca.SX.sym("m3")
         u = ca.vertcat(*ribbon.law.strain(m2, m3))
         theta = ca.vertcat(*ribbon.theta.values())
