@@ -22,6 +22,10 @@ if TYPE_CHECKING:
     from ribbonopt.solvers import Solver
 
 
+UNSEEN = 1e-2  # of the tolerance
+LEAST = 1e-10  # what verification asks of the conditions is a hundred times that
+
+
 @dataclass(eq=False)
 class Attempts:
     """What has been tried on one scene.
@@ -52,25 +56,39 @@ class Attempts:
     switches: Array | None = None
     path: list[Mapping[str, Any]] = field(default_factory=list)
     best: Solution | None = None
+    _unchecked: bool = False
     _reports: list[SolveReport] = field(default_factory=list)
 
-    def run(self, guess: Guess, *, quick: bool = False) -> bool:
+    def run(self, guess: Guess, *, quick: bool = False, check: bool = True) -> bool:
         """Solve from one guess; return whether there is a verified solution now.
 
         `quick` leaves it at Newton's method where the solver is `auto` and the equations square.
+        Without `check`, what converges counts as verified: for steps on the way to a solution.
         """
         parts = self.ribbon, self.problem, self.nlp.blocks, self.p, self.switches
         w = initial_unknowns(guess, *parts)
         solver = self.solver
         if quick and isinstance(solver, Auto) and self.nlp.square:
             solver = solver.newton
-        report = solver.solve(w, self.p)
+        report = solver.solve(w, self.p, enough=self._enough)
         self.path += [self._step(attempt) for attempt in report.attempts]
         self._reports += report.attempts
-        solution = self._solution(report)
+        solution = self._solution(report, check)
         if self.best is None or _merit(solution) > _merit(self.best):
-            self.best = solution
+            self.best, self._unchecked = solution, not check
         return self.best.verified
+
+    def check(self) -> bool:
+        """Verify the best solution, if that was left out; return whether it is verified now."""
+        if self.best is not None and self.best.verified and self._unchecked:
+            self.best, self._unchecked = verified(self.best, self.ribbon), False
+        return self.best is not None and self.best.verified
+
+    @property
+    def _enough(self) -> float:
+        """Last step of Newton's method, relative, that does not show in the answer."""
+        tolerance = self.scene.tolerance
+        return 0.0 if tolerance is None else min(UNSEEN * tolerance, LEAST)
 
     @property
     def iterations(self) -> int:
@@ -88,18 +106,13 @@ class Attempts:
         reports = self._reports
         return sum(r.evaluate for r in reports), sum(r.linear for r in reports)
 
-    def _solution(self, report: SolveReport) -> Solution:
+    def _solution(self, report: SolveReport, check: bool) -> Solution:
         parts = self.scene, self.problem, self.nlp, report, self.p, self.sheets
         solution = solution_of(*parts)
         if not report.status.converged:
             where = where_it_resists(report.residuals, self.nlp.layout, solution)
             return replace(solution, message=f"{report.status.value}. {where}")
-        verification = verify(solution, self.ribbon)
-        solution = replace(solution, verification=verification)
-        if not verification.problems:
-            return solution
-        message = f"{Status.WRONG_SOLUTION.value}. " + "; ".join(verification.problems)
-        return replace(solution, status=Status.WRONG_SOLUTION, message=message)
+        return verified(solution, self.ribbon) if check else solution
 
     def _step(self, attempt: SolveReport) -> dict[str, Any]:
         name, count = self.nlp.blocks.name, self.nlp.layout.element_count
@@ -110,6 +123,16 @@ class Attempts:
             "iterations": attempt.iterations,
             "seconds": attempt.total,
         }
+
+
+def verified(solution: Solution, ribbon: Ribbon) -> Solution:
+    """Return a converged solution after verification, with a status that says how it went."""
+    verification = verify(solution, ribbon)
+    solution = replace(solution, verification=verification)
+    if not verification.problems:
+        return solution
+    message = f"{Status.WRONG_SOLUTION.value}. " + "; ".join(verification.problems)
+    return replace(solution, status=Status.WRONG_SOLUTION, message=message)
 
 
 def _merit(solution: Solution) -> int:

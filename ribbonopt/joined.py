@@ -1,17 +1,22 @@
-"""A solution of several phases read as one: positions relative to the whole ribbon."""
+"""A solution of one or several phases read as one, in units Dw = L = 1.
+
+Positions are fractions of the whole length. What is evaluated once is kept: verification, the
+estimate of the error and the summary read the same numbers.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
 
 from ribbonopt.arrays import Array
 from ribbonopt.problem import BoundaryValueProblem
+from ribbonopt.transcription.buffered import buffered, buffered_map
 
 if TYPE_CHECKING:
     from ribbonopt.transcription.structure import Output
@@ -30,17 +35,12 @@ class Joined:
     @cached_property
     def ends(self) -> Array:
         """Fractions (P + 1,) at which the phases begin and end."""
-        if len(self.problem.phases) == 1:
-            return np.array([0.0, 1.0])
-        problem = self.problem
-        lengths = ca.vertcat(*(phase.length for phase in problem.phases))
-        function = ca.Function("lengths", [problem.constants, problem.parameters], [lengths])
-        found = np.array(function(self.dense.constants, self.dense.theta)).ravel()
-        ends = np.concatenate([[0.0], np.cumsum(found) / found.sum()])
+        lengths = self._extent[1:]
+        ends = np.append(0.0, np.cumsum(lengths) / lengths.sum())
         ends[-1] = 1.0
         return ends
 
-    @property
+    @cached_property
     def nodes(self) -> Array:
         """Fractions (N + 1,) of all nodes."""
         parts = [
@@ -54,22 +54,27 @@ class Joined:
         found = np.searchsorted(self.ends, fraction, side="right") - 1
         return np.clip(found, 0, len(self.problem.phases) - 1)
 
-    def values(self, fraction: Array) -> tuple[Array, Array]:
-        """States (k, nx) and algebraic variables (k, nz) at fractions."""
-        if len(self.problem.phases) == 1:
-            return self.dense.states(0, fraction), self.dense.algebraic(0, fraction)
-        phase = self.phase_of(fraction)
-        x = np.empty((len(fraction), self.problem.state.numel()))
-        z = np.empty((len(fraction), self.problem.algebraic.numel()))
+    def approximate(self, fraction: Array) -> Array:
+        """Unknowns v (k, nv) at fractions: quick, fit to start Newton's method on."""
+        phase, local = self._local(fraction)
+        v = np.empty((len(fraction), self.dense.blocks.layout.nv))
         for i in range(len(self.problem.phases)):
             rows = phase == i
-            if not rows.any():
-                continue
-            a, b = self.ends[i], self.ends[i + 1]
-            local = np.clip((fraction[rows] - a) / (b - a), 0.0, 1.0)
-            x[rows] = self.dense.states(i, local)
-            z[rows] = self.dense.algebraic(i, local)
-        return x, z
+            if rows.any():
+                v[rows] = self.dense.approximate(i, local[rows])
+        return v
+
+    def outputs(self, fraction: Array) -> dict[str, Array]:
+        """Named outputs at fractions: (k,) for scalars, (k, 3) for vectors."""
+        phase, local = self._local(fraction)
+        v = np.empty((len(fraction), self.dense.blocks.layout.nv))
+        nx = self.dense.blocks.layout.nx
+        for i in range(len(self.problem.phases)):
+            rows = phase == i
+            if rows.any():
+                v[rows, :nx] = self.dense.states(i, local[rows])
+                v[rows, nx:] = self.dense.algebraic(i, local[rows])
+        return self._named(v, fraction, phase)
 
     @cached_property
     def stages(self) -> tuple[Array, Array, Array, Phases]:
@@ -82,20 +87,52 @@ class Joined:
         v, sigma, weights, phases = (np.concatenate(part) for part in zip(*parts, strict=True))
         return v, sigma, weights, phases
 
-    def named(self, x: Array, z: Array, s: Array, phase: Phases) -> dict[str, Array]:
-        """Named outputs at states (k, nx), algebraic (k, nz), arclengths and phases (k,)."""
+    @cached_property
+    def at_stages(self) -> Mapping[str, Array]:
+        """Named outputs at the stages, where the solver itself evaluated the equations."""
+        v, fraction, _, phase = self.stages
+        return self._named(v, fraction, phase)
+
+    @cached_property
+    def at_nodes(self) -> Mapping[str, Array]:
+        """Named outputs at the nodes; where two phases meet, those of the later one."""
+        if self.dense.blocks.layout.nz:
+            return self.outputs(self.nodes)
+        counts = self.dense.blocks.layout.elements
+        phase = np.append(np.repeat(np.arange(len(counts)), counts), len(counts) - 1)
+        return self._named(self.dense.at_nodes, self.nodes, phase)
+
+    @cached_property
+    def energy(self) -> float:
+        """Strain energy, by the quadrature of the scheme."""
+        return float(self._extent[1:].sum() * self.stages[2] @ self.at_stages["energy"])
+
+    @cached_property
+    def _extent(self) -> Array:
+        """Arclength where the ribbon starts, and the lengths of its phases."""
+        extent = buffered(self.problem.extent_function)
+        return extent(self.dense.constants, self.dense.theta)[0]
+
+    def _local(self, fraction: Array) -> tuple[Phases, Array]:
+        """Phase and position in the phase of each fraction."""
+        phase = self.phase_of(fraction)
+        a, b = self.ends[phase], self.ends[phase + 1]
+        return phase, np.clip((fraction - a) / (b - a), 0.0, 1.0)
+
+    def _named(self, v: Array, fraction: Array, phase: Phases) -> dict[str, Array]:
         sizes = self.problem.output_functions[0][1]
-        column = np.empty((len(s), sum(sizes.values())))
+        column = np.empty((len(v), sum(sizes.values())))
+        s = self._extent[0] + self._extent[1:].sum() * fraction
+        known = self.dense.constants, self.dense.theta
         for i, (function, _) in enumerate(self.problem.output_functions):
             rows = phase == i
-            count = int(rows.sum())
-            if not count:
-                continue
-            c = ca.repmat(ca.DM(self.dense.constants), 1, count)
-            theta = ca.repmat(ca.DM(self.dense.theta), 1, count)
-            column[rows] = np.array(function(x[rows].T, z[rows].T, c, theta, s[rows][None])).T
-        parts = np.split(column, np.cumsum(list(sizes.values()))[:-1], axis=1)
-        return {
-            name: part[:, 0] if part.shape[1] == 1 else part
-            for name, part in zip(sizes, parts, strict=True)
-        }
+            count = int(np.count_nonzero(rows))
+            if count:
+                (found,) = buffered_map(function, count)(v[rows], *known, s[rows])
+                column[rows] = found.reshape(count, -1)
+        result, at = {}, 0
+        for name, size in sizes.items():
+            part = column[:, at : at + size]
+            result[name] = part[:, 0] if size == 1 else part
+            at += size
+        return result

@@ -161,7 +161,9 @@ class Prepared:
             return best
         from ribbonopt.refinement import refine  # for scenes with a tolerance
 
-        return refine(best, scene.tolerance, lambda *mesh: search.on_mesh(best.sheets, *mesh))
+        return refine(
+            best, scene.tolerance, self.ribbon, lambda *mesh: search.on_mesh(best.sheets, *mesh)
+        )
 
     def _told(self, search: Search, seconds: float) -> Solution:
         """Return the best solution found, with what it has cost."""

@@ -14,14 +14,24 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ribbonopt.accuracy.estimate import analyse, relative_error
-from ribbonopt.accuracy.remesh import SIZES, elements_for, redistributed, size_for
+from ribbonopt.accuracy.remesh import (
+    SIZES,
+    UNSEEN,
+    analyticity,
+    graded,
+    redistributed,
+    size_for,
+    wanted_widths,
+)
 from ribbonopt.arrays import Array
+from ribbonopt.attempts import verified
 from ribbonopt.solution import Solution
 from ribbonopt.solvers import Status
 from ribbonopt.transcription import Mesh
 
 if TYPE_CHECKING:
     from ribbonopt.attempts import Attempts
+    from ribbonopt.problem import Ribbon
 
 ROUNDS = 20
 SAFE = 0.5  # share of the tolerance that the estimate, itself in error, must meet
@@ -31,7 +41,10 @@ GROWTH = 2.0  # most that the number of elements grows in a round
 
 
 def refine(
-    solution: Solution, tolerance: float, attempts_on: Callable[[Mesh, Array], Attempts]
+    solution: Solution,
+    tolerance: float,
+    ribbon: Ribbon,
+    attempts_on: Callable[[Mesh, Array], Attempts],
 ) -> Solution:
     """Return a verified solution whose error, relative to the sizes of the answer, is small enough.
 
@@ -41,6 +54,8 @@ def refine(
         A verified solution on any mesh.
     tolerance
         Relative error wanted, see `ribbonopt.accuracy.estimate.relative_error`.
+    ribbon
+        Mechanics, to verify what comes out.
     attempts_on
         Gives the means to solve on a mesh, phases meeting at given fractions of the length.
 
@@ -49,17 +64,17 @@ def refine(
     Solution
         With a status that says so where the tolerance could not be met.
     """
-    path, before = list(solution.path), np.inf
+    first, path, before = solution, list(solution.path), np.inf
     for _ in range(ROUNDS):
         error, _ = relative_error(solution)
         if error <= SAFE * tolerance:
-            return replace(solution, path=tuple(path))
+            done = solution if solution is first else verified(solution, ribbon)
+            return replace(done, path=tuple(path))
         started = time.perf_counter()
-        # Where moving the nodes no longer helps much, there are too few of them.
         mesh, short = _better_mesh(solution, AIM * tolerance / error, error > SLOW * before)
         before = error
         attempts = attempts_on(mesh, solution.joined.ends[1:-1])
-        if not attempts.run(solution, quick=True) or attempts.best is None:
+        if not attempts.run(solution, quick=True, check=False) or attempts.best is None:
             break
         solution = attempts.best
         path.append(
@@ -71,27 +86,29 @@ def refine(
         )
         if short:
             break
-    return _missed(replace(solution, path=tuple(path)), tolerance)
+    solution = verified(replace(solution, path=tuple(path)), ribbon)
+    return _missed(solution, tolerance) if solution.verified else solution
 
 
-def _better_mesh(solution: Solution, reduction: float, grow: bool) -> tuple[Mesh, bool]:
+def _better_mesh(solution: Solution, reduction: float, surprised: bool) -> tuple[Mesh, bool]:
     """Return a mesh that reduces the error by a factor, and whether it is as fine as any may be.
 
-    The number of elements wanted is that of errors which fall with the order of the scheme; before
-    they do, `grow` asks for more in any case.
+    `surprised` that the mesh before did not, it expects a layer that no stage has met so far.
     """
     blocks, local = solution.dense.blocks, analyse(solution).local
     widths, phases, short = blocks.widths(solution.dense.p), [], False
-    for part in blocks.layout.phase_slices():
-        h, e = widths[part], local[part]
-        wanted = max(elements_for(e, blocks.order, reduction), len(h) // 2)
-        if grow:
-            wanted = max(wanted, len(h) + len(h) // 4 + 1)
-        count = size_for(min(wanted, int(GROWTH * len(h))))
-        if wanted > len(h):
-            count = max(count, size_for(len(h)))
-        short = short or (count == SIZES[-1] and wanted > count)
-        phases.append(redistributed(h, e, blocks.order, count))
+    target = float(local.sum()) * reduction / len(local)
+    rho = analyticity(solution.dense.decay())
+    if surprised:
+        rho = np.where(local > target, UNSEEN, rho)
+    for part in blocks.layout.phase_slices:
+        h = widths[part]
+        wanted = wanted_widths(h, local[part], rho[part], blocks.order, target)
+        positions, share = graded(h, wanted)
+        count = max(int(np.ceil(share[-1])), len(h) // 2)
+        size = size_for(min(count, int(GROWTH * len(h))))
+        short = short or (size == SIZES[-1] and count > size)
+        phases.append(redistributed(positions, share, size))
     return Mesh(tuple(phases)), short
 
 

@@ -11,14 +11,16 @@ import numpy as np
 
 from ribbonopt.discretize import transcription_of
 from ribbonopt.errors import OutputError
+from ribbonopt.joined import Joined
 from ribbonopt.problem import pose
 from ribbonopt.problem.switched import switched
 from ribbonopt.scene import dump_scene, load_scene
 from ribbonopt.scene.units import in_special_units
-from ribbonopt.solution import Solution, Verification
+from ribbonopt.solution import Solution
 from ribbonopt.solvers import Status
 from ribbonopt.staging import unwritable
 from ribbonopt.summary import summarize
+from ribbonopt.verification import Verification
 
 ROWS = 201
 
@@ -112,8 +114,7 @@ def load_solution(path: str | Path) -> Solution:
     worst, between, law = (_number(summary[key]) for key in keys)
     return Solution(
         scene=scene,
-        problem=problem,
-        dense=nlp.blocks.dense(w, p),
+        joined=Joined(problem, nlp.blocks.dense(w, p)),
         status=status,
         message=summary["message"],
         iterations=summary["iterations"],

@@ -62,10 +62,12 @@ class Search:
         if isinstance(guess, Solution) and guess.sheets and self.phases_help:
             if self._run_phases(Arcs(guess.sheets, guess.joined.ends[1:-1]), guess):
                 return True
-        if not self.plain.run(guess, quick=quick):
+        if not self.plain.run(guess, quick=quick, check=not self.phases_help):
             return False
         found = self.plain.best
-        return found is not None and (self._in_given_phases(found) or not self.jumps(found))
+        if found is not None and self._in_given_phases(found):
+            return True
+        return self.plain.check() and found is not None and not self.jumps(found)
 
     def run_smooth(self, guess: Solution) -> bool:
         """Try an equilibrium of the smooth law; they come with delta increasing."""

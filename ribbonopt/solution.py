@@ -10,41 +10,16 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ribbonopt.arrays import Array
-from ribbonopt.joined import Joined, Phases
+from ribbonopt.joined import Joined
 from ribbonopt.mechanics import RodFields
 from ribbonopt.problem import BoundaryValueProblem
 from ribbonopt.scene import Scene
 from ribbonopt.scene.units import Units, units_of
 from ribbonopt.solvers import Status
+from ribbonopt.verification import Verification
 
 if TYPE_CHECKING:
     from ribbonopt.transcription.structure import Output
-
-
-@dataclass(frozen=True, eq=False)
-class Verification:
-    """What was checked on the dense output after the solve.
-
-    Attributes
-    ----------
-    problems : tuple of str
-        One sentence for each thing that is not as the scene asked; empty if verified.
-    worst_condition : float
-        Largest departure from a prescribed condition, in units Dw = L = 1; loads relative.
-    residual_between_nodes : float
-        Largest relative defect of the differential equations between the stages.
-    law_residual : float
-        Largest difference at the stages between the strains and those that the inverse law gives
-        for the moments, relative to the largest strain.
-    drift : mapping
-        Drift of the invariants `n`, `n_dot_m`, `H` (relative) and `orthonormality` at the nodes.
-    """
-
-    problems: tuple[str, ...]
-    worst_condition: float
-    residual_between_nodes: float
-    law_residual: float
-    drift: Mapping[str, float]
 
 
 @dataclass(frozen=True, eq=False)
@@ -59,10 +34,8 @@ class Solution:
     ----------
     scene : Scene
         What was asked.
-    problem : BoundaryValueProblem
-        The equations that were solved.
-    dense : Output
-        The numbers.
+    joined : Joined
+        The equations that were solved and the numbers, all phases read as one.
     status, message : Status, str
         How the solve ended.
     multipliers : (ng,) array
@@ -86,8 +59,7 @@ class Solution:
     """
 
     scene: Scene
-    problem: BoundaryValueProblem
-    dense: Output
+    joined: Joined
     status: Status
     message: str
     iterations: int
@@ -99,6 +71,16 @@ class Solution:
     others: tuple[Solution, ...] = ()
     times: int = 1
     sheets: tuple[int, ...] = ()
+
+    @property
+    def problem(self) -> BoundaryValueProblem:
+        """The equations that were solved."""
+        return self.joined.problem
+
+    @property
+    def dense(self) -> Output:
+        """The numbers."""
+        return self.joined.dense
 
     @property
     def verified(self) -> bool:
@@ -115,11 +97,6 @@ class Solution:
         """Arclengths (N + 1,) of the mesh nodes."""
         start, end = self.scene.interval
         return start + (end - start) * self.joined.nodes
-
-    @cached_property
-    def joined(self) -> Joined:
-        """All phases read as one."""
-        return Joined(self.problem, self.dense)
 
     @property
     def switch_points(self) -> Array:
@@ -168,8 +145,7 @@ class Solution:
             raise ValueError(f"arclengths are expected in [{start}, {end}], found {s}")
         if len(s) == 0:
             return {name: value[:0] for name, value in self.outputs(np.array([start])).items()}
-        x, z = self.joined.values(sigma)
-        return self._named(x, z, sigma, self.joined.phase_of(sigma))
+        return self._in_own_units(self.joined.outputs(sigma))
 
     def integral(self, name: str) -> float:
         """Integral over s of a scalar named output, by the scheme's own quadrature."""
@@ -179,20 +155,44 @@ class Solution:
     @cached_property
     def at_stages(self) -> dict[str, Array]:
         """All named outputs at the stages, where the solver itself evaluated the equations."""
-        v, sigma, _, phase = self.joined.stages
-        nx = self.problem.state.numel()
-        return self._named(v[:, :nx], v[:, nx:], sigma, phase)
+        return self._in_own_units(self.joined.at_stages)
+
+    @cached_property
+    def at_nodes(self) -> dict[str, Array]:
+        """All named outputs at the nodes; where two phases meet, those of the later one."""
+        return self._in_own_units(self.joined.at_nodes)
+
+    def unknowns_for(
+        self, problem: BoundaryValueProblem, theta: Array, fraction: Array
+    ) -> tuple[Array, Array] | None:
+        """Unknowns v (k, nv) and constants of another problem of the same kind, at fractions.
+
+        None where they cannot be taken as they are; the lengths of phases are not among them.
+        """
+        mine, own = self.problem, self.dense
+        same = mine is problem or (
+            mine.state_names == problem.state_names
+            and mine.algebraic.numel() == problem.algebraic.numel() == 0
+        )
+        # Moments are about a point of reference.
+        points = [
+            [t[p.parameter_names.index(f"reference.{axis}")] for axis in "xyz"]
+            for p, t in ((mine, own.theta), (problem, theta))
+        ]
+        if not same or points[0] != points[1]:
+            return None
+        lengths = len(mine.phases) - 1
+        return self.joined.approximate(fraction), own.constants[: len(own.constants) - lengths]
 
     def fields(self, fraction: Array) -> RodFields:
         """Fields at fractions (k,) of the length, units Dw = L = 1: a solution is a guess."""
-        x, z = self.joined.values(fraction)
-        o = self._in_special_units(x, z, fraction, self.joined.phase_of(fraction))
+        o = self.joined.outputs(fraction)
         return RodFields(o["r"], np.stack([o["d1"], o["d2"], o["d3"]], axis=2), o["n"], o["m"])
 
     @cached_property
     def start(self) -> dict[str, Array]:
         """Named outputs at the start of the ribbon."""
-        return {k: v[0] for k, v in self.outputs(np.array([self.scene.interval[0]])).items()}
+        return {k: v[0] for k, v in self.at_nodes.items()}
 
     @property
     def constants(self) -> Array:
@@ -220,22 +220,14 @@ class Solution:
     @property
     def energy(self) -> float:
         """Strain energy of the ribbon."""
-        return self.integral("energy")
+        return self.joined.energy * self.units.moment
 
     @property
     def twist(self) -> float:
         """Twist of the directors about the centre line, in turns."""
         return self.integral("u3") / (2 * np.pi)
 
-    def _named(self, x: Array, z: Array, sigma: Array, phase: Phases) -> dict[str, Array]:
-        values = self._in_special_units(x, z, sigma, phase)
+    def _in_own_units(self, values: Mapping[str, Array]) -> dict[str, Array]:
         if self.scene.ribbon is None:
-            return values
+            return dict(values)
         return {name: value * self.units.of(name) for name, value in values.items()}
-
-    def _in_special_units(
-        self, x: Array, z: Array, sigma: Array, phase: Phases
-    ) -> dict[str, Array]:
-        start, end = self.scene.interval
-        s = (start + (end - start) * sigma) / self.units.length
-        return self.joined.named(x, z, s, phase)

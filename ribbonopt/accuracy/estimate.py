@@ -8,18 +8,16 @@ solution is the estimate.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass
 from functools import lru_cache
-from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ribbonopt.arrays import Array
+from ribbonopt.joined import Joined
 from ribbonopt.solution import Solution
 from ribbonopt.solvers.condense import CondensedSystem
-
-if TYPE_CHECKING:
-    from ribbonopt.transcription import Blocks, Output
 
 ROUNDING = 1e-15
 
@@ -30,51 +28,36 @@ class Analysis:
 
     Attributes
     ----------
-    better : Solution
+    better : Joined
         The solution after one Newton step of that scheme.
     local : (N,) array
         Local error of every element: what it adds to the states at its end, each state relative to
         its size along the ribbon.
+    errors, sizes : mappings of str to float
+        Absolute errors of the parts of the answer, and what they are relative to; Dw = L = 1.
     """
 
-    better: Solution
+    better: Joined
     local: Array
+    errors: Mapping[str, float]
+    sizes: Mapping[str, float]
 
 
-@lru_cache(maxsize=2)
 def analyse(solution: Solution) -> Analysis:
     """Analyse a solution of a square problem; LinAlgError if its equations are singular."""
-    dense = solution.dense
-    blocks, split = dense.blocks.finer()
-    widths = np.repeat(dense.blocks.widths(dense.p) / split, split)
-    p = np.concatenate([dense.theta, widths])
-    w = blocks.layout.pack(*_sampled(dense, blocks, p))
-    residuals, derivatives = blocks.linearize(w, p)
-    step = CondensedSystem(blocks, derivatives, p).solve(residuals)
-    better = replace(solution, dense=blocks.dense(w + step, p))
-    nodes = blocks.layout.unpack(w)[0]
-    size = np.maximum(np.abs(nodes).max(axis=0), 1.0)
-    local = np.abs(residuals.nodes / size).max(axis=1).reshape(-1, split).sum(axis=1)
-    return Analysis(better, local)
+    return _analysed(solution.joined)
 
 
 def estimate_error(solution: Solution) -> dict[str, float]:
     """Estimated absolute errors of `n0`, `m0`, `u0`, `H0`, `energy` and `states`.
 
     Vectors by their largest component, in the units of the solution; states: positions, over the
-    unit of length, and directors at the nodes. None of them is below rounding.
+    unit of length, and directors anywhere along the ribbon. None of them is below rounding.
     """
-    better, units = analyse(solution).better, solution.units
-    result = {
-        name: _gap(getattr(better, name), getattr(solution, name), units.of(name[0]))
-        for name in ("n0", "m0", "u0")
-    }
-    result["H0"] = _gap(better.start["H"], solution.start["H"], units.of("H"))
-    result["energy"] = _gap(np.array(better.energy), np.array(solution.energy), units.moment)
-    ours, theirs = (s.outputs(solution.nodes) for s in (solution, better))
-    states = {name: units.of(name) for name in ("r", "d1", "d2", "d3")}
-    result["states"] = max(_gap(theirs[k], ours[k], unit) / unit for k, unit in states.items())
-    return result
+    units = solution.units
+    quantity = {"n0": "n", "m0": "m", "u0": "u", "H0": "H", "energy": "m"}
+    errors = analyse(solution).errors
+    return {name: units.of(quantity.get(name, "")) * error for name, error in errors.items()}
 
 
 def relative_error(solution: Solution) -> tuple[float, str]:
@@ -83,41 +66,48 @@ def relative_error(solution: Solution) -> tuple[float, str]:
     Loads are measured by the larger of force times length and moment, strains by the largest
     along the ribbon, states by the length.
     """
-    errors, units = estimate_error(solution), solution.units
-    force, moment = units.of("n"), units.of("m")
-    loads = max(float(np.abs(solution.n0).max()) / force, float(np.abs(solution.m0).max()) / moment)
-    strains = float(np.abs(solution.at_stages["u"]).max()) / units.of("u")
-    sizes = {
-        "n0": loads * force,
-        "m0": loads * moment,
-        "u0": strains * units.of("u"),
-        "energy": abs(solution.energy),
-        "states": 1.0,
-    }
+    found = analyse(solution)
     floor = np.finfo(float).tiny
     relative = {
-        name: (errors[name] if size > floor else 0.0) / max(size, floor)
-        for name, size in sizes.items()
+        name: (found.errors[name] if size > floor else 0.0) / max(size, floor)
+        for name, size in found.sizes.items()
     }
     worst = max(relative, key=lambda name: relative[name])
     return relative[worst], worst
 
 
-def _sampled(dense: Output, blocks: Blocks, p: Array) -> tuple[Array, Array, Array]:
-    """Nodes, stages and constants of a solution on another mesh or scheme."""
-    slices = blocks.layout.phase_slices()
-    positions = blocks.stage_positions(p)
-    nodes, stages = [], []
-    for phase, s in enumerate(slices):
-        flat = positions[s].ravel()
-        v = np.hstack([dense.states(phase, flat), dense.algebraic(phase, flat)])
-        stages.append(v.reshape(*positions[s].shape, blocks.layout.nv))
-        ends = np.append(0.0, np.cumsum(blocks.widths(p)[s]))
-        x = dense.states(phase, ends)
-        nodes.append(x if phase == len(slices) - 1 else x[:-1])
-    return np.concatenate(nodes), np.concatenate(stages), dense.constants
+@lru_cache(maxsize=2)
+def _analysed(joined: Joined) -> Analysis:
+    dense = joined.dense
+    blocks, w, p, split = dense.refined()
+    residuals, derivatives = blocks.linearize(w, p)
+    step = CondensedSystem(blocks, derivatives, p, only=residuals).solve(residuals)
+    better = Joined(joined.problem, blocks.dense(w + step, p))
+    size = np.maximum(np.abs(dense.at_nodes).max(axis=0), 1.0)
+    local = np.abs(residuals.nodes / size).max(axis=1).reshape(-1, split).sum(axis=1)
+    errors = _errors(joined, better, split)
+    # Between the nodes the output starts from the node before, with the error of that element.
+    errors["states"] = max(errors["states"], float(local.max()))
+    return Analysis(better, local, errors, _sizes(joined))
 
 
-def _gap(a: Array, b: Array, unit: float) -> float:
-    size = float(np.abs(b).max())
-    return max(float(np.abs(a - b).max()), ROUNDING * max(unit, size))
+def _errors(joined: Joined, better: Joined, split: int) -> dict[str, float]:
+    """Differences of the answers, none below rounding."""
+    ours = joined.at_nodes
+    theirs = {name: values[::split] for name, values in better.at_nodes.items()}
+    errors = {f"{name}0": _gap(theirs[name][0], ours[name][0]) for name in ("n", "m", "u", "H")}
+    errors["energy"] = _gap(np.array(better.energy), np.array(joined.energy))
+    errors["states"] = max(_gap(theirs[k], ours[k]) for k in ("r", "d1", "d2", "d3"))
+    return errors
+
+
+def _sizes(joined: Joined) -> dict[str, float]:
+    """Return what the errors are relative to."""
+    start = joined.at_nodes
+    loads = max(float(np.abs(start[name][0]).max()) for name in ("n", "m"))
+    strains = float(np.abs(joined.at_stages["u"]).max())
+    return {"n0": loads, "m0": loads, "u0": strains, "energy": abs(joined.energy), "states": 1.0}
+
+
+def _gap(a: Array, b: Array) -> float:
+    return max(float(np.abs(a - b).max()), ROUNDING * max(1.0, float(np.abs(b).max())))

@@ -13,7 +13,9 @@ import numpy as np
 
 from ribbonopt.arrays import Array
 from ribbonopt.problem import Ribbon
-from ribbonopt.solution import Solution, Verification
+from ribbonopt.solution import Solution
+from ribbonopt.transcription.buffered import buffered
+from ribbonopt.verification import Verification
 
 TOLERANCE = 1e-8
 
@@ -25,7 +27,7 @@ def verify(solution: Solution, ribbon: Ribbon) -> Verification:
         return replace(unverified(), problems=(problem,))
     worst_name, worst = _worst_condition(solution, ribbon)
     residual = float(solution.dense.residual_between_nodes().max())
-    nodes = solution.outputs(solution.nodes)
+    nodes = solution.at_nodes
     drift = {
         "n": _drift(nodes["n"]),
         "n_dot_m": _drift(nodes["n_dot_m"], np.linalg.norm(solution.n0) * _size(nodes["m"])),
@@ -51,8 +53,9 @@ def verify(solution: Solution, ribbon: Ribbon) -> Verification:
 
         problems += phase_problems(solution)
     if ribbon.law.bounds_eta and not solution.problem.recovered:
-        mixed = np.append(solution.sheets, 1)[solution.joined.phase_of(solution.joined.nodes)] == 0
-        eta = np.where(mixed, 0.0, np.abs(nodes["eta"]))
+        eta = np.abs(nodes["eta"])
+        if 0 in solution.sheets:
+            eta[np.array(solution.sheets)[solution.joined.phase_of(solution.joined.nodes)] == 0] = 0
         if not eta.max() <= 1 + TOLERANCE + residual:
             s = solution.nodes[int(eta.argmax())]
             problems.append(
@@ -80,15 +83,19 @@ def _worst_condition(solution: Solution, ribbon: Ribbon) -> tuple[str, float]:
     """Name and size of the condition that is furthest from what was asked."""
     names, function = ribbon.verdicts_function
     count, constants = len(ribbon.model.states), len(ribbon.model.constants)
-    ends, _ = solution.joined.values(np.array([0.0, 1.0]))
-    ends = ends[:, :count]
+    nodes = solution.dense.at_nodes
     # Without further states, and without the lengths of phases.
-    known = ends[0], ends[1], solution.constants[:constants], solution.dense.theta
-    values = function(*known)
+    known = (
+        nodes[0, :count],
+        nodes[-1, :count],
+        solution.constants[:constants],
+        solution.dense.theta,
+    )
+    (values,) = buffered(function)(*known)
     # Relative to the loads, absolute in lengths and directors (L = 1).
     n0, m0 = solution.n0 / solution.units.force, solution.m0 / solution.units.moment
     scale = 1 + max(np.linalg.norm(n0), np.linalg.norm(m0))
-    sizes = np.abs(np.array(values).ravel())
+    sizes = np.abs(values)
     loads = np.array(["force" in n or "moment" in n or "also" in n for n in names])
     sizes = np.where(np.isfinite(sizes), sizes / np.where(loads, scale, 1.0), np.inf)
     index = int(sizes.argmax())

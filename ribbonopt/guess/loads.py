@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import casadi as ca
 import numpy as np
@@ -12,6 +13,7 @@ from ribbonopt.mechanics import RodFields
 from ribbonopt.mechanics.boundary import start_frame, start_position
 from ribbonopt.problem import Ribbon, theta_values
 from ribbonopt.scene import LoadGuess, Scene
+from ribbonopt.transcription.buffered import Buffered, buffered_map
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,32 +43,38 @@ class IntegratedLoads:
         substeps = int(np.clip(np.ceil(np.abs(widths).max() * strain), 1, 100))
         theta = theta_values(self.scene)
         widths = np.repeat(widths / substeps, substeps)
-        step, section = self._functions()
         count = len(widths)
-        c, theta = (np.repeat(v[:, None], count + 1, axis=1) for v in (c, theta))
-        after = step.mapaccum("steps", count)(states[0], c[:, 1:], theta[:, 1:], widths[None])
-        x = np.hstack([states.T, np.array(after)])[:, ::substeps]
-        count = len(fraction)
-        parts = section.map(count)(x, c[:, :count], theta[:, :count])
-        r, d1, d2, d3, n, m = (np.array(part).T for part in parts[:6])
+        steps = _steps(self.ribbon, count)
+        (after,) = steps(states[0], np.tile(c, count), np.tile(theta, count), widths)
+        x = np.vstack([states, after.reshape(count, -1)])[::substeps]
+        section = buffered_map(self.ribbon.section_function, len(fraction))
+        r, d1, d2, d3, n, m = (part.reshape(-1, 3) for part in section(x, c, theta)[:6])
         return RodFields(r, np.stack([d1, d2, d3], axis=2), n, m)
 
-    def _functions(self) -> tuple[ca.Function, ca.Function]:
-        """One step (x, c, theta, h) -> x, and the cross section (x, c, theta) -> r, d_i, n, m."""
-        model = self.ribbon.model
-        x = ca.SX.sym("x", len(model.states))
-        c = ca.SX.sym("c", len(model.constants))
-        theta = ca.vertcat(*self.ribbon.theta.values())
-        section = self.ribbon.section(x, c)
-        u = ca.vertcat(0, section.u2, section.u3)
-        rates = ca.Function("rates", [x, c, theta], [model.rates(x, section.rod, u)])
-        h = ca.SX.sym("h")
-        k1 = rates(x, c, theta)
-        k2 = rates(x + h / 2 * k1, c, theta)
-        k3 = rates(x + h / 2 * k2, c, theta)
-        k4 = rates(x + h * k3, c, theta)
-        after = x + h / 6 * (k1 + 2 * k2 + 2 * k3 + k4)
-        return ca.Function("step", [x, c, theta, h], [after]), self.ribbon.section_function
+
+@lru_cache(maxsize=32)
+def _steps(ribbon: Ribbon, count: int) -> Buffered:
+    """States after each of many steps, from the first state and all c, theta and h."""
+    return Buffered(_step(ribbon).mapaccum("steps", count))
+
+
+@lru_cache(maxsize=8)
+def _step(ribbon: Ribbon) -> ca.Function:
+    """One Runge-Kutta step (x, c, theta, h) -> x."""
+    model = ribbon.model
+    x = ca.SX.sym("x", len(model.states))
+    c = ca.SX.sym("c", len(model.constants))
+    theta = ca.vertcat(*ribbon.theta.values())
+    section = ribbon.section(x, c)
+    u = ca.vertcat(0, section.u2, section.u3)
+    rates = ca.Function("rates", [x, c, theta], [model.rates(x, section.rod, u)])
+    h = ca.SX.sym("h")
+    k1 = rates(x, c, theta)
+    k2 = rates(x + h / 2 * k1, c, theta)
+    k3 = rates(x + h / 2 * k2, c, theta)
+    k4 = rates(x + h * k3, c, theta)
+    after = x + h / 6 * (k1 + 2 * k2 + 2 * k3 + k4)
+    return ca.Function("step", [x, c, theta, h], [after])
 
 
 @dataclass(frozen=True, eq=False)

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Protocol
+from typing import TYPE_CHECKING, Protocol, runtime_checkable
 
 import casadi as ca
 import numpy as np
@@ -20,6 +20,16 @@ class Guess(Protocol):
 
     def fields(self, fraction: Array) -> RodFields:
         """Fields at fractions (k,) of the length, increasing from 0 to 1."""
+
+
+@runtime_checkable
+class Solved(Guess, Protocol):
+    """A guess that may have the unknowns themselves."""
+
+    def unknowns_for(
+        self, problem: BoundaryValueProblem, theta: Array, fraction: Array
+    ) -> tuple[Array, Array] | None:
+        """Unknowns v (k, nv) at fractions (k,), and constants; None if it has others."""
 
 
 def initial_unknowns(
@@ -40,26 +50,33 @@ def initial_unknowns(
     ends = np.concatenate([[0.0], [] if switches is None else switches, [1.0]])
     local = blocks.stage_positions(p)
     parts = []
-    for i, s in enumerate(layout.phase_slices()):
+    for i, s in enumerate(layout.phase_slices):
         nodes = np.concatenate([[0.0], np.cumsum(widths[s])])[:-1]
         positions = np.hstack([nodes[:, None], local[s]])
         parts.append(ends[i] + (ends[i + 1] - ends[i]) * positions)
     fractions = np.append(np.concatenate(parts).ravel(), 1.0)
-    # A Radau scheme has its last stage on the next node: one value serves both.
-    unique, where = np.unique(np.minimum(fractions, 1.0), return_inverse=True)
-    fields = guess.fields(unique)
-    reference = theta[[problem.parameter_names.index(f"reference.{axis}") for axis in "xyz"]]
-    x, constants = ribbon.model.pack(fields, reference)
-    more = _estimates(problem, fields, theta)
-    count = layout.nx - x.shape[1]
-    x, z = np.hstack([x, more[:, :count]])[where], more[:, count:][where]
-    body = np.hstack([x, z])[:-1].reshape(layout.element_count, layout.stages + 1, -1)
-    nodes = np.vstack([body[:, 0, : layout.nx], x[-1:]])
+    fractions = np.minimum(fractions, 1.0)
+    known = guess.unknowns_for(problem, theta, fractions) if isinstance(guess, Solved) else None
+    v, constants = known or _from_fields(guess, ribbon, problem, theta, fractions)
+    body = v[:-1].reshape(layout.element_count, layout.stages + 1, -1)
+    nodes = np.vstack([body[:, 0, : layout.nx], v[-1:, : layout.nx]])
     if switches is not None and len(switches):
         names = [problem.parameter_names.index(f"interval.{end}") for end in ("start", "end")]
         total = theta[names[1]] - theta[names[0]]
         constants = np.concatenate([constants, total * np.diff(ends)[:-1]])
     return layout.pack(nodes, body[:, 1:], constants[: layout.nc])
+
+
+def _from_fields(
+    guess: Guess, ribbon: Ribbon, problem: BoundaryValueProblem, theta: Array, fractions: Array
+) -> tuple[Array, Array]:
+    """Unknowns v (k, nv) at fractions that do not decrease, and constants of the rod."""
+    # A Radau scheme has its last stage on the next node: one value serves both.
+    unique, where = np.unique(fractions, return_inverse=True)
+    fields = guess.fields(unique)
+    reference = theta[[problem.parameter_names.index(f"reference.{axis}") for axis in "xyz"]]
+    x, constants = ribbon.model.pack(fields, reference)
+    return np.hstack([x, _estimates(problem, fields, theta)])[where], constants
 
 
 def _estimates(problem: BoundaryValueProblem, fields: RodFields, theta: Array) -> Array:

@@ -129,9 +129,16 @@ class BoundaryValueProblem:
         return int(self.state.numel() + self.constants.numel())
 
     @cached_property
+    def extent_function(self) -> ca.Function:
+        """Function (c, theta) of the arclength where the first phase starts and all lengths."""
+        extent = ca.vertcat(self.start, *(phase.length for phase in self.phases))
+        return ca.Function("extent", [self.constants, self.parameters], [extent])
+
+    @cached_property
     def output_functions(self) -> tuple[tuple[ca.Function, dict[str, int]], ...]:
-        """For each phase: function (x, z, c, theta, s) of its outputs in one column, and sizes."""
-        inputs = [self.state, self.algebraic, self.constants, self.parameters, self.position]
+        """For each phase: function (v, c, theta, s) of its outputs in one column, and sizes."""
+        v = ca.vertcat(self.state, self.algebraic)
+        inputs = [v, self.constants, self.parameters, self.position]
         result = []
         for phase in self.phases:
             column = ca.densify(ca.vertcat(*phase.outputs.values()))

@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, fields
 from functools import cached_property
+from typing import Any
 
 import casadi as ca
 import numpy as np
@@ -107,8 +108,20 @@ def ribbon_of(scene: Scene) -> Ribbon:
     return Ribbon(MODELS[scene.states], law, conditions_of(scene), symbols)
 
 
+# One solve asks for the numbers of one scene again and again. Scenes do not change.
+_latest: list[Any] = []
+
+
 def theta_of(scene: Scene) -> dict[str, float]:
     """Return every number of a scene, in units Dw = L = 1, by name and in the order of theta."""
+    if _latest and _latest[0] is scene:
+        return dict(_latest[1])
+    values = _theta_of(scene)
+    _latest[:] = scene, values
+    return dict(values)
+
+
+def _theta_of(scene: Scene) -> dict[str, float]:
     if scene.ribbon is not None:
         raise ModelError("this scene is in SI; convert it by `in_special_units` first", "ribbon")
     values = {

@@ -42,11 +42,11 @@ class Auto:
         """Build the first choice now rather than at the first solve."""
         (self.newton if self.nlp.square else self.ipopt).build()
 
-    def solve(self, w: Array, p: Array) -> SolveReport:
-        """Solve from the guess w (nw,) for the parameters p (np,)."""
+    def solve(self, w: Array, p: Array, *, enough: float = 0.0) -> SolveReport:
+        """Solve from the guess w (nw,) for the parameters p (np,), as far as is `enough`."""
         if not self.nlp.square:
             return self.ipopt.solve(w, p)
-        first = self.newton.solve(w, p)
+        first = self.newton.solve(w, p, enough=enough)
         if first.status.converged:
             return first
         return replace(self.ipopt.solve(w, p), earlier=(first,))

@@ -89,8 +89,11 @@ class Ipopt:
         feasible = history["inf_pr"][-1] <= 10 * self.tolerance
         return feasible and history["inf_du"][-1] <= DUAL_ROUNDING
 
-    def solve(self, w: Array, p: Array) -> SolveReport:
-        """Solve from the guess w (nw,) for the parameters p (np,)."""
+    def solve(self, w: Array, p: Array, *, enough: float = 0.0) -> SolveReport:
+        """Solve from the guess w (nw,) for the parameters p (np,).
+
+        Always to its own tolerance, which is built in, whatever is `enough`.
+        """
         lower = np.where(self.nlp.inequality, -np.inf, 0.0)
         solver = self.solver
         start = time.perf_counter()

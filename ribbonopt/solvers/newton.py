@@ -47,14 +47,18 @@ class Newton:
         """Build the system now rather than at the first solve."""
         self.system.build()
 
-    def solve(self, w: Array, p: Array, relaxed: Array | None = None) -> SolveReport:
+    def solve(
+        self, w: Array, p: Array, relaxed: Array | None = None, enough: float = 0.0
+    ) -> SolveReport:
         """Solve from the guess w (nw,) for the parameters p (np,).
 
-        `relaxed` (nb,) are residuals that the conditions shall have instead of zero.
+        `relaxed` (nb,) are residuals that the conditions shall have instead of zero; `enough` is a
+        tolerance that will do, where it is larger than the solver's own.
         """
         if not self.nlp.square:
             return _Run(self, w, p).report(Status.NOT_SQUARE)
         run = _Run(self, np.array(w, dtype=float), np.asarray(p, dtype=float))
+        run.tolerance = max(self.tolerance, enough)
         if relaxed is not None:
             if not isinstance(self.system, ElementSystem):
                 raise TypeError("conditions can be relaxed where the program has element blocks")
@@ -69,6 +73,7 @@ class _Run:
     def __init__(self, settings: Newton, w: Array, p: Array) -> None:
         self.settings, self.w, self.p = settings, w, p
         self.system: System = settings.system
+        self.tolerance = settings.tolerance
         self.iterations = self.factorizations = 0
         self.evaluate = self.linear = 0.0
         self.started = time.perf_counter()
@@ -94,7 +99,7 @@ class _Run:
         settings = self.settings
         while self.iterations < settings.max_iterations:
             size = self._size(step)
-            if size <= settings.tolerance:
+            if size <= self.tolerance:
                 self.w = self.w + step
                 return Status.CONVERGED, damping
             self.iterations += 1
@@ -110,7 +115,7 @@ class _Run:
             if damping < 1:
                 break
             step = following
-            if contraction > KEEP and self._size(step) > settings.tolerance:
+            if contraction > KEEP and self._size(step) > self.tolerance:
                 break
         return None, damping
 
@@ -121,7 +126,7 @@ class _Run:
         return Status.CONVERGED if np.abs(residuals).max() <= attainable else Status.STALLED
 
     def _size(self, step: Array) -> float:
-        return float(np.max(np.abs(step) / (1 + np.abs(self.w)), initial=0.0))
+        return float((np.abs(step) / (1 + np.abs(self.w))).max(initial=0.0))
 
     def _newton_step(self) -> Array:
         start = time.perf_counter()

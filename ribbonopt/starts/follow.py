@@ -14,6 +14,7 @@ from ribbonopt.accuracy.verify import unverified
 from ribbonopt.arrays import Array
 from ribbonopt.discretize import discretize
 from ribbonopt.guess import Guess, initial_unknowns
+from ribbonopt.joined import Joined
 from ribbonopt.problem import BoundaryValueProblem, Ribbon, pose, theta_values
 from ribbonopt.scene import Collocation, Law, Scene, Variational
 from ribbonopt.solution import Solution
@@ -122,8 +123,7 @@ class _Run:
         self.points.append(
             Solution(
                 scene=_posed(self.scene, self.law),
-                problem=self.follower.problem,
-                dense=self.follower.nlp.blocks.dense(self.w, p),
+                joined=Joined(self.follower.problem, self.follower.nlp.blocks.dense(self.w, p)),
                 status=Status.CONVERGED,
                 message=Status.CONVERGED.value,
                 iterations=self.iterations,

@@ -7,6 +7,7 @@ import numpy as np
 
 from ribbonopt.accuracy.verify import unverified
 from ribbonopt.arrays import Array
+from ribbonopt.joined import Joined
 from ribbonopt.problem import BoundaryValueProblem
 from ribbonopt.scene import Scene
 from ribbonopt.solution import Solution
@@ -27,8 +28,7 @@ def solution_of(
         p = _with_recovered(problem, nlp, report, p)
     return Solution(
         scene=scene,
-        problem=problem,
-        dense=nlp.blocks.dense(report.w, p),
+        joined=Joined(problem, nlp.blocks.dense(report.w, p)),
         status=report.status,
         message=report.status.value,
         iterations=report.iterations,

@@ -182,8 +182,9 @@ def _estimate(solution: Solution, profile: Profile) -> float | None:
     """Own estimate of the error of n(0), m(0) alone; None for minima (no square system)."""
     if solution.problem.recovered:
         return None
-    better = analyse(solution).better
-    errors = errors_of(replace(profile, n0=better.n0, m0=better.m0), profile)
+    better, units = analyse(solution).better.at_nodes, solution.units
+    n0, m0 = better["n"][0] * units.force, better["m"][0] * units.moment
+    errors = errors_of(replace(profile, n0=n0, m0=m0), profile)
     return max(errors["error_n0"], errors["error_m0"], ROUNDING)
 
 

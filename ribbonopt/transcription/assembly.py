@@ -76,9 +76,7 @@ class Assembler:
     def _each(self, name: str, extra: Sequence[list[ca.MX]] = ()) -> list[list[ca.MX]]:
         """Return the outputs of stage function `name` of every phase, mapped over its stages."""
         result = []
-        for i, (functions, s) in enumerate(
-            zip(self.phases, self.layout.phase_slices(), strict=True)
-        ):
+        for i, (functions, s) in enumerate(zip(self.phases, self.layout.phase_slices, strict=True)):
             count = (s.stop - s.start) * self.layout.stages
             inputs = self._stage_inputs(s) + (extra[i] if extra else [])
             outputs = shared_map(getattr(functions, name), count)(*inputs)
@@ -99,7 +97,7 @@ class Assembler:
         if all(f.cost is None for f in self.phases):
             return total
         weights = ca.DM(self.tableau.weights).T
-        slices = self.layout.phase_slices()
+        slices = self.layout.phase_slices
         for (density,), s in zip(self._each("cost_density"), slices, strict=True):
             per_element = weights @ ca.reshape(density, self.layout.stages, -1)
             total += ca.dot(per_element.T, self.widths[0, s.start : s.stop].T)
@@ -131,7 +129,7 @@ class Assembler:
         stage_outputs = self._each("sparse")
         conditions, condition_nonzeros = self.conditions.sparse(*self._condition_inputs())
         nonzeros, rows, columns = [], [], []
-        slices = lay.phase_slices()
+        slices = lay.phase_slices
         for functions, (_, jac), s in zip(self.phases, stage_outputs, slices, strict=True):
             row, col = triplets_of(functions.jacobian.sparsity())
             scaled = (row < lay.nx).astype(float)[:, None]
@@ -216,7 +214,7 @@ class Assembler:
         collected += sparse(np.kron(t.weights[:, None], identity)) @ body[-lay.nx :, :]
         rates = -ca.reshape(collected, lay.nx, -1) * ca.repmat(widths, lay.nx, 1)
         cost = sigma_f * widths * ca.DM(np.tile(t.weights, lay.element_count)).T
-        slices = lay.phase_slices()
+        slices = lay.phase_slices
         extra = []
         for f, s in zip(self.phases, slices, strict=True):
             columns = slice(s.start * lay.stages, s.stop * lay.stages)

@@ -14,11 +14,11 @@ import numpy as np
 
 from ribbonopt.arrays import Array
 
-from .buffered import Buffered, shared_map
+from .buffered import Buffered, buffered_map
 from .elimination import StageElimination
 from .functions import StageFunctions
 from .layout import Layout
-from .points import Conditions
+from .points import Conditions, Parts
 from .residuals import Derivatives, Residuals
 from .tableaus import Tableau, next_tableau
 
@@ -60,8 +60,9 @@ class ElementBlocks:
         _ = self._values, self._dense
         self.conditions.build()
 
+    @cached_property
     def finer(self) -> tuple[ElementBlocks, int]:
-        """Return the same equations on the next better scheme, and the parts of each element.
+        """The same equations on the next better scheme, and the parts of each element.
 
         Path inequalities are left out: a solution inside them is refined by its equations.
         """
@@ -77,23 +78,28 @@ class ElementBlocks:
 
     def residuals(self, w: Array, p: Array) -> Residuals:
         """Residuals at the unknowns w for the parameters p = [theta, widths]."""
-        values = self._evaluate(self._values, w, p)
-        return self._residuals(w, p, values[0], self.conditions.values(w, p))
+        parts = self.layout.unpack(w)
+        values = self._evaluate(self._values, parts, p)
+        return self._residuals(parts, p, values[0], self.conditions.values(parts, p))
 
     def linearize(self, w: Array, p: Array) -> tuple[Residuals, Derivatives]:
         """Residuals and derivative blocks at w for p."""
         lay = self.layout
-        values, jacobians = self._evaluate(self._dense, w, p)
+        parts = lay.unpack(w)
+        values, jacobians = self._evaluate(self._dense, parts, p)
         # CasADi stores columns first.
         jacobians = jacobians.reshape(
             lay.element_count, lay.stages, lay.nv + lay.nc, lay.stage_equations
         ).swapaxes(2, 3)
-        b, jb = self.conditions.linearize(w, p)
-        return self._residuals(w, p, values, b), Derivatives(jacobians, jb)
+        b, jb = self.conditions.linearize(parts, p)
+        return self._residuals(parts, p, values, b), Derivatives(jacobians, jb)
 
-    def eliminate(self, derivatives: Derivatives, p: Array) -> StageElimination:
-        """Solve every element's stage equations for its stages."""
-        return StageElimination(self.layout, self.tableau, derivatives.stages, self.widths(p))
+    def eliminate(
+        self, derivatives: Derivatives, p: Array, only: Residuals | None = None
+    ) -> StageElimination:
+        """Solve every element's stage equations for its stages, maybe for some residuals only."""
+        widths = self.widths(p)
+        return StageElimination(self.layout, self.tableau, derivatives.stages, widths, only)
 
     def dense(self, w: Array, p: Array) -> Output:
         """Return the dense output of a solution w."""
@@ -104,8 +110,27 @@ class ElementBlocks:
     def rates(self, w: Array, p: Array) -> Array:
         """Return the derivatives F (N, K, nx) at the stages, per relative position."""
         lay = self.layout
-        values = self._evaluate(self._values, w, p)[0]
+        values = self._evaluate(self._values, lay.unpack(w), p)[0]
         return values.reshape(lay.element_count, lay.stages, -1)[:, :, : lay.nx]
+
+    def sampled(self, output: Output, p: Array) -> Array:
+        """Unknowns w that stand for an output of the same problem, on any elements."""
+        lay = self.layout
+        t = np.append(0.0, self.tableau.nodes)
+        sigma = lay.starts(p)[:, None] + self.widths(p)[:, None] * t
+        v = np.empty((*sigma.shape, lay.nv))
+        for phase, s in enumerate(lay.phase_slices):
+            v[s] = output.approximate(phase, sigma[s].ravel()).reshape(v[s].shape)
+        nodes = np.vstack([v[:, 0, : lay.nx], output.at_nodes[-1:]])
+        return lay.pack(nodes, v[:, 1:], output.constants)
+
+    def swept(self, w: Array, p: Array) -> Array:
+        """Return w after a fixed-point sweep of the stages: one more order between the nodes."""
+        nodes, stages, constants = self.layout.unpack(w)
+        nx = self.layout.nx
+        stages = stages.copy()
+        stages[:, :, :nx] -= self.residuals(w, p).stages[:, :, :nx]
+        return self.layout.pack(nodes, stages, constants)
 
     def widths(self, p: Array) -> Array:
         """Relative widths (N,) of the elements."""
@@ -117,30 +142,45 @@ class ElementBlocks:
             self.layout.starts(p)[:, None] + self.widths(p)[:, None] * self.tableau.nodes
         )
 
-    def _residuals(self, w: Array, p: Array, values: Array, b: Array) -> Residuals:
-        lay, t = self.layout, self.tableau
-        nodes, stages, _ = lay.unpack(w)
+    def _residuals(self, parts: Parts, p: Array, values: Array, b: Array) -> Residuals:
+        lay = self.layout
+        nodes, stages, _ = parts
         values = values.reshape(lay.element_count, lay.stages, lay.stage_equations)
         rates = self.widths(p)[:, None, None] * values[:, :, : lay.nx]
-        result = np.empty_like(values)
-        result[:, :, : lay.nx] = stages[:, :, : lay.nx] - nodes[:-1, None] - t.matrix @ rates
-        result[:, :, lay.nx :] = values[:, :, lay.nx :]
-        ends = nodes[1:] - nodes[:-1] - t.weights @ rates
+        integrals = self._coefficients @ rates
+        integrals += nodes[:-1, None]
+        ends = nodes[1:] - integrals[:, -1]
+        if lay.nx == lay.stage_equations:
+            return Residuals(stages[:, :, : lay.nx] - integrals[:, :-1], ends, b)
+        result = values.copy()
+        result[:, :, : lay.nx] = stages[:, :, : lay.nx] - integrals[:, :-1]
         return Residuals(result, ends, b)
 
-    def _evaluate(self, mapped: tuple[Buffered, ...], w: Array, p: Array) -> list[Array]:
+    @cached_property
+    def _coefficients(self) -> Array:
+        """Butcher matrix, and the weights below it."""
+        return np.vstack([self.tableau.matrix, self.tableau.weights])
+
+    @cached_property
+    def _depends_on_position(self) -> bool:
+        return any(f.depends_on_position for f in self.phases)
+
+    def _evaluate(self, mapped: tuple[Buffered, ...], parts: Parts, p: Array) -> list[Array]:
+        """Return outputs of functions at the stages of all phases."""
         lay = self.layout
-        _, stages, c = lay.unpack(w)
+        _, stages, c = parts
         theta = lay.theta(p)
-        if any(f.depends_on_position for f in self.phases):
+        if self._depends_on_position:
             positions = self.stage_positions(p)
         else:
             positions = np.zeros((lay.element_count, lay.stages))
-        parts = [
-            [a.copy() for a in call(stages[s], c, theta, positions[s])]
-            for call, s in zip(mapped, lay.phase_slices(), strict=True)
+        if len(mapped) == 1:
+            return mapped[0](stages, c, theta, positions)
+        groups = [
+            call(stages[s], c, theta, positions[s])
+            for call, s in zip(mapped, lay.phase_slices, strict=True)
         ]
-        return [np.concatenate(group) for group in zip(*parts, strict=True)]
+        return [np.concatenate(group) for group in zip(*groups, strict=True)]
 
     @cached_property
     def _values(self) -> tuple[Buffered, ...]:
@@ -153,6 +193,5 @@ class ElementBlocks:
     def _mapped(self, functions: list[ca.Function]) -> tuple[Buffered, ...]:
         count = self.layout.stages
         return tuple(
-            Buffered(shared_map(f, n * count))
-            for f, n in zip(functions, self.layout.elements, strict=True)
+            buffered_map(f, n * count) for f, n in zip(functions, self.layout.elements, strict=True)
         )

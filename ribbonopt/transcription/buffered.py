@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import lru_cache
 from typing import Any
 
 import casadi as ca
@@ -13,8 +14,7 @@ from ribbonopt.arrays import Array
 class Buffered:
     """A CasADi function called through preallocated, contiguous arrays.
 
-    Arguments and results are flat, columns first: the transpose of a C-ordered array. Results are
-    overwritten by the next call.
+    Arguments and results are flat, columns first: the transpose of a C-ordered array.
     """
 
     def __init__(self, function: ca.Function) -> None:
@@ -35,10 +35,22 @@ class Buffered:
         for array, value in zip(self.arguments, values, strict=True):
             array[:] = value.ravel()
         self._evaluate()
-        return self.results
+        return [result.copy() for result in self.results]
 
 
 def shared_map(function: ca.Function, count: int) -> ca.Function:
     """Map a stage function over `count` stages that share constants and parameters."""
     shared = [1, 2]
     return function.map(f"{function.name()}_map", "serial", count, shared, [])
+
+
+@lru_cache(maxsize=64)
+def buffered(function: ca.Function) -> Buffered:
+    """Return a function with its buffers, made once."""
+    return Buffered(function)
+
+
+@lru_cache(maxsize=256)
+def buffered_map(function: ca.Function, count: int) -> Buffered:
+    """Return `shared_map` with its buffers, made once."""
+    return Buffered(shared_map(function, count))

@@ -3,7 +3,7 @@
 In an element the collocation polynomial x_0 + h sum_j F_j integral(l_j) has order K + 1, the nodes
 2K (Gauss) or 2K - 1 (Radau). For ordinary differential equations the missing orders are won back:
 the same scheme is applied to the substep from the node to the wanted point, its stages started on
-the polynomial and improved by K - 1 fixed-point sweeps, each worth one order.
+the polynomial and improved by fixed-point sweeps, each worth one order, until they stand still.
 """
 
 from __future__ import annotations
@@ -16,8 +16,11 @@ import numpy as np
 from ribbonopt.arrays import Array
 
 from .blocks import ElementBlocks
-from .buffered import Buffered, shared_map
+from .buffered import Buffered, buffered_map
 from .layout import Index
+
+MOST_SWEEPS = 40  # of a substep's stages
+SWEEPS = 1  # of a better scheme's stages; its Newton step does the rest
 
 
 @dataclass(frozen=True, eq=False)
@@ -50,7 +53,12 @@ class DenseOutput:
     @property
     def constants(self) -> Array:
         """Unknown constants c."""
-        return self.blocks.layout.unpack(self.w)[2]
+        return self._parts[2]
+
+    @property
+    def at_nodes(self) -> Array:
+        """States (N + 1, nx) at the nodes of all phases."""
+        return self._parts[0]
 
     def nodes(self, phase: int) -> Array:
         """Relative positions (n + 1,) of the nodes of a phase."""
@@ -66,9 +74,31 @@ class DenseOutput:
             x[inside] = self._substeps(phase, element[inside], t[inside], h[inside])
         return x
 
+    def approximate(self, phase: int, sigma: Array) -> Array:
+        """Unknowns v (k, nv) at relative positions sigma (k,): the collocation polynomials."""
+        element, t, h = self.blocks.layout.locate(self.p, phase, sigma)
+        return np.hstack([self._polynomial(element, t, h), self._interpolated(element, t)])
+
+    def refined(self) -> tuple[ElementBlocks, Array, Array, int]:
+        """Return the next better scheme, this output as its unknowns w, p, parts per element.
+
+        The stages lie on the polynomials, improved by sweeps of one order each.
+        """
+        blocks, split = self.blocks.finer
+        widths = np.repeat(self.blocks.widths(self.p) / split, split)
+        p = np.concatenate([self.theta, widths])
+        if split == 1:
+            stages = self._everywhere(blocks.tableau.nodes)
+            w = blocks.layout.pack(self.at_nodes, stages, self.constants)
+        else:
+            w = blocks.sampled(self, p)
+        for _ in range(SWEEPS):
+            w = blocks.swept(w, p)
+        return blocks, w, p, split
+
     def _substeps(self, phase: int, element: Index, t: Array, h: Array) -> Array:
         """States (k, nx) after steps of t h from the first nodes of elements."""
-        nodes, _, _ = self.blocks.layout.unpack(self.w)
+        nodes = self.at_nodes
         tableau = self.blocks.tableau
         e, count, K = element, len(element), tableau.degree
         stage_t = t[:, None] * tableau.nodes
@@ -79,13 +109,17 @@ class DenseOutput:
         z = self._interpolated(repeated, stage_t.ravel())
         equations = self._mapped(phase, count * K)
         step = (h * t)[:, None]
-        for sweep in range(K):
+        before = np.inf
+        for _ in range(MOST_SWEEPS):
             x = X.reshape(count * K, -1)
             z = self._solved(phase, x, z, positions.ravel())
             values = equations(np.hstack([x, z]), self.constants, self.theta, positions)[0]
             F = values.reshape(count, K, -1)[:, :, : lay.nx]
-            if sweep < K - 1:
-                X = nodes[e][:, None] + step[:, None] * (tableau.matrix @ F)
+            improved = nodes[e][:, None] + step[:, None] * (tableau.matrix @ F)
+            change = float(np.abs(improved - X).max())
+            if change >= before:  # rounding, or steps too long to converge
+                break
+            X, before = improved, change
         after: Array = nodes[e] + step * (tableau.weights @ F)
         return after
 
@@ -101,11 +135,20 @@ class DenseOutput:
     def stages(self, phase: int) -> tuple[Array, Array, Array]:
         """Stage values v (k, nv), relative positions (k,) and quadrature weights (k,)."""
         lay = self.blocks.layout
-        s = lay.phase_slices()[phase]
-        _, stages, _ = lay.unpack(self.w)
+        s = lay.phase_slices[phase]
+        stages = self._parts[1]
         positions = self.blocks.stage_positions(self.p)[s]
         weights = self.blocks.widths(self.p)[s, None] * self.blocks.tableau.weights
         return stages[s].reshape(-1, lay.nv), positions.ravel(), weights.ravel()
+
+    def decay(self) -> Array:
+        """Sizes (N, K) of the Legendre coefficients of x' in every element.
+
+        Each state relative to its largest derivative along the solution; the largest of all.
+        """
+        coefficients = np.abs(self.blocks.tableau.legendre @ self._rates)
+        scale = np.maximum(np.abs(self._rates).max(axis=(0, 1)), np.finfo(float).tiny)
+        return np.asarray((coefficients / scale).max(axis=2))
 
     def residual_between_nodes(self, per_element: int | None = None) -> Array:
         """Defects (N, k) of the differential equations between the stages of every element.
@@ -117,32 +160,46 @@ class DenseOutput:
         count = per_element or tableau.degree + 1
         t = (np.arange(count) + 0.5) / count
         found = tableau.basis(t) @ self._rates  # (N, k, nx)
-        scale = np.abs(self._rates).max()
+        everywhere = self._everywhere(t)
+        positions = lay.starts(self.p)[:, None] + lay.widths(self.p)[:, None] * t
         result = np.empty((lay.element_count, count))
-        for phase, s in enumerate(lay.phase_slices()):
-            nodes = self.nodes(phase)
-            sigma = (nodes[:-1, None] + np.diff(nodes)[:, None] * t).ravel()
-            element = np.repeat(np.arange(s.start, s.stop), count)
-            h = self.blocks.widths(self.p)[element]
-            x = self._polynomial(element, np.tile(t, s.stop - s.start), h)
-            v = np.hstack([x, self.algebraic(phase, sigma)])
+        for phase, s in enumerate(lay.phase_slices):
+            v, sigma = everywhere[s].reshape(-1, lay.nv), positions[s].ravel()
+            x = v[:, : lay.nx]
+            v = np.hstack([x, self._solved(phase, x, v[:, lay.nx :], sigma)])
             values = self._mapped(phase, len(v))(v, self.constants, self.theta, sigma)[0]
-            F = values.reshape(len(v), -1)[:, : lay.nx]
-            error = np.abs(found[s].reshape(len(F), -1) - F).max(axis=1) / scale
-            result[s] = error.reshape(-1, count)
-        return result
+            F = values.reshape(-1, count, values.size // len(v))[:, :, : lay.nx]
+            result[s] = np.abs(found[s] - F).max(axis=2)
+        return result / np.abs(self._rates).max()
+
+    @cached_property
+    def _parts(self) -> tuple[Array, Array, Array]:
+        """Nodes, stages and constants."""
+        return self.blocks.layout.unpack(self.w)
 
     @cached_property
     def _rates(self) -> Array:
         """Derivatives (N, K, nx) at the stages, per relative position."""
         return self.blocks.rates(self.w, self.p)
 
+    def _everywhere(self, t: Array) -> Array:
+        """Polynomials v (N, k, nv) at the same places t (k,) of all elements."""
+        lay, tableau = self.blocks.layout, self.blocks.tableau
+        v = np.empty((lay.element_count, len(t), lay.nv))
+        increments = tableau.integrals(t) @ self._rates
+        v[:, :, : lay.nx] = self.at_nodes[:-1, None]
+        v[:, :, : lay.nx] += lay.widths(self.p)[:, None, None] * increments
+        if lay.nz:
+            v[:, :, lay.nx :] = tableau.basis(t) @ self._parts[1][:, :, lay.nx :]
+        return v
+
     def _interpolated(self, element: Index, t: Array) -> Array:
         """Polynomials (k, nz) through the stages of z."""
         lay = self.blocks.layout
-        _, stages, _ = lay.unpack(self.w)
+        if not lay.nz:
+            return np.empty((len(t), 0))
         basis = self.blocks.tableau.basis(t)
-        z: Array = np.einsum("kj,kjz->kz", basis, stages[element][:, :, lay.nx :])
+        z: Array = np.einsum("kj,kjz->kz", basis, self._parts[1][element][:, :, lay.nx :])
         return z
 
     def _solved(self, phase: int, x: Array, z: Array, sigma: Array) -> Array:
@@ -150,7 +207,7 @@ class DenseOutput:
         lay = self.blocks.layout
         if not lay.nz or lay.nz != lay.ng:
             return z
-        dense = Buffered(shared_map(self.blocks.phases[phase].dense, len(x)))
+        dense = buffered_map(self.blocks.phases[phase].dense, len(x))
         rows, columns = slice(lay.nx, lay.nx + lay.ng), slice(lay.nx, lay.nv)
         for _ in range(3):  # from the accuracy of the polynomial to rounding
             values, jacobian = dense(np.hstack([x, z]), self.constants, self.theta, sigma)
@@ -160,12 +217,12 @@ class DenseOutput:
         return z
 
     def _polynomial(self, element: Index, t: Array, h: Array) -> Array:
-        nodes, _, _ = self.blocks.layout.unpack(self.w)
+        nodes = self.at_nodes
         integrals = self.blocks.tableau.integrals(t)
-        increments = np.einsum("kj,kjx->kx", integrals, self._rates[element])
+        increments = (integrals[:, None, :] @ self._rates[element])[:, 0]
         x: Array = nodes[element] + h[:, None] * increments
         x[t == 1] = nodes[element[t == 1] + 1]
         return x
 
     def _mapped(self, phase: int, count: int) -> Buffered:
-        return Buffered(shared_map(self.blocks.phases[phase].values, count))
+        return buffered_map(self.blocks.phases[phase].values, count)

@@ -16,7 +16,14 @@ from .tableaus import Tableau
 class StageElimination:
     """Collocation: the stage equations solved for the stages, all elements in one LAPACK call."""
 
-    def __init__(self, layout: Layout, tableau: Tableau, J: Array, widths: Array) -> None:
+    def __init__(
+        self,
+        layout: Layout,
+        tableau: Tableau,
+        J: Array,
+        widths: Array,
+        only: Residuals | None = None,
+    ) -> None:
         lay, t = layout, tableau
         N, K, nx, nv = lay.element_count, lay.stages, lay.nx, lay.nv
         h = widths[:, None, None, None]
@@ -30,15 +37,27 @@ class StageElimination:
         if nv > nx:
             j = np.arange(K)
             M[:, j, nx:, j] = np.moveaxis(J[:, :, nx:, :nv], 0, 1)
-        inverse = np.asarray(np.linalg.inv(M.reshape(N, K * nv, K * nv)), dtype=float)
+        M = M.reshape(N, K * nv, K * nv)
         to_constants = np.zeros((N, K, nv, lay.nc))
         to_constants[:, :, :nx] = np.einsum("ij,ejxc->eixc", t.matrix, dynamic[..., nv:])
         to_constants[:, :, nx:] = -J[:, :, nx:, nv:]
         to_node = np.zeros((K, nv, nx))
         to_node[:, x, x] = 1
-        self._inverse = inverse
-        self._to_node = inverse @ to_node.reshape(K * nv, nx)
-        self._to_constants = inverse @ to_constants.reshape(N, K * nv, lay.nc)
+        to_node = to_node.reshape(K * nv, nx)
+        to_constants = to_constants.reshape(N, K * nv, lay.nc)
+        if only is None:
+            self._inverse = np.linalg.inv(M)
+            self._to_node = self._inverse @ to_node
+            self._to_constants = self._inverse @ to_constants
+        else:
+            # A third of the work, if no other residuals come.
+            sides = np.empty((N, K * nv, nx + lay.nc + 1))
+            sides[:, :, :nx], sides[:, :, nx:-1] = to_node, to_constants
+            sides[:, :, -1] = -only.stages.reshape(N, -1)
+            solved = np.linalg.solve(M, sides)
+            self._to_node, self._to_constants = solved[:, :, :nx], solved[:, :, nx:-1]
+            self._share = solved[:, :, -1]
+        self._only = only
         # x_{e+1} = x_e + h sum b_j (dF_j . stages + dF_j/dc . c).
         weighted = t.weights[:, None, None] * dynamic
         self._step = weighted[..., :nv].swapaxes(1, 2).reshape(N, nx, K * nv)
@@ -53,7 +72,12 @@ class StageElimination:
 
     def reduce(self, residuals: Residuals) -> tuple[Array, Array]:
         """Right-hand sides d (N, nx), and the stages (N, K nv) if nodes and constants stay."""
-        share = times(self._inverse, -residuals.stages.reshape(len(self._inverse), -1))
+        if self._only is None:
+            share = times(self._inverse, -residuals.stages.reshape(len(self._inverse), -1))
+        elif residuals is self._only:
+            share = self._share
+        else:
+            raise ValueError("these factors are for other residuals only")
         return times(self._step, share) - residuals.nodes, share
 
     def expand(self, nodes: Array, constants: Array, share: Array) -> Array:

@@ -12,6 +12,7 @@ Equations, element by element, then the conditions:
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import pairwise
 
 import numpy as np
@@ -35,52 +36,52 @@ class Layout:
     elements: tuple[int, ...]  # in each phase
     conditions: int
 
-    @property
+    @cached_property
     def nv(self) -> int:
         """Unknowns of one stage."""
         return self.nx + self.nz
 
-    @property
+    @cached_property
     def element_count(self) -> int:
         """Elements of all phases."""
         return sum(self.elements)
 
-    @property
+    @cached_property
     def element_unknowns(self) -> int:
         """Unknowns of one element: its first node and its stages."""
         return self.nx + self.stages * self.nv
 
-    @property
+    @cached_property
     def stage_equations(self) -> int:
         """Equations of one stage: defects, algebraic, path."""
         return self.nx + self.ng + self.nh
 
-    @property
+    @cached_property
     def element_equations(self) -> int:
         """Equations of one element: its stages and its end."""
         return self.stages * self.stage_equations + self.nx
 
-    @property
+    @cached_property
     def unknowns(self) -> int:
         """Length of w."""
         return self.element_count * self.element_unknowns + self.nx + self.nc
 
-    @property
+    @cached_property
     def equations(self) -> int:
         """Number of constraints, inequalities included."""
         return self.element_count * self.element_equations + self.conditions
 
-    @property
+    @cached_property
     def constants_at(self) -> int:
         """Index in w of the first constant."""
         return self.unknowns - self.nc
 
-    @property
+    @cached_property
     def conditions_at(self) -> int:
         """Index of the first condition."""
         return self.equations - self.conditions
 
-    @property
+    @cached_property
     def point_elements(self) -> tuple[int, ...]:
         """Index of the node at the start, at each phase boundary and at the end."""
         return tuple(int(i) for i in np.concatenate([[0], np.cumsum(self.elements)]))
@@ -90,6 +91,7 @@ class Layout:
         nodes = np.array(self.point_elements)[:, None] * self.element_unknowns + np.arange(self.nx)
         return np.concatenate([nodes.ravel(), self.constants_at + np.arange(self.nc)])
 
+    @cached_property
     def phase_slices(self) -> tuple[slice, ...]:
         """Elements of each phase."""
         p = self.point_elements
@@ -106,11 +108,11 @@ class Layout:
     def starts(self, p: Array) -> Array:
         """Relative position (N,) of every element's first node in its phase."""
         widths = self.widths(p)
-        return np.concatenate([np.cumsum(widths[s]) - widths[s] for s in self.phase_slices()])
+        return np.concatenate([np.cumsum(widths[s]) - widths[s] for s in self.phase_slices])
 
     def phase_nodes(self, p: Array, phase: int) -> Array:
         """Relative positions (n + 1,) of the nodes of a phase."""
-        nodes = np.concatenate([[0.0], np.cumsum(self.widths(p)[self.phase_slices()[phase]])])
+        nodes = np.concatenate([[0.0], np.cumsum(self.widths(p)[self.phase_slices[phase]])])
         nodes[-1] = 1.0
         return nodes
 
@@ -120,13 +122,19 @@ class Layout:
         local = np.clip(np.searchsorted(nodes, sigma, side="right") - 1, 0, len(nodes) - 2)
         h = np.diff(nodes)[local]
         t = np.clip((sigma - nodes[local]) / h, 0.0, 1.0)
-        return local + self.phase_slices()[phase].start, t, h
+        return local + self.phase_slices[phase].start, t, h
 
     def pack(self, nodes: Array, stages: Array, constants: Array) -> Array:
         """Vector w of nodes (N+1, nx), stages (N, K, nv) and constants (nc,)."""
         count = self.element_count
-        blocks = np.hstack([nodes[:-1], stages.reshape(count, -1)])
-        return np.concatenate([blocks.ravel(), nodes[-1], constants])
+        w = np.empty(self.unknowns)
+        end = count * self.element_unknowns
+        blocks = w[:end].reshape(count, self.element_unknowns)
+        blocks[:, : self.nx] = nodes[:-1]
+        blocks[:, self.nx :] = stages.reshape(count, -1)
+        w[end : end + self.nx] = nodes[-1]
+        w[self.constants_at :] = constants
+        return w
 
     def unpack(self, w: Array) -> tuple[Array, Array, Array]:
         """Nodes (N+1, nx), stages (N, K, nv) and constants (nc,) of w."""
@@ -134,7 +142,7 @@ class Layout:
         end = count * self.element_unknowns
         blocks = w[:end].reshape(count, self.element_unknowns)
         last = w[end : end + self.nx]
-        nodes = np.vstack([blocks[:, : self.nx], last])
+        nodes = np.concatenate([blocks[:, : self.nx], last[None]])
         stages = blocks[:, self.nx :].reshape(count, self.stages, self.nv)
         return nodes, stages, w[self.constants_at :]
 

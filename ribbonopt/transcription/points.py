@@ -1,4 +1,7 @@
-"""The conditions of a problem, evaluated on the nodes where its phases meet."""
+"""The conditions of a problem, evaluated on the nodes where its phases meet.
+
+`parts` are the unknowns as the layout unpacks them, and p = [theta, relative widths].
+"""
 
 from __future__ import annotations
 
@@ -11,10 +14,12 @@ from .buffered import Buffered
 from .functions import ConditionFunctions
 from .layout import Layout
 
+Parts = tuple[Array, Array, Array]  # nodes, stages, constants
+
 
 @dataclass(frozen=True, eq=False)
 class Conditions:
-    """Conditions b as numbers, from the unknowns w and p = [theta, relative widths]."""
+    """Conditions b as numbers."""
 
     layout: Layout
     functions: ConditionFunctions
@@ -23,19 +28,19 @@ class Conditions:
         """Build the functions now rather than at the first evaluation."""
         _ = self._values, self._dense
 
-    def values(self, w: Array, p: Array) -> Array:
+    def values(self, parts: Parts, p: Array) -> Array:
         """Conditions (nb,)."""
-        values: Array = self._values(*self._at_points(w, p))[0].copy()
+        values: Array = self._values(*self._at_points(parts, p))[0]
         return values
 
-    def linearize(self, w: Array, p: Array) -> tuple[Array, Array]:
+    def linearize(self, parts: Parts, p: Array) -> tuple[Array, Array]:
         """Conditions (nb,) and their derivatives (nb, (P + 1) nx + nc)."""
-        b, jacobian = self._dense(*self._at_points(w, p))
+        b, jacobian = self._dense(*self._at_points(parts, p))
         # CasADi stores columns first.
-        return b.copy(), jacobian.reshape(-1, self.layout.conditions).T.copy()
+        return b, jacobian.reshape(-1, self.layout.conditions).T.copy()
 
-    def _at_points(self, w: Array, p: Array) -> tuple[Array, Array, Array]:
-        nodes, _, c = self.layout.unpack(w)
+    def _at_points(self, parts: Parts, p: Array) -> Parts:
+        nodes, _, c = parts
         return nodes[list(self.layout.point_elements)], c, self.layout.theta(p)
 
     @cached_property

@@ -33,7 +33,7 @@ def shooting_functions(
     def each(name: str) -> list[list[ca.MX]]:
         """Return the outputs of a step function of every phase, mapped over its elements."""
         result = []
-        for flow, s in zip(flows, lay.phase_slices(), strict=True):
+        for flow, s in zip(flows, lay.phase_slices, strict=True):
             h = widths[0, s.start : s.stop]
             sigma = h @ ca.DM(np.triu(np.ones((s.stop - s.start,) * 2), 1))
             mapped = shared_map(getattr(flow.step, name), s.stop - s.start)

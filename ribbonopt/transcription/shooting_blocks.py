@@ -14,7 +14,7 @@ import numpy as np
 
 from ribbonopt.arrays import Array
 
-from .buffered import Buffered, shared_map
+from .buffered import Buffered, buffered_map
 from .elimination import NothingToEliminate
 from .functions import StageFunctions
 from .layout import Layout
@@ -72,7 +72,7 @@ class ShootingBlocks:
     def residuals(self, w: Array, p: Array) -> Residuals:
         """Return the residuals at the unknowns w for p = [theta, widths]."""
         (after,) = self._evaluate(self._values, w, p)
-        return self._residuals(w, after, self.conditions.values(w, p))
+        return self._residuals(w, after, self.conditions.values(self.layout.unpack(w), p))
 
     def linearize(self, w: Array, p: Array) -> tuple[Residuals, Derivatives]:
         """Return residuals and derivative blocks at w for p."""
@@ -80,10 +80,12 @@ class ShootingBlocks:
         after, slopes = self._evaluate(self._dense, w, p)
         # CasADi stores columns first.
         slopes = slopes.reshape(lay.element_count, 1, lay.nx + lay.nc, lay.nx).swapaxes(2, 3)
-        b, jb = self.conditions.linearize(w, p)
+        b, jb = self.conditions.linearize(lay.unpack(w), p)
         return self._residuals(w, after, b), Derivatives(slopes, jb)
 
-    def eliminate(self, derivatives: Derivatives, p: Array) -> NothingToEliminate:
+    def eliminate(
+        self, derivatives: Derivatives, p: Array, only: Residuals | None = None
+    ) -> NothingToEliminate:
         """Neighbouring nodes are related already."""
         return NothingToEliminate(derivatives)
 
@@ -95,11 +97,20 @@ class ShootingBlocks:
         """No stages are unknown: (N, 0)."""
         return np.empty((self.layout.element_count, 0))
 
+    @cached_property
     def finer(self) -> tuple[ShootingBlocks, int]:
-        """Return the same method on halved elements."""
+        """The same method on halved elements."""
         layout = replace(self.layout, elements=tuple(2 * n for n in self.layout.elements))
         conditions = replace(self.conditions, layout=layout)
         return ShootingBlocks(layout, self.method, self.name, self.flows, conditions), 2
+
+    def sampled(self, output: Output, p: Array) -> Array:
+        """Unknowns w that stand for an output of the same problem, on any elements."""
+        lay, starts = self.layout, self.layout.starts(p)
+        nodes = [output.states(i, starts[s]) for i, s in enumerate(lay.phase_slices)]
+        nodes.append(output.at_nodes[-1:])
+        stages = np.empty((lay.element_count, 0, lay.nv))
+        return lay.pack(np.concatenate(nodes), stages, output.constants)
 
     def dense(self, w: Array, p: Array) -> Output:
         """Return the dense output of a solution w."""
@@ -118,8 +129,8 @@ class ShootingBlocks:
         nodes, _, c = lay.unpack(w)
         theta, starts, widths = lay.theta(p), lay.starts(p), lay.widths(p)
         parts = [
-            [a.copy() for a in call(nodes[s], c, theta, starts[s], widths[s])]
-            for call, s in zip(mapped, lay.phase_slices(), strict=True)
+            call(nodes[s], c, theta, starts[s], widths[s])
+            for call, s in zip(mapped, lay.phase_slices, strict=True)
         ]
         return [np.concatenate(group) for group in zip(*parts, strict=True)]
 
@@ -133,5 +144,5 @@ class ShootingBlocks:
 
     def _mapped(self, functions: list[ca.Function]) -> tuple[Buffered, ...]:
         return tuple(
-            Buffered(shared_map(f, n)) for f, n in zip(functions, self.layout.elements, strict=True)
+            buffered_map(f, n) for f, n in zip(functions, self.layout.elements, strict=True)
         )

@@ -7,15 +7,19 @@ states.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import casadi as ca
 import numpy as np
 
 from ribbonopt.arrays import Array
 
-from .buffered import Buffered, shared_map
+from .buffered import Buffered, buffered_map
 from .shooting_blocks import ShootingBlocks
 from .tableaus import gauss
+
+if TYPE_CHECKING:
+    from .structure import Blocks
 
 
 @dataclass(frozen=True, eq=False)
@@ -48,6 +52,22 @@ class ShootingOutput:
     def constants(self) -> Array:
         """Unknown constants c."""
         return self.blocks.layout.unpack(self.w)[2]
+
+    @property
+    def at_nodes(self) -> Array:
+        """States (N + 1, nx) at the nodes of all phases."""
+        return self.blocks.layout.unpack(self.w)[0]
+
+    def refined(self) -> tuple[Blocks, Array, Array, int]:
+        """Return the next better scheme, this output as its unknowns w, p, parts per element."""
+        blocks, split = self.blocks.finer
+        widths = np.repeat(self.blocks.widths(self.p) / split, split)
+        p = np.concatenate([self.theta, widths])
+        return blocks, blocks.sampled(self, p), p, split
+
+    def approximate(self, phase: int, sigma: Array) -> Array:
+        """Unknowns v (k, nv) at relative positions sigma (k,)."""
+        return np.hstack([self.states(phase, sigma), self.algebraic(phase, sigma)])
 
     def nodes(self, phase: int) -> Array:
         """Relative positions (n + 1,) of the nodes of a phase."""
@@ -84,6 +104,10 @@ class ShootingOutput:
         v = np.hstack([x, self._algebraic(phase, x, sigma)])
         return v, sigma, (widths[:, None] * rule.weights).ravel()
 
+    def decay(self) -> Array:
+        """No coefficients (N, 0)."""
+        return np.empty((self.blocks.layout.element_count, 0))
+
     def residual_between_nodes(self) -> Array:
         """Defects (N, 1) of the differential equations over every element.
 
@@ -94,7 +118,7 @@ class ShootingOutput:
         nodes, _, _ = lay.unpack(self.w)
         starts, widths = lay.starts(self.p), lay.widths(self.p)
         error, rates = np.empty(lay.element_count), 0.0
-        for phase, s in enumerate(lay.phase_slices()):
+        for phase, s in enumerate(lay.phase_slices):
             half = widths[s] / 2
             whole = self._after(phase, nodes[s], starts[s], widths[s])
             middle = self._after(phase, nodes[s], starts[s], half)
@@ -124,4 +148,4 @@ class ShootingOutput:
         return float(np.abs(equations[:, : x.shape[1]]).max())
 
     def _mapped(self, function: ca.Function, count: int) -> Buffered:
-        return Buffered(shared_map(function, count))
+        return buffered_map(function, count)

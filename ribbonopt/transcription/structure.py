@@ -67,8 +67,13 @@ class Blocks(Protocol):
     def linearize(self, w: Array, p: Array) -> tuple[Residuals, Derivatives]:
         """Return residuals and derivative blocks at w."""
 
-    def eliminate(self, derivatives: Derivatives, p: Array) -> Elimination:
-        """Reduce the elements to their nodes; LinAlgError where an element is singular."""
+    def eliminate(
+        self, derivatives: Derivatives, p: Array, only: Residuals | None = None
+    ) -> Elimination:
+        """Reduce the elements to their nodes; LinAlgError where an element is singular.
+
+        Quicker where it is for the residuals `only`.
+        """
 
     def widths(self, p: Array) -> Array:
         """Relative widths (N,) of the elements."""
@@ -76,8 +81,12 @@ class Blocks(Protocol):
     def stage_positions(self, p: Array) -> Array:
         """Relative position (N, K) of every stage in its phase."""
 
+    @property
     def finer(self) -> tuple[Blocks, int]:
-        """Return the same equations on a better scheme, and the parts of each element."""
+        """The same equations on a better scheme, and the parts of each element."""
+
+    def sampled(self, output: Output, p: Array) -> Array:
+        """Unknowns w that stand for an output of the same problem, on any elements."""
 
     def dense(self, w: Array, p: Array) -> Output:
         """Return the dense output of a solution w."""
@@ -110,8 +119,18 @@ class Output(Protocol):
     def constants(self) -> Array:
         """Unknown constants c."""
 
+    @property
+    def at_nodes(self) -> Array:
+        """States (N + 1, nx) at the nodes of all phases."""
+
     def nodes(self, phase: int) -> Array:
         """Relative positions (n + 1,) of the nodes of a phase."""
+
+    def refined(self) -> tuple[Blocks, Array, Array, int]:
+        """Return the next better scheme, this output as its unknowns w, p, parts per element."""
+
+    def approximate(self, phase: int, sigma: Array) -> Array:
+        """Unknowns v (k, nv) at relative positions sigma (k,): quick, fit to start Newton on."""
 
     def states(self, phase: int, sigma: Array) -> Array:
         """States x (k, nx) at the relative positions sigma (k,)."""
@@ -121,6 +140,9 @@ class Output(Protocol):
 
     def stages(self, phase: int) -> tuple[Array, Array, Array]:
         """Values v (k, nv), relative positions (k,) and weights (k,) of a quadrature."""
+
+    def decay(self) -> Array:
+        """Sizes (N, K) of the Legendre coefficients of x' in every element; (N, 0) if unknown."""
 
     def residual_between_nodes(self) -> Array:
         """Relative defects (N, k) of the differential equations inside every element."""

@@ -16,7 +16,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
-from functools import lru_cache
+from functools import cached_property, lru_cache
 
 import numpy as np
 
@@ -66,14 +66,15 @@ class Tableau:
 
     def basis(self, t: Array) -> Array:
         """Lagrange basis l_j(t); t has shape (n,), the result (n, K)."""
-        scaled = self._scaled_legendre()
-        return np.asarray(_shifted_legendre(t, self.degree - 1) @ scaled)
+        return np.asarray(_shifted_legendre(t, self.degree - 1) @ self.legendre)
 
     def integrals(self, t: Array) -> Array:
         """Integrals of the l_j from 0 to t; t has shape (n,), the result (n, K)."""
-        return np.asarray(_legendre_integrals(t, self.degree - 1) @ self._scaled_legendre())
+        return np.asarray(_legendre_integrals(t, self.degree - 1) @ self.legendre)
 
-    def _scaled_legendre(self) -> Array:
+    @cached_property
+    def legendre(self) -> Array:
+        """Coefficients (K, K) of the shifted Legendre polynomials, from values at the nodes."""
         return _scaled(self.nodes, self.weights)
 
 

@@ -13,6 +13,7 @@ from ribbonopt.accuracy.estimate import estimate_error
 from ribbonopt.accuracy.verify import unverified, verify
 from ribbonopt.check import check_scene
 from ribbonopt.errors import ModelError
+from ribbonopt.joined import Joined
 from ribbonopt.pipeline import Prepared, prepare
 from ribbonopt.report import report
 from ribbonopt.results import load_solution, save_solution
@@ -165,8 +166,7 @@ class TestForbiddenRegion:
         report = built.solver.solve(w, p)
         found = Solution(
             scene=built.scene,
-            problem=built.problem,
-            dense=built.nlp.blocks.dense(report.w, p),
+            joined=Joined(built.problem, built.nlp.blocks.dense(report.w, p)),
             status=report.status,
             message="",
             iterations=report.iterations,

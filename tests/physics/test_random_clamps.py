@@ -39,7 +39,7 @@ def clamp(rng: np.random.Generator) -> Scene:
         law=Variational(delta=DELTA),
         boundary=Boundary(start, end),
         transcription=Collocation(degree=6, intervals=40),
-        tolerance=1e-9,
+        tolerance=1e-11,  # so that what is integrated again starts well
     )
 
 

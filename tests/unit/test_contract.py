@@ -71,5 +71,5 @@ def test_outputs_are_evaluated_by_name() -> None:
     phase = replace(problem.phases[0], outputs={"both": x, "sum": x[0] + x[1]})
     ((function, sizes),) = replace(problem, phases=(phase,)).output_functions
     assert sizes == {"both": 2, "sum": 1}
-    found = np.array(function([3.0, 4.0], ca.DM(0, 1), ca.DM(0, 1), ca.DM(0, 1), 0.0))
+    found = np.array(function([3.0, 4.0], ca.DM(0, 1), ca.DM(0, 1), 0.0))
     np.testing.assert_array_equal(found.ravel(), [3, 4, 7])

@@ -41,7 +41,7 @@ def test_the_order_of_unknowns_is_as_documented(layout: Layout) -> None:
 
 @each_layout
 def test_phases_share_the_elements_out(layout: Layout) -> None:
-    slices = layout.phase_slices()
+    slices = layout.phase_slices
     assert [s.stop - s.start for s in slices] == list(layout.elements)
     assert [s.start for s in slices] + [slices[-1].stop] == list(layout.point_elements)
 

@@ -169,7 +169,7 @@ def test_a_finer_scheme_is_the_same_problem() -> None:
     problem = nonlinear(2)
     coarse = Collocation.named("gauss", 2).transcribe(problem, (3, 2))
     fine = Collocation.named("gauss", 3).transcribe(problem, (3, 2))
-    blocks, split = coarse.blocks.finer()
+    blocks, split = coarse.blocks.finer
     w, p = random_data(fine, (3, 2))
     assert split == 1
     np.testing.assert_array_equal(

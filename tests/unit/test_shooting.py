@@ -279,7 +279,7 @@ def test_inner_equations_without_solution_are_not_a_number() -> None:
 @each_method
 def test_finer_is_the_same_problem_on_halved_elements(method: tuple[str, int, int]) -> None:
     problem = problem_for(method, 2)
-    blocks, split = shooting(problem, method, (3, 2)).blocks.finer()
+    blocks, split = shooting(problem, method, (3, 2)).blocks.finer
     fine = shooting(problem, method, (6, 4))
     w, p = random_data(fine, (6, 4))
     assert split == 2
