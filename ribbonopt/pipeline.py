@@ -14,10 +14,10 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ribbonopt.built import Built
-from ribbonopt.errors import ConvergenceError, ModelError
+from ribbonopt.errors import ConvergenceError
 from ribbonopt.guess import Guess, guess_of, initial_unknowns, words
 from ribbonopt.problem import BoundaryValueProblem, Ribbon, pose, theta_values
-from ribbonopt.problem.examine import examine, refuse_unreachable
+from ribbonopt.problem.examine import examine, refuse_idle_settings, refuse_unreachable
 from ribbonopt.scene import Scene, SolutionGuess, validate_scene
 from ribbonopt.scene.units import in_special_units
 from ribbonopt.search import Search
@@ -232,12 +232,7 @@ def prepare(scene: Scene) -> Prepared:
     scene = validate_scene(scene)
     posed = in_special_units(scene)
     ribbon, problem = pose(posed)
-    if scene.tolerance is not None and problem.recovered:
-        raise ModelError(
-            "tolerance: the energy formulation has no estimate of its error; leave it out, or use "
-            "another formulation",
-            "tolerance",
-        )
+    refuse_idle_settings(scene, ribbon, problem)
     examine(ribbon, problem, theta_values(posed))
     built = Built(scene, ribbon, problem)
     built.on((scene.transcription.intervals,))[1].build()

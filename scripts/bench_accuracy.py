@@ -3,12 +3,14 @@
     python scripts/bench_accuracy.py [--out results/accuracy] [--repeat 11] [--quick]
 
 One interleaved run, medians; errors relative to the 28-digit reference. Writes `benchmark.csv`,
-`benchmark.json` (with machine and versions) and `benchmark.png` (with measured orders).
+`benchmark.json` (with machine and versions), `benchmark.png` (with measured orders) and, what an
+answer with its error bar costs, `bars.json` (`accuracy_bars.py`).
 """
 
 from __future__ import annotations
 
 import argparse
+import json
 import os
 from pathlib import Path
 
@@ -16,6 +18,7 @@ from pathlib import Path
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 
+import accuracy_bars
 import numpy as np
 import peer_casadi
 import peer_scipy
@@ -47,6 +50,9 @@ def main() -> None:
     parser.add_argument("--quick", action="store_true", help="fewer pairs, meshes and peers")
     options = parser.parse_args()
     options.out.mkdir(parents=True, exist_ok=True)
+    bars = accuracy_bars.bench_bars(options.repeat)
+    accuracy_bars.report(bars)
+    (options.out / "bars.json").write_text(json.dumps(bars, indent=2) + "\n", encoding="utf-8")
     study = benchmark(
         load_scene(SCENE),
         repeat=options.repeat,
@@ -57,7 +63,7 @@ def main() -> None:
     print(table(study))
     save_study(study, options.out, "benchmark")
     save_figure(study.plain(), options.out / "benchmark.png")
-    print(f"written: {options.out}: benchmark.csv, benchmark.json, benchmark.png")
+    print(f"written: {options.out}: bars.json, benchmark.csv, benchmark.json, benchmark.png")
 
 
 def peers(quick: bool) -> list[Peer]:

@@ -17,8 +17,7 @@ import statistics
 import subprocess
 import sys
 import time
-from collections.abc import Callable, Iterator
-from contextlib import contextmanager
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -28,15 +27,12 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 
 import numpy as np
 
-from ribbonopt import attempts, refinement
-from ribbonopt.accuracy.estimate import estimate_error, relative_error
-from ribbonopt.pipeline import Prepared, prepare
+from ribbonopt.pipeline import prepare
 from ribbonopt.scene import Scene, load_scene
 from ribbonopt.summary import versions
 
 ROOT = Path(__file__).resolve().parent.parent
 SCENE = ROOT / "configs" / "moebius_half.yaml"
-WHOLE = ROOT / "configs" / "moebius_regularized.yaml"
 REFERENCE = np.array(
     [
         *(0, 43.4964080173984993703, 42.0522517129717208281),
@@ -51,7 +47,6 @@ CASES = {
 }
 # solve_bvp controls a residual: these powers of ten give errors nearest to the wanted ones.
 PEER_TOLERANCE = {"1e-9": 1e-6, "1e-12": 1e-9}
-BARS = {"half 1e-9": 4.0, "half 1e-12": 6.0, "whole 1e-9": 15.0, "whole 1e-12": 25.0}  # targets
 TARGETS = {"ipopt 1e-9": 8.0, "newton 1e-9": 2.5, "ipopt 1e-12": 16.0, "newton 1e-12": 4.0}
 
 
@@ -82,7 +77,6 @@ def main() -> None:
         "repeat": options.repeat,
         "build_ms": bench_build(options.repeat),
         "solve": bench_solve(options.repeat, options.quick),
-        "bars": bench_bars(options.repeat),
         "process": bench_process(options.repeat),
         "scaling": bench_scaling(options.repeat),
     }
@@ -171,71 +165,6 @@ def bench_solve(repeat: int, quick: bool) -> list[dict[str, Any]]:
     return rows
 
 
-def bench_bars(repeat: int) -> dict[str, Any]:
-    """Whole solves with error bars: half Moebius on a mesh that is enough, whole one refined.
-
-    All sizes are built by a first solve; `steps` are parts of the median solve, one after another,
-    in milliseconds of CPU, which other programs on the machine stretch less.
-    """
-    runs: dict[str, Prepared] = {}
-    for target, cases in CASES.items():
-        given = [f"tolerance={target}"]
-        _, degree, intervals, _ = cases[1]
-        mesh = [f"transcription.degree={degree}", f"transcription.intervals={intervals}"]
-        runs[f"half {target}"] = prepare(load_scene(SCENE, given + mesh))
-        runs[f"whole {target}"] = prepare(load_scene(WHOLE, given))
-    result: dict[str, Any] = {}
-    for name, prepared in runs.items():
-        found = prepared.solve()
-        result[name] = {
-            "met": found.verified,
-            "estimate": relative_error(found)[0],
-            "elements": found.dense.blocks.layout.elements,
-            "runs": [],
-        }
-    for _ in range(repeat):
-        for name, prepared in runs.items():
-            with stopwatches() as steps:
-                start, used = time.perf_counter(), time.process_time()
-                estimate_error(prepared.solve())
-                both = time.process_time() - used, time.perf_counter() - start
-                result[name]["runs"].append((*(1e3 * seconds for seconds in both), steps))
-    for row in result.values():
-        taken = sorted(row.pop("runs"), key=lambda run: run[0])
-        row["ms"] = statistics.median(run[1] for run in taken)
-        row["minimum_ms"] = min(run[1] for run in taken)
-        row["cpu_ms"], _, row["steps"] = taken[len(taken) // 2]
-        row["minimum_cpu_ms"] = taken[0][0]
-    return result
-
-
-@contextmanager
-def stopwatches() -> Iterator[list[tuple[str, float]]]:
-    """Note the CPU milliseconds of every solve, estimate, remesh and verification, as they end."""
-    steps: list[tuple[str, float]] = []
-    watched = [
-        (refinement, "relative_error", "estimate"),
-        (refinement, "_better_mesh", "remesh"),
-        (attempts.Attempts, "run", "solve with verification"),
-        (attempts, "verify", "verification"),
-    ]
-    before = [getattr(place, name) for place, name, _ in watched]
-    for (place, name, label), call in zip(watched, before, strict=True):
-
-        def timed(*args: Any, label: str = label, call: Any = call, **options: Any) -> Any:
-            start = time.process_time()
-            answer = call(*args, **options)
-            steps.append((label, 1e3 * (time.process_time() - start)))
-            return answer
-
-        setattr(place, name, timed)
-    try:
-        yield steps
-    finally:
-        for (place, name, _), call in zip(watched, before, strict=True):
-            setattr(place, name, call)
-
-
 def bench_process(repeat: int) -> dict[str, float]:
     """Whole processes: `ribbonopt solve` against importing what it needs."""
     base = [sys.executable, "-c", "import casadi, numpy, yaml"]
@@ -298,15 +227,6 @@ def report(result: dict[str, Any]) -> None:
             f"{f' (target {target:g})' if target else '':<14} error {row['error']:.1e}"
             f"  {row['mesh']}{f'  scipy takes {ratio:.0f} times as long' if ratio else ''}"
         )
-    print("solved with error bars, everything built (minimum; parts of the median run):")
-    for name, row in result["bars"].items():
-        print(
-            f"  {name:<12} {row['ms']:7.2f} ms (target {BARS[name]:g}, minimum "
-            f"{row['minimum_ms']:.2f}; CPU {row['cpu_ms']:.2f}, minimum "
-            f"{row['minimum_cpu_ms']:.2f})  estimate {row['estimate']:.1e} on {row['elements']}"
-            f"{'' if row['met'] else '  NOT MET'}"
-        )
-        print("    " + ", ".join(f"{label} {ms:.1f}" for label, ms in row["steps"]))
     print("whole process (targets: time 2, memory 1.5 times the imports):")
     for name, value in result["process"].items():
         print(f"  {name:<28} {value:8.2f}")

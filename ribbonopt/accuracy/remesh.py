@@ -38,7 +38,7 @@ def analyticity(coefficients: Array) -> Array:
     # Pairs, because every other coefficient may vanish by symmetry.
     high = np.maximum(coefficients[:, -2:].max(axis=1), FLOOR * largest)
     low = np.maximum(coefficients[:, -4:-2].max(axis=1), FLOOR * largest)
-    return np.clip(np.sqrt(low / high), NEAREST, FARTHEST)
+    return np.asarray(np.clip(np.sqrt(low / high), NEAREST, FARTHEST))
 
 
 def wanted_widths(widths: Array, local: Array, rho: Array, order: int, target: float) -> Array:

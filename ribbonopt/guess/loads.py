@@ -11,7 +11,7 @@ import numpy as np
 from ribbonopt.arrays import Array
 from ribbonopt.mechanics import RodFields
 from ribbonopt.mechanics.boundary import start_frame, start_position
-from ribbonopt.problem import Ribbon, theta_values
+from ribbonopt.problem import BoundaryValueProblem, Ribbon, theta_values
 from ribbonopt.scene import LoadGuess, Scene
 from ribbonopt.transcription.buffered import Buffered, buffered_map
 
@@ -30,6 +30,21 @@ class IntegratedLoads:
 
     def fields(self, fraction: Array) -> RodFields:
         """Fields at fractions (k,) of the length, increasing from 0 to 1."""
+        x, c = self._integrated(fraction)
+        section = buffered_map(self.ribbon.section_function, len(fraction))
+        parts = section(x, c, theta_values(self.scene))[:6]
+        r, d1, d2, d3, n, m = (part.reshape(-1, 3) for part in parts)
+        return RodFields(r, np.stack([d1, d2, d3], axis=2), n, m)
+
+    def unknowns_for(
+        self, problem: BoundaryValueProblem, theta: Array, fraction: Array
+    ) -> tuple[Array, Array] | None:
+        """Unknowns v (k, nx) and constants where these are the states of the rod alone."""
+        own = problem.state_names == self.ribbon.model.states and not problem.algebraic.numel()
+        return self._integrated(fraction) if own else None
+
+    def _integrated(self, fraction: Array) -> tuple[Array, Array]:
+        """States of the rod (k, nx), and its constants, moments about the start."""
         model, boundary, parameters = self.ribbon.model, self.scene.boundary, self.scene.parameters
         position = start_position(boundary, parameters)
         frame = start_frame(boundary, parameters)
@@ -46,10 +61,7 @@ class IntegratedLoads:
         count = len(widths)
         steps = _steps(self.ribbon, count)
         (after,) = steps(states[0], np.tile(c, count), np.tile(theta, count), widths)
-        x = np.vstack([states, after.reshape(count, -1)])[::substeps]
-        section = buffered_map(self.ribbon.section_function, len(fraction))
-        r, d1, d2, d3, n, m = (part.reshape(-1, 3) for part in section(x, c, theta)[:6])
-        return RodFields(r, np.stack([d1, d2, d3], axis=2), n, m)
+        return np.vstack([states, after.reshape(count, -1)])[::substeps], c
 
 
 @lru_cache(maxsize=32)

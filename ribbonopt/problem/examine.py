@@ -122,3 +122,21 @@ def refuse_unreachable(scene: Scene) -> None:
             "(interval); bring them together or lengthen the ribbon",
             status="unreachable",
         )
+
+
+def refuse_idle_settings(scene: Scene, ribbon: Ribbon, problem: BoundaryValueProblem) -> None:
+    """Raise a ModelError where a scene asks for what its problem has not."""
+    if scene.tolerance is not None and problem.recovered:
+        raise ModelError(
+            "tolerance: the energy formulation has no estimate of its error; leave it out, or use "
+            "another formulation",
+            "tolerance",
+        )
+    if isinstance(scene.switching, str) or (ribbon.law.kinked and scene.formulation == "inverted"):
+        return
+    raise ModelError(
+        f"switching: {list(scene.switching)} is of no use here: phases are for the inverted "
+        "formulation and for laws with a kink at m2 = 0 (sadowsky, regularized, homotopy), found "
+        f"{scene.formulation} and {scene.law.type}; leave it out",
+        "switching",
+    )

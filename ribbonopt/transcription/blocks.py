@@ -124,14 +124,6 @@ class ElementBlocks:
         nodes = np.vstack([v[:, 0, : lay.nx], output.at_nodes[-1:]])
         return lay.pack(nodes, v[:, 1:], output.constants)
 
-    def swept(self, w: Array, p: Array) -> Array:
-        """Return w after a fixed-point sweep of the stages: one more order between the nodes."""
-        nodes, stages, constants = self.layout.unpack(w)
-        nx = self.layout.nx
-        stages = stages.copy()
-        stages[:, :, :nx] -= self.residuals(w, p).stages[:, :, :nx]
-        return self.layout.pack(nodes, stages, constants)
-
     def widths(self, p: Array) -> Array:
         """Relative widths (N,) of the elements."""
         return self.layout.widths(p)

@@ -20,7 +20,6 @@ from .buffered import Buffered, buffered_map
 from .layout import Index
 
 MOST_SWEEPS = 40  # of a substep's stages
-SWEEPS = 1  # of a better scheme's stages; its Newton step does the rest
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,10 +79,7 @@ class DenseOutput:
         return np.hstack([self._polynomial(element, t, h), self._interpolated(element, t)])
 
     def refined(self) -> tuple[ElementBlocks, Array, Array, int]:
-        """Return the next better scheme, this output as its unknowns w, p, parts per element.
-
-        The stages lie on the polynomials, improved by sweeps of one order each.
-        """
+        """Return the next better scheme, this output as its unknowns w, p, parts per element."""
         blocks, split = self.blocks.finer
         widths = np.repeat(self.blocks.widths(self.p) / split, split)
         p = np.concatenate([self.theta, widths])
@@ -92,8 +88,6 @@ class DenseOutput:
             w = blocks.layout.pack(self.at_nodes, stages, self.constants)
         else:
             w = blocks.sampled(self, p)
-        for _ in range(SWEEPS):
-            w = blocks.swept(w, p)
         return blocks, w, p, split
 
     def _substeps(self, phase: int, element: Index, t: Array, h: Array) -> Array:
@@ -170,7 +164,7 @@ class DenseOutput:
             values = self._mapped(phase, len(v))(v, self.constants, self.theta, sigma)[0]
             F = values.reshape(-1, count, values.size // len(v))[:, :, : lay.nx]
             result[s] = np.abs(found[s] - F).max(axis=2)
-        return result / np.abs(self._rates).max()
+        return np.asarray(result / np.abs(self._rates).max())
 
     @cached_property
     def _parts(self) -> tuple[Array, Array, Array]:
@@ -189,6 +183,7 @@ class DenseOutput:
         increments = tableau.integrals(t) @ self._rates
         v[:, :, : lay.nx] = self.at_nodes[:-1, None]
         v[:, :, : lay.nx] += lay.widths(self.p)[:, None, None] * increments
+        v[:, t == 1, : lay.nx] = self.at_nodes[1:, None]
         if lay.nz:
             v[:, :, lay.nx :] = tableau.basis(t) @ self._parts[1][:, :, lay.nx :]
         return v

@@ -37,27 +37,21 @@ class StageElimination:
         if nv > nx:
             j = np.arange(K)
             M[:, j, nx:, j] = np.moveaxis(J[:, :, nx:, :nv], 0, 1)
-        M = M.reshape(N, K * nv, K * nv)
-        to_constants = np.zeros((N, K, nv, lay.nc))
-        to_constants[:, :, :nx] = np.einsum("ij,ejxc->eixc", t.matrix, dynamic[..., nv:])
-        to_constants[:, :, nx:] = -J[:, :, nx:, nv:]
-        to_node = np.zeros((K, nv, nx))
-        to_node[:, x, x] = 1
-        to_node = to_node.reshape(K * nv, nx)
-        to_constants = to_constants.reshape(N, K * nv, lay.nc)
+        matrix = M.reshape(N, K * nv, K * nv)
+        # Stages from the node, the constants, and for given residuals.
+        sides = np.zeros((N, K, nv, nx + lay.nc + 1))
+        sides[:, :, x, x] = 1
+        sides[:, :, :nx, nx:-1] = np.einsum("ij,ejxc->eixc", t.matrix, dynamic[..., nv:])
+        sides[:, :, nx:, nx:-1] = -J[:, :, nx:, nv:]
         if only is None:
-            self._inverse = np.linalg.inv(M)
-            self._to_node = self._inverse @ to_node
-            self._to_constants = self._inverse @ to_constants
+            self._inverse: Array = np.asarray(np.linalg.inv(matrix), dtype=float)
+            solved = self._inverse @ sides.reshape(N, K * nv, -1)
         else:
             # A third of the work, if no other residuals come.
-            sides = np.empty((N, K * nv, nx + lay.nc + 1))
-            sides[:, :, :nx], sides[:, :, nx:-1] = to_node, to_constants
-            sides[:, :, -1] = -only.stages.reshape(N, -1)
-            solved = np.linalg.solve(M, sides)
-            self._to_node, self._to_constants = solved[:, :, :nx], solved[:, :, nx:-1]
-            self._share = solved[:, :, -1]
-        self._only = only
+            sides[..., -1] = -only.stages
+            solved = np.asarray(np.linalg.solve(matrix, sides.reshape(N, K * nv, -1)), dtype=float)
+        self._to_node, self._to_constants = solved[:, :, :nx], solved[:, :, nx:-1]
+        self._share, self._only = solved[:, :, -1], only
         # x_{e+1} = x_e + h sum b_j (dF_j . stages + dF_j/dc . c).
         weighted = t.weights[:, None, None] * dynamic
         self._step = weighted[..., :nv].swapaxes(1, 2).reshape(N, nx, K * nv)

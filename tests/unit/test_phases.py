@@ -11,7 +11,7 @@ import numpy as np
 import pytest
 from references import HALF_MOEBIUS
 
-from ribbonopt.errors import SceneError
+from ribbonopt.errors import ModelError, SceneError
 from ribbonopt.pipeline import prepare, solve
 from ribbonopt.results import load_solution, save_solution
 from ribbonopt.scene import SolutionGuess, load_scene
@@ -218,3 +218,14 @@ def test_solution_in_phases_is_a_guess_on_another_mesh(configs: Path, found: Sol
     assert other.verified, other.message
     assert other.sheets == (1, -1)
     assert error(other) < 1e-5
+
+
+@pytest.mark.parametrize(
+    "setting",
+    ["formulation=algebraic", "law={type: variational, delta: 0.1}", "law={type: kirchhoff}"],
+)
+def test_switches_where_there_can_be_none_are_refused(configs: Path, setting: str) -> None:
+    scene = load_scene(configs / "moebius_regularized.yaml", ["switching=[0.5]", setting])
+    with pytest.raises(ModelError, match=r"switching: \[0\.5\] is of no use here") as caught:
+        prepare(scene)
+    assert caught.value.key == "switching"
