@@ -66,11 +66,17 @@ class Attempts:
         Without `check`, what converges counts as verified: for steps on the way to a solution.
         """
         parts = self.ribbon, self.problem, self.nlp.blocks, self.p, self.switches
-        w = initial_unknowns(guess, *parts)
+        return self.run_from(initial_unknowns(guess, *parts), quick=quick, check=check)
+
+    def run_from(self, w: Array, *, quick: bool = False, check: bool = True) -> bool:
+        """Solve from unknowns w (nw,); see `run`."""
         solver = self.solver
         if quick and isinstance(solver, Auto) and self.nlp.square:
             solver = solver.newton
-        report = solver.solve(w, self.p, enough=self._enough)
+        return self.take(solver.solve(w, self.p, enough=self.enough), check=check)
+
+    def take(self, report: SolveReport, *, check: bool = True) -> bool:
+        """Take what a solver found; return whether there is a verified solution now."""
         self.path += [self._step(attempt) for attempt in report.attempts]
         self._reports += report.attempts
         solution = self._solution(report, check)
@@ -85,7 +91,7 @@ class Attempts:
         return self.best is not None and self.best.verified
 
     @property
-    def _enough(self) -> float:
+    def enough(self) -> float:
         """Last step of Newton's method, relative, that does not show in the answer."""
         tolerance = self.scene.tolerance
         return 0.0 if tolerance is None else min(UNSEEN * tolerance, LEAST)

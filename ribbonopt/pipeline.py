@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import time
 from dataclasses import dataclass, field, replace
-from functools import cached_property
+from functools import cached_property, partial
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -27,6 +27,7 @@ from ribbonopt.solvers import Status
 from ribbonopt.transcription import NLP
 
 if TYPE_CHECKING:
+    from ribbonopt.attempts import Attempts
     from ribbonopt.solvers import Solver
     from ribbonopt.starts.automatic import Automatic
 
@@ -102,6 +103,22 @@ class Prepared:
         _ = search.run_smooth(guess) if isinstance(guess, Solution) else search.run(guess)
         return self._told(search, time.perf_counter() - started)
 
+    def beside(self, scene: Scene, solution: Solution) -> Attempts:
+        """Return the means to solve a scene on the mesh and in the phases of a solution."""
+        search = Search(scene, self.built, self._phased)
+        return search.on_mesh(solution.sheets, solution.mesh, solution.joined.ends[1:-1])
+
+    def refined(self, solution: Solution) -> Solution:
+        """Return a verified solution of this structure on a mesh that meets its tolerance."""
+        scene = solution.scene
+        if scene.tolerance is None or not solution.verified:
+            return solution
+        from ribbonopt.refinement import refine  # for scenes with a tolerance
+
+        search = Search(scene, self.built, self._phased)
+        on_mesh = partial(search.on_mesh, solution.sheets)
+        return refine(solution, scene.tolerance, self.ribbon, on_mesh)
+
     def start(
         self, scene: Scene | None = None, guess: Guess | None = None
     ) -> tuple[np.ndarray, np.ndarray]:
@@ -157,13 +174,7 @@ class Prepared:
         wrong = not best.verified or (search.jumps(best) and not best.sheets)
         if wrong and search.needs_phases and search.smooth:
             return self._regularized(best, search.smooth[-1]) or best
-        if scene.tolerance is None or not best.verified:
-            return best
-        from ribbonopt.refinement import refine  # for scenes with a tolerance
-
-        return refine(
-            best, scene.tolerance, self.ribbon, lambda *mesh: search.on_mesh(best.sheets, *mesh)
-        )
+        return self.refined(best)
 
     def _told(self, search: Search, seconds: float) -> Solution:
         """Return the best solution found, with what it has cost."""

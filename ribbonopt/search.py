@@ -126,8 +126,19 @@ class Search:
 
     def on_mesh(self, sheets: tuple[int, ...], mesh: Mesh, switches: Array) -> Attempts:
         """Return the means to solve on a mesh, in the phases of a solution."""
-        built = self.phased[sheets] if sheets else self.built
-        return self._kept(built.attempts(self.scene, mesh, switches))
+        return self._kept(self.structure(sheets).attempts(self.scene, mesh, switches))
+
+    def structure(self, sheets: tuple[int, ...]) -> Built:
+        """Return what is built for phases of these kinds; for none, without phases."""
+        if not sheets:
+            return self.built
+        if sheets not in self.phased:
+            from ribbonopt.problem.switched import switched  # most ribbons keep their sign
+
+            problem = switched(self.built.ribbon, sheets)
+            built = Built(self.built.scene, self.built.ribbon, problem, sheets)
+            self.phased[sheets] = built
+        return self.phased[sheets]
 
     def _in_given_phases(self, source: Solution) -> bool:
         """Try the phases that a solution shows or the scene names; whether that succeeds."""
@@ -140,13 +151,7 @@ class Search:
         return len(arcs.kinds) > 1 and self._run_phases(arcs, source)
 
     def _run_phases(self, arcs: Arcs, source: Solution) -> bool:
-        if arcs.kinds not in self.phased:
-            from ribbonopt.problem.switched import switched  # most ribbons keep their sign
-
-            problem = switched(self.built.ribbon, arcs.kinds)
-            built = Built(self.built.scene, self.built.ribbon, problem, arcs.kinds)
-            self.phased[arcs.kinds] = built
-        attempts = self.phased[arcs.kinds].attempts(self.scene, switches=arcs.switches)
+        attempts = self.structure(arcs.kinds).attempts(self.scene, switches=arcs.switches)
         return self._kept(attempts).run(source, quick=True)
 
     def _kept(self, attempts: Attempts) -> Attempts:

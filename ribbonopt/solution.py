@@ -16,6 +16,7 @@ from ribbonopt.problem import BoundaryValueProblem
 from ribbonopt.scene import Scene
 from ribbonopt.scene.units import Units, units_of
 from ribbonopt.solvers import Status
+from ribbonopt.transcription import Mesh
 from ribbonopt.verification import Verification
 
 if TYPE_CHECKING:
@@ -97,6 +98,13 @@ class Solution:
         """Arclengths (N + 1,) of the mesh nodes."""
         start, end = self.scene.interval
         return start + (end - start) * self.joined.nodes
+
+    @property
+    def mesh(self) -> Mesh:
+        """Relative widths of the elements of every phase."""
+        blocks = self.dense.blocks
+        widths = blocks.widths(self.dense.p)
+        return Mesh(tuple(widths[part] for part in blocks.layout.phase_slices))
 
     @property
     def switch_points(self) -> Array:

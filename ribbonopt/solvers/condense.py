@@ -112,6 +112,17 @@ class CondensedSystem:
         nodes = np.concatenate([parts[0], *(part[1:] for part in parts[1:])])
         return lay.pack(nodes, self._elements.expand(nodes, c, share), c)
 
+    @property
+    def sign(self) -> float:
+        """Sign of the determinant, up to one factor that depends on the layout only."""
+        parts = [self._elements.sign, float(np.linalg.slogdet(self._final_inverse)[0])]
+        for chain in self._chains:
+            for level in chain.levels:
+                triangles = np.diagonal(level.R_inverse, axis1=1, axis2=2)
+                parts.append(float(np.prod(np.sign(triangles))))
+                parts.append(float(np.prod(np.linalg.slogdet(level.QT)[0])))
+        return float(np.prod(parts))
+
     def _final(self, A: Array, B: Array, C: Array, conditions: Array) -> Array:
         """Dense matrix of the remaining nodes and the constants."""
         lay, count = self._layout, len(A)

@@ -48,17 +48,24 @@ class Newton:
         self.system.build()
 
     def solve(
-        self, w: Array, p: Array, relaxed: Array | None = None, enough: float = 0.0
+        self,
+        w: Array,
+        p: Array,
+        relaxed: Array | None = None,
+        enough: float = 0.0,
+        system: System | None = None,
     ) -> SolveReport:
         """Solve from the guess w (nw,) for the parameters p (np,).
 
         `relaxed` (nb,) are residuals that the conditions shall have instead of zero; `enough` is a
-        tolerance that will do, where it is larger than the solver's own.
+        tolerance that will do, where it is larger than the solver's own; `system` is solved instead
+        of the program's own equations.
         """
         if not self.nlp.square:
             return _Run(self, w, p).report(Status.NOT_SQUARE)
         run = _Run(self, np.array(w, dtype=float), np.asarray(p, dtype=float))
         run.tolerance = max(self.tolerance, enough)
+        run.system = system or run.system
         if relaxed is not None:
             if not isinstance(self.system, ElementSystem):
                 raise TypeError("conditions can be relaxed where the program has element blocks")
@@ -153,7 +160,7 @@ class _Run:
         return SolveReport(
             status=status,
             w=self.w,
-            multipliers=np.zeros(self.settings.nlp.equations),
+            multipliers=np.zeros(len(self.w)),
             residuals=self.system.vector(self.w, self.p),
             iterations=self.iterations,
             factorizations=self.factorizations,

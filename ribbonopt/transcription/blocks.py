@@ -76,6 +76,20 @@ class ElementBlocks:
             phases = tuple(StageFunctions(f.inputs, f.equations[:kept], None) for f in phases)
         return ElementBlocks(layout, tableau, phases, conditions), split
 
+    @cached_property
+    def bordered(self) -> ElementBlocks:
+        """The same with one more constant and one more condition: to eliminate, not to evaluate."""
+        lay = self.layout
+        return replace(self, layout=replace(lay, nc=lay.nc + 1, conditions=lay.conditions + 1))
+
+    def values(self, w: Array, p: Array) -> tuple[Array, Array]:
+        """Equations (N, K, ne) at the stages, and conditions (nb,), which `linearize` derives."""
+        lay = self.layout
+        parts = lay.unpack(w)
+        values = self._evaluate(self._values, parts, p)[0]
+        stages = values.reshape(lay.element_count, lay.stages, lay.stage_equations)
+        return stages, self.conditions.values(parts, p)
+
     def residuals(self, w: Array, p: Array) -> Residuals:
         """Residuals at the unknowns w for the parameters p = [theta, widths]."""
         parts = self.layout.unpack(w)

@@ -60,6 +60,11 @@ class StageElimination:
         self._relations = A, _identities(N, nx), C
 
     @property
+    def sign(self) -> float:
+        """Sign of the determinant of the stages' equations."""
+        return float(np.prod(np.linalg.slogdet(self._inverse)[0]))
+
+    @property
     def relations(self) -> tuple[Array, Array, Array]:
         """A (N, nx, nx), B (N, nx, nx) and C (N, nx, nc)."""
         return self._relations
@@ -84,6 +89,7 @@ class NothingToEliminate:
     """Shooting: x_{e+1} - Phi_e(x_e, c) relates neighbouring nodes already."""
 
     derivatives: Derivatives
+    sign: float = 1.0
 
     @property
     def relations(self) -> tuple[Array, Array, Array]:

@@ -69,6 +69,18 @@ class ShootingBlocks:
         _ = self._values, self._dense
         self.conditions.build()
 
+    @cached_property
+    def bordered(self) -> ShootingBlocks:
+        """The same with one more constant and one more condition: to eliminate, not to evaluate."""
+        lay = self.layout
+        return replace(self, layout=replace(lay, nc=lay.nc + 1, conditions=lay.conditions + 1))
+
+    def values(self, w: Array, p: Array) -> tuple[Array, Array]:
+        """States (N, 1, nx) after every element, and conditions, which `linearize` derives."""
+        (after,) = self._evaluate(self._values, w, p)
+        conditions = self.conditions.values(self.layout.unpack(w), p)
+        return after.reshape(-1, 1, self.layout.nx), conditions
+
     def residuals(self, w: Array, p: Array) -> Residuals:
         """Return the residuals at the unknowns w for p = [theta, widths]."""
         (after,) = self._evaluate(self._values, w, p)

@@ -25,6 +25,10 @@ class Elimination(Protocol):
     """Elements reduced to their nodes: A_e x_e + B_e x_{e+1} + C_e c = d_e."""
 
     @property
+    def sign(self) -> float:
+        """Sign of the determinant of what was eliminated, 1 where that was nothing."""
+
+    @property
     def relations(self) -> tuple[Array, Array, Array]:
         """A (N, nx, nx), B (N, nx, nx) and C (N, nx, nc)."""
 
@@ -60,6 +64,13 @@ class Blocks(Protocol):
 
     def build(self) -> None:
         """Build all functions now rather than at the first evaluation."""
+
+    @property
+    def bordered(self) -> Blocks:
+        """The same with one more constant and one more condition: to eliminate, not to evaluate."""
+
+    def values(self, w: Array, p: Array) -> tuple[Array, Array]:
+        """Return what `linearize` derives: (N, K, ne), or (N, 1, nx) without stages; conditions."""
 
     def residuals(self, w: Array, p: Array) -> Residuals:
         """Return the residuals at the unknowns w."""

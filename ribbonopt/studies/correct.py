@@ -1,0 +1,78 @@
+"""From a prediction back onto the branch: at a given position, or at a given arclength."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ribbonopt.arrays import Array
+from ribbonopt.attempts import Attempts
+from ribbonopt.pipeline import Prepared
+from ribbonopt.solution import Solution
+from ribbonopt.solvers import SolveReport
+from ribbonopt.solvers.extended import ExtendedSystem
+from ribbonopt.solvers.newton import Newton
+
+from .curve import Curve
+from .points import Metric, Point, reduced, row_of
+
+
+@dataclass(frozen=True, eq=False)
+class Corrector:
+    """Newton's method along one curve, on the mesh and in the phases of the point before."""
+
+    prepared: Prepared
+    curve: Curve
+    metric: Metric
+
+    def at(self, point: Point, unknowns: Array, position: float) -> Attempts:
+        """Correct at a position (natural continuation), from predicted unknowns (nw,)."""
+        attempts = self.prepared.beside(self.curve.scene_at(position), point.solution)
+        attempts.run_from(unknowns, quick=True)
+        return attempts
+
+    def along(
+        self, point: Point, direction: Array, arc: float, guess: Array
+    ) -> tuple[Attempts, float]:
+        """Correct where the projection on a direction is `arc` (pseudo-arclength continuation).
+
+        Parameters
+        ----------
+        point
+            Origin of the arclength.
+        direction
+            Unit vector [dw, dl] in the layout of the point.
+        arc
+            Arclength along it.
+        guess
+            Unknowns and position [w, l] to start from.
+
+        Returns
+        -------
+        Attempts, float
+            With the solution found, verified or not, and its position.
+        """
+        solution = point.solution
+        line = self.curve.line(solution)
+        row = row_of(solution, self.metric.dual(reduced(solution, direction)))
+        y = np.append(line.at_points(point.unknowns[:-1]), point.position)
+        system = ExtendedSystem(line, row, float(row @ y) + arc)
+        nlp = self.prepared.beside(self.curve.scene_at(point.position), solution).nlp
+        report = Newton(nlp).solve(guess, line.parameters(guess[-1]), system=system)
+        position = float(report.w[-1])
+        attempts = self.prepared.beside(self.curve.scene_at(position), solution)
+        attempts.take(_without_last(report))
+        return attempts, position
+
+    def anew(self, solution: Solution, position: float) -> Solution | None:
+        """Solve at a position with all that a single scene may need, from a solution near by."""
+        found = self.prepared.solve(self.curve.scene_at(position), guess=solution, fallback=False)
+        return found if found.verified else None
+
+
+def _without_last(report: SolveReport) -> SolveReport:
+    """Return the report without the position and its equation."""
+    return replace(
+        report, w=report.w[:-1], residuals=report.residuals[:-1], multipliers=report.multipliers[:-1]
+    )

@@ -1,0 +1,108 @@
+"""A parameter of a scene from one value to another: the line that a branch is followed along."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+
+import numpy as np
+
+from ribbonopt.arrays import Array
+from ribbonopt.problem import theta_values
+from ribbonopt.scene import Continuation, Scene
+from ribbonopt.scene.lens import with_value
+from ribbonopt.scene.units import in_special_units
+from ribbonopt.solution import Solution
+from ribbonopt.solvers.extended import Line
+
+STEPS = 20  # from one end to the other, where the stage says nothing of its steps
+SLOPE = 1e-5  # of the span: half the distance that derivatives by the position are taken over
+KEPT = 16  # scenes at recent positions
+
+
+@dataclass(frozen=True, eq=False)
+class Curve:
+    """One stage of a continuation; the position is the parameter or, for `log`, its logarithm.
+
+    Attributes
+    ----------
+    scene : Scene
+        The scene, in the user's units.
+    stage : Continuation
+        What is continued; `from_` is given.
+    """
+
+    scene: Scene
+    stage: Continuation
+    _scenes: dict[float, tuple[Scene, Array]] = field(default_factory=dict)
+
+    @property
+    def start(self) -> float:
+        """Position where the stage begins."""
+        assert self.stage.from_ is not None
+        return self.position(self.stage.from_)
+
+    @property
+    def goals(self) -> tuple[float, ...]:
+        """Positions that must be met exactly, in order; the last is the end."""
+        values = self.stage.values or (self.stage.to,)
+        return tuple(self.position(value) for value in values if value is not None)
+
+    @property
+    def span(self) -> float:
+        """Distance from the start to the end."""
+        return abs(self.goals[-1] - self.start)
+
+    @property
+    def largest(self) -> float:
+        """Largest change of the position in a step."""
+        return self.stage.largest or max(self.span / STEPS, self.stage.first or 0.0)
+
+    @property
+    def first(self) -> float:
+        """Change of the position in the first step."""
+        return self.stage.first or self.largest
+
+    @property
+    def smallest(self) -> float:
+        """Change of the position below which a step is not tried."""
+        return self.stage.smallest or 1e-6 * min(self.span, self.first)
+
+    @property
+    def moves(self) -> bool:
+        """Whether the equations of the scene contain the parameter."""
+        values = [self._at(position)[1] for position in (self.start, self.goals[-1])]
+        return not np.array_equal(*values)
+
+    def position(self, value: float) -> float:
+        """Position of a value of the parameter."""
+        return float(np.log10(value)) if self.stage.scale == "log" else value
+
+    def value(self, position: float) -> float:
+        """Value of the parameter, exactly that of the scene file where it names one."""
+        named = (self.stage.from_, self.stage.to, *(self.stage.values or ()))
+        for value in named:
+            if value is not None and self.position(value) == position:
+                return value
+        return float(10**position) if self.stage.scale == "log" else position
+
+    def scene_at(self, position: float) -> Scene:
+        """Return the scene with the parameter's value at a position."""
+        return self._at(position)[0]
+
+    def line(self, solution: Solution) -> Line:
+        """Return the equations of a solution along this curve, on its mesh and in its phases."""
+        widths = solution.mesh.widths
+        return Line(
+            solution.dense.blocks,
+            lambda position: np.concatenate([self._at(position)[1], widths]),
+            SLOPE * self.span,
+        )
+
+    def _at(self, position: float) -> tuple[Scene, Array]:
+        """Scene and parameters theta at a position."""
+        if position not in self._scenes:
+            if len(self._scenes) >= KEPT:
+                self._scenes.pop(next(iter(self._scenes)))
+            scene = with_value(self.scene, self.stage.parameter, self.value(position))
+            self._scenes[position] = scene, theta_values(in_special_units(scene))
+        return self._scenes[position]

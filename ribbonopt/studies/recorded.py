@@ -1,0 +1,69 @@
+"""What is recorded of the points of a branch, and the conditions that end it."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from typing import Any
+
+import numpy as np
+
+from ribbonopt.accuracy.estimate import relative_error
+from ribbonopt.sampling import evaluate_formula
+from ribbonopt.scene import Continuation, Scene
+from ribbonopt.scene.continuation_checks import parse_record, parse_stop
+from ribbonopt.solution import Solution
+
+from .curve import Curve
+from .points import POINT, Point
+
+Row = Mapping[str, Any]
+
+
+class Recorder:
+    """Rows of plain numbers: loads and strains at the start, energy, and what the scene records."""
+
+    def __init__(self, scene: Scene) -> None:
+        """Read the formulas of a scene."""
+        self.formulas = {name: parse_record(text, scene) for name, text in scene.record.items()}
+
+    def row(self, point: Point, curve: Curve) -> dict[str, Any]:
+        """Return what is recorded of a point, in the units of the scene."""
+        solution, stage = point.solution, curve.stage
+        row: dict[str, Any] = {
+            "number": point.number,
+            "stage": point.stage,
+            "branch": point.branch,
+            "parameter": stage.parameter,
+            "value": curve.value(point.position),
+            "kind": point.kind,
+            "negative": _negative(solution) if stage.stability and point.kind == POINT else None,
+            "error": relative_error(solution)[0],
+            "energy": solution.energy,
+            "H0": float(solution.start["H"]),
+        }
+        for name, vector in (("n0", solution.n0), ("m0", solution.m0)):
+            row |= {f"{name}{axis}": float(vector[i]) for i, axis in enumerate("xyz")}
+        row |= {"u2": float(solution.u0[1]), "u3": float(solution.u0[2])}
+        for name, (formula, s) in self.formulas.items():
+            row[name] = float(solution.sample(s, formula))
+        row["switches"] = solution.switch_points.tolist()
+        row["intervals"] = solution.dense.blocks.layout.element_count
+        row["iterations"] = solution.iterations
+        return row
+
+
+def stopped(row: Row, stage: Continuation) -> str:
+    """Return the condition of a stage that a row meets, "" if none."""
+    values = {name: np.array([value]) for name, value in row.items() if isinstance(value, float)}
+    for text in stage.stop:
+        left, sign, right = parse_stop(text)
+        a, b = (float(evaluate_formula(side, values)[0]) for side in (left, right))
+        if a > b if sign == ">" else a < b:
+            return text
+    return ""
+
+
+def _negative(solution: Solution) -> int | None:
+    from ribbonopt.accuracy.stability import negative_directions  # builds second derivatives
+
+    return negative_directions(solution)

@@ -1,0 +1,152 @@
+"""Folds and branch points between two points of a branch, located to rounding."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ribbonopt.arrays import Array
+from ribbonopt.solution import Solution
+from ribbonopt.solvers.extended import Local
+
+from .correct import Corrector
+from .points import BRANCH_POINT, FOLD, Metric, Point, near, reduced
+
+CLOSE = 1e-11  # of an arclength, relative to that between the points
+MOST_TRIALS = 60
+
+
+@dataclass(frozen=True, eq=False)
+class Trial:
+    """A point at an arclength beyond another, and the linearised equations there."""
+
+    arc: float
+    solution: Solution
+    position: float
+    near: Local
+    tangent: Array
+
+
+def special_points(corrector: Corrector, a: Point, b: Point) -> list[Point]:
+    """Return folds and branch points between two points of one layout, by arclength."""
+    search = _Between(corrector, a, b)
+    found = []
+    if a.tangent[-1] * b.tangent[-1] < 0:
+        found.append(search.located(FOLD, lambda trial: float(trial.tangent[-1])))
+    if a.sign * b.sign < 0:
+        found.append(search.located(BRANCH_POINT, _Probe(corrector.metric, search.at(0.0)).distance))
+    points = [point for point in found if point is not None]
+    return sorted(points, key=lambda point: corrector.metric.length(_gap(a, point)))
+
+
+def null_direction(corrector: Corrector, point: Point) -> Array:
+    """Return the unit direction [dw, dl] of the branch that crosses at a branch point.
+
+    Across the tangent of the branch itself, in the metric of the branch.
+    """
+    metric, solution = corrector.metric, point.solution
+    ahead = reduced(solution, point.tangent)
+    found, _ = near(corrector.curve, metric, solution, point.position, ahead)
+    # The equations are singular to rounding here: what any side gives is the null direction.
+    direction = found.solve(_side(found))
+    direction -= metric.product(reduced(solution, direction), ahead) * point.tangent
+    return np.asarray(direction / metric.length(reduced(solution, direction)))
+
+
+class _Probe:
+    """A bordering of the extended Jacobian: its last unknown vanishes where that is singular."""
+
+    def __init__(self, metric: Metric, origin: Trial) -> None:
+        """Border by one side, and by what it gives at the origin."""
+        self.metric, self.side = metric, _side(origin.near)
+        self.row = reduced(origin.solution, origin.near.solve(self.side))
+
+    def distance(self, trial: Trial) -> float:
+        """Return a smooth function along the branch with the zeros of the determinant."""
+        answer = reduced(trial.solution, trial.near.solve(self.side))
+        return self.metric.length(self.row) ** 2 / self.metric.product(self.row, answer)
+
+
+@dataclass(frozen=True, eq=False)
+class _Between:
+    """Points between two points of a branch."""
+
+    corrector: Corrector
+    a: Point
+    b: Point
+
+    def at(self, arc: float) -> Trial:
+        """Return the branch at an arclength beyond the first point; LinAlgError if there is none."""
+        corrector, a = self.corrector, self.a
+        share = arc / self.whole
+        guess = a.unknowns + share * (self.b.unknowns - a.unknowns)
+        attempts, position = corrector.along(a, a.tangent, arc, guess)
+        if attempts.best is None or not attempts.best.status.converged:
+            raise np.linalg.LinAlgError("no point of the branch was found")
+        solution = attempts.best
+        ahead = reduced(solution, a.tangent)
+        found, tangent = near(corrector.curve, corrector.metric, solution, position, ahead)
+        return Trial(arc, solution, position, found, tangent)
+
+    @property
+    def whole(self) -> float:
+        """Arclength from the first to the second point, along the first tangent."""
+        metric = self.corrector.metric
+        return metric.product(_gap(self.a, self.b), reduced(self.a.solution, self.a.tangent))
+
+    def located(self, kind: str, test: Callable[[Trial], float]) -> Point | None:
+        """Return the point where a test function vanishes, None where it does not."""
+        try:
+            trial = _root(self.at, test, 0.0, self.whole)
+        except np.linalg.LinAlgError:
+            return None
+        if trial is None or not trial.solution.verified:
+            return None
+        return replace(
+            self.a,
+            solution=trial.solution,
+            position=trial.position,
+            tangent=trial.tangent,
+            kind=kind,
+        )
+
+
+def _root(
+    at: Callable[[float], Trial], test: Callable[[Trial], float], low: float, high: float
+) -> Trial | None:
+    """Find a root by false position with halved weights (Illinois); None for a pole."""
+    a, b = at(low), at(high)
+    fa, fb = test(a), test(b)
+    largest = max(abs(fa), abs(fb))
+    if fa * fb > 0:
+        return None
+    best, fbest = (a, fa) if abs(fa) < abs(fb) else (b, fb)
+    for _ in range(MOST_TRIALS):
+        if abs(b.arc - a.arc) <= CLOSE * high or fbest == 0:
+            break
+        trial = at((a.arc * fb - b.arc * fa) / (fb - fa))
+        f = test(trial)
+        settled = abs(trial.arc - best.arc) <= CLOSE * high
+        best, fbest = trial, f
+        if settled:
+            break
+        if f * fb < 0:
+            a, fa = b, fb
+        else:
+            fa /= 2
+        b, fb = trial, f
+    return best if abs(fbest) < largest else None
+
+
+def _side(found: Local) -> Array:
+    """Return a right-hand side with a share of every condition, and none of the row."""
+    count = len(found.residuals.conditions)
+    side = np.cos(np.arange(1.0, count + 1))
+    side[-1] = 0.0
+    return side
+
+
+def _gap(a: Point, b: Point) -> Array:
+    return reduced(a.solution, b.unknowns - a.unknowns)
