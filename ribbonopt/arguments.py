@@ -53,6 +53,21 @@ def parser() -> argparse.ArgumentParser:
     bench.add_argument("--repeat", default="11", metavar="N", help="median of N solves")
     bench.add_argument("--quick", action="store_true", help="reduced states, low degrees only")
 
+    follow = verbs.add_parser(
+        "continue",
+        help="follow a scene's equilibria as a parameter moves (its `continuation`)",
+        formatter_class=_help,
+    )
+    _scene(follow)
+    follow.add_argument("--out", metavar="DIR", help="folder of the branch (default: results/NAME)")
+    follow.add_argument("--resume", action="store_true", help="go on with the branch in the folder")
+    follow.add_argument(
+        "--plot",
+        nargs="*",
+        metavar="X:Y",
+        help="draw what is recorded, such as value:energy u2:energy, and ribbons along the branch",
+    )
+
     verbs.add_parser(
         "schema", help="print the JSON schema of scenes, for editors", formatter_class=_help
     )
@@ -60,7 +75,7 @@ def parser() -> argparse.ArgumentParser:
     plot = verbs.add_parser(
         "plot", help="draw the pictures of a saved result", formatter_class=_help
     )
-    plot.add_argument("result", metavar="RESULT", help="folder written by solve --out")
+    plot.add_argument("result", metavar="RESULT", help="folder written by solve or continue")
     plot.add_argument("--out", metavar="DIR", help="folder for the pictures (default: RESULT)")
     return result
 

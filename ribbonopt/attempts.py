@@ -7,9 +7,10 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Any
 
 from ribbonopt.accuracy.resistance import where_it_resists
-from ribbonopt.accuracy.verify import verify
+from ribbonopt.accuracy.verify import unverified, verify
 from ribbonopt.arrays import Array
 from ribbonopt.guess import Guess, initial_unknowns
+from ribbonopt.joined import Joined
 from ribbonopt.problem import BoundaryValueProblem, Ribbon
 from ribbonopt.scene import Scene
 from ribbonopt.solution import Solution
@@ -83,6 +84,18 @@ class Attempts:
         if self.best is None or _merit(solution) > _merit(self.best):
             self.best, self._unchecked = solution, not check
         return self.best.verified
+
+    def restored(self, w: Array) -> Solution:
+        """Return a solution from its unknowns w (nw,), which were verified when they were found."""
+        return Solution(
+            scene=self.scene,
+            joined=Joined(self.problem, self.nlp.blocks.dense(w, self.p)),
+            status=Status.CONVERGED,
+            message=Status.CONVERGED.value,
+            iterations=0,
+            verification=unverified(),
+            sheets=self.sheets,
+        )
 
     def check(self) -> bool:
         """Verify the best solution, if that was left out; return whether it is verified now."""

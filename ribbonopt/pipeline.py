@@ -27,7 +27,6 @@ from ribbonopt.solvers import Status
 from ribbonopt.transcription import NLP
 
 if TYPE_CHECKING:
-    from ribbonopt.attempts import Attempts
     from ribbonopt.solvers import Solver
     from ribbonopt.starts.automatic import Automatic
 
@@ -92,21 +91,20 @@ class Prepared:
         started = time.perf_counter()
         scene = scene or self.scene
         refuse_unreachable(scene)
-        search = Search(scene, self.built, self._phased)
+        search = self.search(scene)
         self._try_all(search, guess, fallback)
         return self._told(search, time.perf_counter() - started)
 
     def polish(self, guess: Guess) -> Solution:
         """Solve the prepared scene from one guess that is thought to be near."""
         started = time.perf_counter()
-        search = Search(self.scene, self.built, self._phased)
+        search = self.search(self.scene)
         _ = search.run_smooth(guess) if isinstance(guess, Solution) else search.run(guess)
         return self._told(search, time.perf_counter() - started)
 
-    def beside(self, scene: Scene, solution: Solution) -> Attempts:
-        """Return the means to solve a scene on the mesh and in the phases of a solution."""
-        search = Search(scene, self.built, self._phased)
-        return search.on_mesh(solution.sheets, solution.mesh, solution.joined.ends[1:-1])
+    def search(self, scene: Scene) -> Search:
+        """Return a search for solutions of a scene of this structure; nothing is solved yet."""
+        return Search(scene, self.built, self._phased)
 
     def refined(self, solution: Solution) -> Solution:
         """Return a verified solution of this structure on a mesh that meets its tolerance."""
@@ -115,8 +113,7 @@ class Prepared:
             return solution
         from ribbonopt.refinement import refine  # for scenes with a tolerance
 
-        search = Search(scene, self.built, self._phased)
-        on_mesh = partial(search.on_mesh, solution.sheets)
+        on_mesh = partial(self.search(scene).on_mesh, solution.sheets)
         return refine(solution, scene.tolerance, self.ribbon, on_mesh)
 
     def start(
@@ -167,7 +164,7 @@ class Prepared:
 
     def _finished(self, search: Search) -> Solution | None:
         """Return the best solution found, on a mesh that meets the scene's tolerance."""
-        best, scene = search.best, search.scene
+        best = search.best
         if best is None:
             return None
         best = replace(best, path=tuple(search.path))

@@ -124,7 +124,9 @@ class Search:
         allowed = scene.formulation == "inverted" and scene.switching != "off"
         return allowed and self.built.ribbon.law.kinked
 
-    def on_mesh(self, sheets: tuple[int, ...], mesh: Mesh, switches: Array) -> Attempts:
+    def on_mesh(
+        self, sheets: tuple[int, ...], mesh: Mesh, switches: Array | None = None
+    ) -> Attempts:
         """Return the means to solve on a mesh, in the phases of a solution."""
         return self._kept(self.structure(sheets).attempts(self.scene, mesh, switches))
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from .continuation import Continuation
 from .ends import (
     AnyVector,
     Boundary,
@@ -56,6 +57,7 @@ __all__ = [
     "Band",
     "Boundary",
     "Collocation",
+    "Continuation",
     "Directors",
     "End",
     "Guess",

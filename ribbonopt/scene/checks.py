@@ -46,6 +46,11 @@ def check(scene: Scene) -> list[Problem]:
         problems += _switching(scene.switching, scene.interval)
     if scene.ribbon is not None:
         problems += [*_sizes(scene.ribbon), *_fits(scene, scene.ribbon)]
+    if scene.record or scene.continuation is not None:
+        # Imported late: few scenes are continued.
+        from .continuation_checks import check_continuation
+
+        problems += check_continuation(scene, sound=not problems)
     return problems
 
 

@@ -8,6 +8,7 @@ from typing import Any
 import yaml
 
 from .model import Scene
+from .shapes import key_of
 from .yamltext import scalar
 
 _CORE = "tag:yaml.org,2002:"
@@ -52,7 +53,7 @@ _Dumper.add_representer(float, _write_float)
 def _plain(value: Any) -> Any:
     if is_dataclass(value):
         kept = [member for member in fields(value) if _is_told(member, value)]
-        return {member.name: _plain(getattr(value, member.name)) for member in kept}
+        return {key_of(member.name): _plain(getattr(value, member.name)) for member in kept}
     if isinstance(value, tuple):
         return [_plain(item) for item in value]
     return value

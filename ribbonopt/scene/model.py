@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 from typing import Annotated, Literal
 
 from .bounds import Bounds
+from .continuation import Continuation
 from .ends import Boundary, Value
 from .laws import Law
 
@@ -189,3 +190,5 @@ class Scene:
     solver: Auto | Ipopt | Newton = Auto()
     reference: Reference | None = None
     ribbon: RibbonSizes | None = None
+    record: dict[str, str] = field(default_factory=dict)
+    continuation: Continuation | tuple[Continuation, ...] | None = None

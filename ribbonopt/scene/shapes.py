@@ -15,10 +15,16 @@ from typing import Annotated, Any, Literal, Union, get_args, get_origin, get_typ
 from .problems import nearest
 
 
+def key_of(name: str) -> str:
+    """Return the key of a field: its name without the underscore that tells it from a keyword."""
+    return name.removesuffix("_")
+
+
 @cache
 def hints(cls: type) -> dict[str, Any]:
-    """Return the annotations of a dataclass, by the name of the field."""
-    return get_type_hints(cls, include_extras=True)
+    """Return the annotations of a dataclass, by the key of the field."""
+    members = get_type_hints(cls, include_extras=True).items()
+    return {key_of(name): annotation for name, annotation in members}
 
 
 def branches(annotation: Any) -> dict[str, Any]:

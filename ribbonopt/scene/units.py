@@ -86,6 +86,8 @@ def in_special_units(scene: Scene) -> Scene:
         reference=_reference(scene.reference, units),
         switching=switches if isinstance(switches, str) else _over(switches, units.length),
         ribbon=None,
+        record={},
+        continuation=None,
     )
 
 

@@ -18,7 +18,7 @@ from pydantic_core.core_schema import CoreSchema
 
 from .bounds import Bounds
 from .problems import InvalidSceneError
-from .shapes import branches, classes_of, hints, tag_chooser
+from .shapes import branches, classes_of, hints, key_of, tag_chooser
 
 T = TypeVar("T")
 
@@ -116,9 +116,10 @@ def _literal(values: list[Any]) -> CoreSchema:
     return core_schema.json_or_python_schema(json_schema=literal, python_schema=whole)
 
 
+@cache
 def _dataclass(cls: type, type_required: bool) -> CoreSchema:
     members = fields(cls)
-    return core_schema.dataclass_schema(
+    schema = core_schema.dataclass_schema(
         cls,
         core_schema.dataclass_args_schema(
             cls.__name__,
@@ -127,10 +128,11 @@ def _dataclass(cls: type, type_required: bool) -> CoreSchema:
                     name=member.name,
                     schema=_with_default(
                         member,
-                        schema_of(hints(cls)[member.name]),
+                        schema_of(hints(cls)[key_of(member.name)]),
                         required=type_required and member.name == "type",
                     ),
                     kw_only=True,
+                    validation_alias=key_of(member.name),
                 )
                 for member in members
             ],
@@ -138,6 +140,17 @@ def _dataclass(cls: type, type_required: bool) -> CoreSchema:
         ),
         [member.name for member in members],
         revalidate_instances="always",
+    )
+    if all(key_of(member.name) == member.name for member in members):
+        return schema
+    # The engine would look in an instance for the names of its fields, in a mapping for the keys.
+    return core_schema.no_info_before_validator_function(
+        lambda value: (
+            {key_of(member.name): getattr(value, member.name) for member in members}
+            if isinstance(value, cls)
+            else value
+        ),
+        schema,
     )
 
 

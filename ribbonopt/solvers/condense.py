@@ -113,15 +113,17 @@ class CondensedSystem:
         return lay.pack(nodes, self._elements.expand(nodes, c, share), c)
 
     @property
-    def sign(self) -> float:
-        """Sign of the determinant, up to one factor that depends on the layout only."""
-        parts = [self._elements.sign, float(np.linalg.slogdet(self._final_inverse)[0])]
+    def determinant(self) -> tuple[float, float]:
+        """Sign and logarithm of the determinant; the sign up to a factor of the layout's."""
+        parts = [self._elements.determinant]
+        sign, log = np.linalg.slogdet(self._final_inverse)
+        parts.append((float(sign), -float(log)))
         for chain in self._chains:
             for level in chain.levels:
                 triangles = np.diagonal(level.R_inverse, axis1=1, axis2=2)
-                parts.append(float(np.prod(np.sign(triangles))))
-                parts.append(float(np.prod(np.linalg.slogdet(level.QT)[0])))
-        return float(np.prod(parts))
+                sign = np.prod(np.sign(triangles)) * np.prod(np.linalg.slogdet(level.QT)[0])
+                parts.append((float(sign), -float(np.log(np.abs(triangles)).sum())))
+        return float(np.prod([sign for sign, _ in parts])), sum(log for _, log in parts)
 
     def _final(self, A: Array, B: Array, C: Array, conditions: Array) -> Array:
         """Dense matrix of the remaining nodes and the constants."""

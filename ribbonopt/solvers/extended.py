@@ -2,11 +2,11 @@
 
     F(w, p(l)) = 0,        row . y = value,        y = [x at the points, c, l].
 
-The second equation says which point of the branch is meant: l itself (natural continuation), or the
-projection on the tangent (pseudo-arclength continuation, after Keller), regular at folds too. States
-at the ends and constants determine the whole solution; so they stand for it in the row. The extended
-system has the structure of the original with one more constant and one more condition, and is
-factored by the same code.
+The second equation says which point of the branch is meant: l itself (natural continuation), or
+the projection on the tangent (pseudo-arclength continuation, after Keller), regular at folds too.
+States at the ends and constants determine the whole solution; so they stand for it in the row. The
+extended system has the structure of the original with one more constant and one more condition, and
+is factored by the same code.
 """
 
 from __future__ import annotations
@@ -50,7 +50,7 @@ class Line:
         return np.concatenate([nodes[list(self.blocks.layout.point_elements)].ravel(), c])
 
     def slope(self, w: Array, position: float) -> tuple[Array, Array]:
-        """Derivatives by l of what `Blocks.values` gives, by central differences."""
+        """Return derivatives by l of what `Blocks.values` gives, by central differences."""
         values = [
             self.blocks.values(w, self.parameters(position + sign * self.step)) for sign in (1, -1)
         ]
@@ -109,15 +109,16 @@ class Local:
     ----------
     direction : (nw + 1,) array
         Tangent [dw, dl] with row . dy = 1.
-    sign : float
-        Sign of the determinant, comparable between points of one layout and rows that point the
-        same way along the branch: it changes at simple branch points, not at folds.
+    sign, log : float
+        Sign and logarithm of the determinant, comparable between points of one layout and rows
+        that point the same way along the branch: it vanishes at branch points, not at folds.
     """
 
     factors: CondensedSystem
     residuals: Residuals
     direction: Array
     sign: float
+    log: float
 
     def solve(self, rows: Array) -> Array:
         """Solve the extended Jacobian for right-hand sides in the conditions (nb + 1,) alone."""
@@ -138,4 +139,4 @@ def local(line: Line, row: Array, w: Array, position: float) -> Local:
     last = none.conditions.copy()
     last[-1] = 1.0
     direction = factors.solve(replace(none, conditions=-last))
-    return Local(factors, none, direction, factors.sign)
+    return Local(factors, none, direction, *factors.determinant)

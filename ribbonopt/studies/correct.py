@@ -28,7 +28,7 @@ class Corrector:
 
     def at(self, point: Point, unknowns: Array, position: float) -> Attempts:
         """Correct at a position (natural continuation), from predicted unknowns (nw,)."""
-        attempts = self.prepared.beside(self.curve.scene_at(position), point.solution)
+        attempts = self.beside(point.solution, position)
         attempts.run_from(unknowns, quick=True)
         return attempts
 
@@ -58,12 +58,17 @@ class Corrector:
         row = row_of(solution, self.metric.dual(reduced(solution, direction)))
         y = np.append(line.at_points(point.unknowns[:-1]), point.position)
         system = ExtendedSystem(line, row, float(row @ y) + arc)
-        nlp = self.prepared.beside(self.curve.scene_at(point.position), solution).nlp
+        nlp = self.beside(solution, point.position).nlp
         report = Newton(nlp).solve(guess, line.parameters(guess[-1]), system=system)
         position = float(report.w[-1])
-        attempts = self.prepared.beside(self.curve.scene_at(position), solution)
+        attempts = self.beside(solution, position)
         attempts.take(_without_last(report))
         return attempts, position
+
+    def beside(self, solution: Solution, position: float) -> Attempts:
+        """Return the means to solve at a position, on the mesh and in the phases of a solution."""
+        search = self.prepared.search(self.curve.scene_at(position))
+        return search.on_mesh(solution.sheets, solution.mesh, solution.joined.ends[1:-1])
 
     def anew(self, solution: Solution, position: float) -> Solution | None:
         """Solve at a position with all that a single scene may need, from a solution near by."""
@@ -74,5 +79,8 @@ class Corrector:
 def _without_last(report: SolveReport) -> SolveReport:
     """Return the report without the position and its equation."""
     return replace(
-        report, w=report.w[:-1], residuals=report.residuals[:-1], multipliers=report.multipliers[:-1]
+        report,
+        w=report.w[:-1],
+        residuals=report.residuals[:-1],
+        multipliers=report.multipliers[:-1],
     )

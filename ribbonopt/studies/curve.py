@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 
 import numpy as np
 
@@ -70,8 +70,8 @@ class Curve:
     @property
     def moves(self) -> bool:
         """Whether the equations of the scene contain the parameter."""
-        values = [self._at(position)[1] for position in (self.start, self.goals[-1])]
-        return not np.array_equal(*values)
+        first, last = (self._at(position)[1] for position in (self.start, self.goals[-1]))
+        return not np.array_equal(first, last)
 
     def position(self, value: float) -> float:
         """Position of a value of the parameter."""
@@ -104,5 +104,6 @@ class Curve:
             if len(self._scenes) >= KEPT:
                 self._scenes.pop(next(iter(self._scenes)))
             scene = with_value(self.scene, self.stage.parameter, self.value(position))
+            scene = replace(scene, continuation=None)
             self._scenes[position] = scene, theta_values(in_special_units(scene))
         return self._scenes[position]

@@ -12,7 +12,7 @@ from ribbonopt.solution import Solution
 from ribbonopt.solvers.extended import Local
 
 from .correct import Corrector
-from .points import BRANCH_POINT, FOLD, Metric, Point, near, reduced
+from .points import BRANCH_POINT, FOLD, Point, near, reduced
 
 CLOSE = 1e-11  # of an arclength, relative to that between the points
 MOST_TRIALS = 60
@@ -36,7 +36,12 @@ def special_points(corrector: Corrector, a: Point, b: Point) -> list[Point]:
     if a.tangent[-1] * b.tangent[-1] < 0:
         found.append(search.located(FOLD, lambda trial: float(trial.tangent[-1])))
     if a.sign * b.sign < 0:
-        found.append(search.located(BRANCH_POINT, _Probe(corrector.metric, search.at(0.0)).distance))
+        origin = search.at(0.0).near.log
+        found.append(
+            search.located(
+                BRANCH_POINT, lambda trial: trial.near.sign * float(np.exp(trial.near.log - origin))
+            )
+        )
     points = [point for point in found if point is not None]
     return sorted(points, key=lambda point: corrector.metric.length(_gap(a, point)))
 
@@ -55,20 +60,6 @@ def null_direction(corrector: Corrector, point: Point) -> Array:
     return np.asarray(direction / metric.length(reduced(solution, direction)))
 
 
-class _Probe:
-    """A bordering of the extended Jacobian: its last unknown vanishes where that is singular."""
-
-    def __init__(self, metric: Metric, origin: Trial) -> None:
-        """Border by one side, and by what it gives at the origin."""
-        self.metric, self.side = metric, _side(origin.near)
-        self.row = reduced(origin.solution, origin.near.solve(self.side))
-
-    def distance(self, trial: Trial) -> float:
-        """Return a smooth function along the branch with the zeros of the determinant."""
-        answer = reduced(trial.solution, trial.near.solve(self.side))
-        return self.metric.length(self.row) ** 2 / self.metric.product(self.row, answer)
-
-
 @dataclass(frozen=True, eq=False)
 class _Between:
     """Points between two points of a branch."""
@@ -78,7 +69,7 @@ class _Between:
     b: Point
 
     def at(self, arc: float) -> Trial:
-        """Return the branch at an arclength beyond the first point; LinAlgError if there is none."""
+        """Return the branch at an arclength beyond the first point; LinAlgError for none."""
         corrector, a = self.corrector, self.a
         share = arc / self.whole
         guess = a.unknowns + share * (self.b.unknowns - a.unknowns)
@@ -143,9 +134,7 @@ def _root(
 def _side(found: Local) -> Array:
     """Return a right-hand side with a share of every condition, and none of the row."""
     count = len(found.residuals.conditions)
-    side = np.cos(np.arange(1.0, count + 1))
-    side[-1] = 0.0
-    return side
+    return np.append(np.cos(np.arange(1.0, count)), 0.0)
 
 
 def _gap(a: Point, b: Point) -> Array:

@@ -60,9 +60,10 @@ class StageElimination:
         self._relations = A, _identities(N, nx), C
 
     @property
-    def sign(self) -> float:
-        """Sign of the determinant of the stages' equations."""
-        return float(np.prod(np.linalg.slogdet(self._inverse)[0]))
+    def determinant(self) -> tuple[float, float]:
+        """Sign and logarithm of the determinant of the stages' equations."""
+        signs, logs = np.linalg.slogdet(self._inverse)
+        return float(np.prod(signs)), -float(np.sum(logs))
 
     @property
     def relations(self) -> tuple[Array, Array, Array]:
@@ -89,7 +90,7 @@ class NothingToEliminate:
     """Shooting: x_{e+1} - Phi_e(x_e, c) relates neighbouring nodes already."""
 
     derivatives: Derivatives
-    sign: float = 1.0
+    determinant: tuple[float, float] = (1.0, 0.0)
 
     @property
     def relations(self) -> tuple[Array, Array, Array]:

@@ -1,0 +1,175 @@
+"""The verb `continue`: branches of equilibria, written as they are found."""
+
+from __future__ import annotations
+
+import argparse
+import gc
+import sys
+from collections.abc import Iterator, Mapping
+from itertools import pairwise
+from typing import TYPE_CHECKING, Any
+
+from ribbonopt.errors import SceneError
+
+from .common import INTERRUPTED, NOT_CONVERGED, load, print_json
+
+if TYPE_CHECKING:
+
+    from ribbonopt.studies.branch_files import BranchFolder
+    from ribbonopt.studies.continuation import Continuation
+    from ribbonopt.studies.points import Point
+
+PICTURES = 5
+BAR = 24
+
+
+def follow(options: argparse.Namespace) -> int:
+    """Follow the branches of a scene's `continuation`."""
+    pairs = _pairs(options.plot)
+    scene, _ = load(options)
+    from ribbonopt.studies.branch_files import BranchFolder
+    from ribbonopt.studies.continuation import Continuation
+
+    gc.enable()  # many solutions, each soon done with
+    continuation = Continuation(scene)
+    folder = BranchFolder(options.out or f"results/{scene.name}", scene, resume=options.resume)
+    try:
+        for _ in _shown(folder.follow(continuation), continuation):
+            pass
+    except KeyboardInterrupt:
+        print(
+            f"ribbonopt: interrupted; {len(folder.rows)} points kept in {folder.folder}, "
+            "--resume goes on from there",
+            file=sys.stderr,
+        )
+        return INTERRUPTED
+    if pairs is not None:
+        from ribbonopt.views.branch import save_branch_figures
+
+        points = folder.spread(continuation, PICTURES)
+        captions = [f"{row['parameter']} = {row['value']:.4g}" for row, _ in points]
+        ribbons = [solution for _, solution in points]
+        log = [stage.parameter for stage in continuation.stages if stage.scale == "log"]
+        chosen = pairs or _usual(folder.rows, scene.record)
+        save_branch_figures(folder.rows, ribbons, captions, folder.folder, chosen, log=log)
+    return _tell(options, folder, continuation)
+
+
+def _tell(options: argparse.Namespace, folder: BranchFolder, continuation: Continuation) -> int:
+    ending = continuation.ending
+    if options.json:
+        print_json(
+            {
+                "name": folder.scene.name,
+                "status": "converged" if ending.reached else "target_not_reached",
+                "verified": True,
+                "reached": ending.reached,
+                "message": ending.reason,
+                "endings": [
+                    {"stage": key[0], "branch": key[1], "reached": e.reached, "reason": e.reason}
+                    for key, e in continuation.endings.items()
+                ],
+                "folder": str(folder.folder),
+                "points": folder.rows,
+            }
+        )
+    elif not options.quiet:
+        print(_report(folder, continuation))
+    if ending.reached:
+        return 0
+    print(
+        f"ribbonopt: {folder.scene.name}: the goal was not reached: {ending.reason}; "
+        f"{len(folder.rows)} points kept in {folder.folder}",
+        file=sys.stderr,
+    )
+    return NOT_CONVERGED
+
+
+def _report(folder: BranchFolder, continuation: Continuation) -> str:
+    lines = [f"{folder.scene.name}: {len(folder.rows)} points"]
+    for (stage, branch), ending in continuation.endings.items():
+        rows = [r for r in folder.rows if (r["stage"], r["branch"]) == (stage, branch)]
+        where = f"stage {stage + 1}" + (f", branch {branch}" if branch else "")
+        lines.append(f"  {where}: {_extent(rows)}: {ending.reason}")
+        for row in rows:
+            if row["kind"] != "point":
+                lines.append(f"    {row['kind']} at {row['parameter']} = {row['value']:.10g}")
+        lines += [f"    {change}" for change in _changes(rows)]
+    names = ", ".join(sorted(path.name for path in folder.folder.iterdir()))
+    return "\n".join([*lines, f"  written: {folder.folder}: {names}"])
+
+
+def _extent(rows: list[dict[str, Any]]) -> str:
+    if not rows:
+        return "no points"
+    first, last = rows[0], rows[-1]
+    errors = max(row["error"] for row in rows if row["error"] is not None)
+    return (
+        f"{len(rows)} points, {first['parameter']} = {first['value']:.6g} to {last['value']:.6g}, "
+        f"relative error at most {errors:.0e}"
+    )
+
+
+def _changes(rows: list[dict[str, Any]]) -> Iterator[str]:
+    """Say where stability changes, and how it is where it is known and does not."""
+    known = [row for row in rows if row["negative"] is not None]
+    for a, b in pairwise(known):
+        if a["negative"] != b["negative"]:
+            yield (
+                f"{a['negative']} negative directions at {a['value']:.6g}, {b['negative']} at "
+                f"{b['value']:.6g}"
+            )
+    if known and len({row["negative"] for row in known}) == 1:
+        count = known[0]["negative"]
+        yield "stable" if count == 0 else f"unstable: {count} negative directions"
+
+
+def _shown(points: Iterator[Point], continuation: Continuation) -> Iterator[Point]:
+    """Give the points on, with a bar of progress on a terminal."""
+    if not sys.stderr.isatty():
+        yield from points
+        return
+    width = 0
+    for point in points:
+        row = point.row
+        stage = continuation.stages[point.stage]
+        line = (
+            f"\r{_bar(row, stage.from_, stage.values[-1] if stage.values else stage.to)} "
+            f"{row['parameter']} = {row['value']:.6g}  step {point.step:.2g}"
+        )
+        if row["error"] is not None:
+            line += f"  error {row['error']:.0e}"
+        print(line.ljust(width), end="", file=sys.stderr, flush=True)
+        width = len(line)
+        yield point
+    print("\r" + " " * width + "\r", end="", file=sys.stderr, flush=True)
+
+
+def _bar(row: Mapping[str, Any], begin: float | None, end: float | None) -> str:
+    assert begin is not None
+    assert end is not None
+    share = (row["value"] - begin) / (end - begin)
+    if row["value"] > 0 and begin > 0 and end > 0 and max(begin, end) > 50 * min(begin, end):
+        from math import log
+
+        share = log(row["value"] / begin) / log(end / begin)
+    done = round(BAR * min(max(share, 0.0), 1.0))
+    return f"[{'#' * done}{'.' * (BAR - done)}]"
+
+
+def _pairs(texts: list[str] | None) -> list[tuple[str, str]] | None:
+    """Read X:Y; None where no figure is wanted."""
+    if texts is None:
+        return None
+    pairs = []
+    for text in texts:
+        x, colon, y = text.partition(":")
+        if not (x and colon and y):
+            raise SceneError(f"--plot: found {text!r}; expected X:Y, such as value:energy")
+        pairs.append((x, y))
+    return pairs
+
+
+def _usual(rows: list[dict[str, Any]], record: Mapping[str, str]) -> list[tuple[str, str]]:
+    names = [*record, "u2", "energy", "H0"][:4]
+    return [("value", name) for name in names if rows and name in rows[0]]

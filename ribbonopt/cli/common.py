@@ -1,0 +1,34 @@
+"""What all verbs share: exit status, reading the scene, printing JSON."""
+
+from __future__ import annotations
+
+import argparse
+import time
+from typing import TYPE_CHECKING, Any
+
+if TYPE_CHECKING:
+    from ribbonopt.scene import Scene
+
+BAD_INPUT, NOT_CONVERGED = 2, 3
+INTERRUPTED, READER_GONE = 130, 141
+
+
+def load(options: argparse.Namespace) -> tuple[Scene, float]:
+    """Read the scene; also return the seconds that imports took."""
+    start = time.perf_counter()
+    from ribbonopt.scene import load_scene
+
+    reading = time.perf_counter()
+    scene = load_scene(options.scene, options.set)
+    # The heavy import comes after the scene is known to be good.
+    read = time.perf_counter()
+    import ribbonopt.pipeline  # noqa: F401
+
+    return scene, (reading - start) + (time.perf_counter() - read)
+
+
+def print_json(value: dict[str, Any], indent: int | None = None) -> None:
+    """Print one JSON object."""
+    import json  # most commands print text
+
+    print(json.dumps(value, indent=indent, allow_nan=False))

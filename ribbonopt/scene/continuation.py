@@ -1,0 +1,59 @@
+"""What a scene may say of its continuation: a number that moves, and what is watched on the way.
+
+How the stages of a scene follow each other is in `continuation_checks`.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated, Literal
+
+from .bounds import Bounds
+
+Step = Annotated[float, Bounds(gt=0)]
+
+
+@dataclass(frozen=True)
+class Continuation:
+    """One stage of a continuation: a parameter of the scene from one value to another.
+
+    Values are in the units of the scene, steps in those of the parameter, or in decades of it
+    where the scale is `log`.
+
+    Attributes
+    ----------
+    parameter
+        Dotted path of a number of the scene, such as law.epsilon or boundary.end.position.x.
+    to, from_
+        Last and first value; `from` in a file, by default where the scene or an earlier stage is.
+    values
+        In place of `to`: exactly these values, strictly monotonic.
+    scale
+        What steps are measured in.
+    first, smallest, largest
+        Sizes of steps.
+    points
+        Most points.
+    stop
+        Conditions that end the stage, such as "energy > 30".
+    special
+        Whether folds and branch points are located.
+    switch
+        Whether the branches that cross are followed, in both directions.
+    stability
+        Whether negative directions are counted where the scene is conservative.
+    """
+
+    parameter: str
+    to: float | None = None
+    from_: float | None = None
+    values: tuple[float, ...] | None = None
+    scale: Literal["linear", "log"] = "linear"
+    first: Step | None = None
+    smallest: Step | None = None
+    largest: Step | None = None
+    points: Annotated[int, Bounds(ge=1)] = 500
+    stop: tuple[str, ...] = ()
+    special: bool = True
+    switch: bool = False
+    stability: bool = True
