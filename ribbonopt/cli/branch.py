@@ -14,7 +14,6 @@ from ribbonopt.errors import SceneError
 from .common import INTERRUPTED, NOT_CONVERGED, load, print_json
 
 if TYPE_CHECKING:
-
     from ribbonopt.studies.branch_files import BranchFolder
     from ribbonopt.studies.continuation import Continuation
     from ribbonopt.studies.points import Point
@@ -47,12 +46,17 @@ def follow(options: argparse.Namespace) -> int:
         from ribbonopt.views.branch import save_branch_figures
 
         points = folder.spread(continuation, PICTURES)
-        captions = [f"{row['parameter']} = {row['value']:.4g}" for row, _ in points]
+        captions = [_caption(row) for row, _ in points]
         ribbons = [solution for _, solution in points]
         log = [stage.parameter for stage in continuation.stages if stage.scale == "log"]
         chosen = pairs or _usual(folder.rows, scene.record)
         save_branch_figures(folder.rows, ribbons, captions, folder.folder, chosen, log=log)
     return _tell(options, folder, continuation)
+
+
+def _caption(row: dict[str, Any]) -> str:
+    branch = f"\nbranch {row['branch']}" if row["branch"] else ""
+    return f"{row['parameter']} = {row['value']:.4g}{branch}"
 
 
 def _tell(options: argparse.Namespace, folder: BranchFolder, continuation: Continuation) -> int:

@@ -141,8 +141,8 @@ class BranchFolder:
     def spread(
         self, continuation: Continuation, count: int
     ) -> list[tuple[dict[str, Any], Solution]]:
-        """Rows and solutions of a few points spread over those of the first branch."""
-        lines = [line for line in self.lines if "row" in line and line["row"]["branch"] == 0]
+        """Rows and solutions of a few points, spread over all branches."""
+        lines = [line for line in self.lines if "row" in line and line["row"]["kind"] == POINT]
         history = Stored(continuation, [])
         places = np.linspace(0, len(lines) - 1, min(count, len(lines))).round()
         chosen = [lines[int(i)] for i in places]

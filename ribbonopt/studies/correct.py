@@ -33,7 +33,7 @@ class Corrector:
         return attempts
 
     def along(
-        self, point: Point, direction: Array, arc: float, guess: Array
+        self, point: Point, direction: Array, arc: float, guess: Array, enough: float = 0.0
     ) -> tuple[Attempts, float]:
         """Correct where the projection on a direction is `arc` (pseudo-arclength continuation).
 
@@ -47,6 +47,8 @@ class Corrector:
             Arclength along it.
         guess
             Unknowns and position [w, l] to start from.
+        enough
+            Last relative step of Newton's method that will do.
 
         Returns
         -------
@@ -59,7 +61,7 @@ class Corrector:
         y = np.append(line.at_points(point.unknowns[:-1]), point.position)
         system = ExtendedSystem(line, row, float(row @ y) + arc)
         nlp = self.beside(solution, point.position).nlp
-        report = Newton(nlp).solve(guess, line.parameters(guess[-1]), system=system)
+        report = Newton(nlp).solve(guess, line.parameters(guess[-1]), None, enough, system)
         position = float(report.w[-1])
         attempts = self.beside(solution, position)
         attempts.take(_without_last(report))

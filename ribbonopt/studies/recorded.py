@@ -37,7 +37,8 @@ class Recorder:
             "value": curve.value(point.position),
             "kind": point.kind,
             "negative": _negative(solution) if stage.stability and point.kind == POINT else None,
-            "error": relative_error(solution)[0],
+            # At a fold the equations at a given parameter are singular: so is their estimate.
+            "error": relative_error(solution)[0] if point.kind == POINT else None,
             "energy": solution.energy,
             "H0": float(solution.start["H"]),
         }

@@ -94,8 +94,9 @@ class Walk:
             self.ending = Ending(True, f"reached {self._named(here)}")
             return None
         if self.direction * (here - curve.start) < -DIGITS * curve.span:
-            turns = ", ".join(f"{value:.6g}" for value in self.turned) or "the way"
-            self.ending = Ending(False, f"it turned back at {turns} and left the range")
+            folds = ", ".join(f"{value:.8g}" for value in self.turned)
+            where = f" (folds at {self.curve.stage.parameter} = {folds})" if folds else ""
+            self.ending = Ending(False, f"the branch turned back and left the range{where}")
             return None
         return left[0] if heading == self.direction else curve.start - self.direction * curve.span
 
