@@ -106,15 +106,18 @@ class Prepared:
         """Return a search for solutions of a scene of this structure; nothing is solved yet."""
         return Search(scene, self.built, self._phased)
 
-    def refined(self, solution: Solution) -> Solution:
-        """Return a verified solution of this structure on a mesh that meets its tolerance."""
+    def refined(self, solution: Solution, spare: float = 1.0) -> Solution:
+        """Return a verified solution of this structure on a mesh that meets its tolerance.
+
+        A new mesh is fine enough for `spare` times what one usually aims at.
+        """
         scene = solution.scene
         if scene.tolerance is None or not solution.verified:
             return solution
-        from ribbonopt.refinement import refine  # for scenes with a tolerance
+        from ribbonopt.refinement import AIM, refine  # for scenes with a tolerance
 
         on_mesh = partial(self.search(scene).on_mesh, solution.sheets)
-        return refine(solution, scene.tolerance, self.ribbon, on_mesh)
+        return refine(solution, scene.tolerance, self.ribbon, on_mesh, spare * AIM)
 
     def start(
         self, scene: Scene | None = None, guess: Guess | None = None

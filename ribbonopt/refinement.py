@@ -45,6 +45,7 @@ def refine(
     tolerance: float,
     ribbon: Ribbon,
     attempts_on: Callable[[Mesh, Array], Attempts],
+    aim: float = AIM,
 ) -> Solution:
     """Return a verified solution whose error, relative to the sizes of the answer, is small enough.
 
@@ -58,6 +59,8 @@ def refine(
         Mechanics, to verify what comes out.
     attempts_on
         Gives the means to solve on a mesh, phases meeting at given fractions of the length.
+    aim
+        Share of the tolerance that a new mesh aims at.
 
     Returns
     -------
@@ -71,7 +74,7 @@ def refine(
             done = solution if solution is first else verified(solution, ribbon)
             return replace(done, path=tuple(path))
         started = time.perf_counter()
-        mesh, short = _better_mesh(solution, AIM * tolerance / error, error > SLOW * before)
+        mesh, short = _better_mesh(solution, aim * tolerance / error, error > SLOW * before)
         before = error
         attempts = attempts_on(mesh, solution.joined.ends[1:-1])
         if not attempts.run(solution, quick=True, check=False) or attempts.best is None:

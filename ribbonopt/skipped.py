@@ -29,6 +29,8 @@ def skipped(
         result.append("automatic start (the guess is given)")
     if solvers and not sheets:
         result.append("phases (the law is smooth, m2 keeps its sign, or the scene says so)")
+    if scene.continuation is not None:
+        result.append("continuation (ribbonopt continue follows it)")
     if scene.tolerance is None:
         result.append("mesh refinement (no tolerance is asked for)")
     return tuple(result)

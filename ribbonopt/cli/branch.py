@@ -14,6 +14,8 @@ from ribbonopt.errors import SceneError
 from .common import INTERRUPTED, NOT_CONVERGED, load, print_json
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from ribbonopt.studies.branch_files import BranchFolder
     from ribbonopt.studies.continuation import Continuation
     from ribbonopt.studies.points import Point
@@ -31,6 +33,8 @@ def follow(options: argparse.Namespace) -> int:
 
     gc.enable()  # many solutions, each soon done with
     continuation = Continuation(scene)
+    for x, y in pairs or []:
+        continuation.ledger.recorder.known((x, y), f"--plot {x}:{y}")
     folder = BranchFolder(options.out or f"results/{scene.name}", scene, resume=options.resume)
     try:
         for _ in _shown(folder.follow(continuation), continuation):
@@ -43,15 +47,35 @@ def follow(options: argparse.Namespace) -> int:
         )
         return INTERRUPTED
     if pairs is not None:
-        from ribbonopt.views.branch import save_branch_figures
-
-        points = folder.spread(continuation, PICTURES)
-        captions = [_caption(row) for row, _ in points]
-        ribbons = [solution for _, solution in points]
-        log = [stage.parameter for stage in continuation.stages if stage.scale == "log"]
-        chosen = pairs or _usual(folder.rows, scene.record)
-        save_branch_figures(folder.rows, ribbons, captions, folder.folder, chosen, log=log)
+        _draw(continuation, folder.lines, pairs, folder.folder)
     return _tell(options, folder, continuation)
+
+
+def draw(result: Path, out: Path) -> list[Path]:
+    """Draw the figures of a branch folder again and return where."""
+    from ribbonopt.studies.branch_files import load_branch
+    from ribbonopt.studies.continuation import Continuation
+
+    scene, lines = load_branch(result)
+    return _draw(Continuation(scene), lines, [], out)
+
+
+def _draw(
+    continuation: Continuation,
+    lines: list[dict[str, Any]],
+    pairs: list[tuple[str, str]],
+    out: Path,
+) -> list[Path]:
+    from ribbonopt.studies.branch_files import rows_of
+    from ribbonopt.studies.stored import spread
+    from ribbonopt.views.branch import save_branch_figures
+
+    rows, points = rows_of(lines), spread(continuation, lines, PICTURES)
+    captions = [_caption(row) for row, _ in points]
+    ribbons = [solution for _, solution in points]
+    log = [stage.parameter for stage in continuation.stages if stage.scale == "log"]
+    chosen = pairs or _usual(continuation.scene.record)
+    return save_branch_figures(rows, ribbons, captions, out, chosen, log=log)
 
 
 def _caption(row: dict[str, Any]) -> str:
@@ -174,6 +198,5 @@ def _pairs(texts: list[str] | None) -> list[tuple[str, str]] | None:
     return pairs
 
 
-def _usual(rows: list[dict[str, Any]], record: Mapping[str, str]) -> list[tuple[str, str]]:
-    names = [*record, "u2", "energy", "H0"][:4]
-    return [("value", name) for name in names if rows and name in rows[0]]
+def _usual(record: Mapping[str, str]) -> list[tuple[str, str]]:
+    return [("value", name) for name in [*record, "u2", "energy", "H0"][:4]]

@@ -95,12 +95,20 @@ def schema(options: argparse.Namespace) -> int:
 
 def plot(options: argparse.Namespace) -> int:
     """Draw the pictures of a saved result."""
+    from pathlib import Path
+
     from ribbonopt.results import load_solution
     from ribbonopt.staging import picture_folder
     from ribbonopt.views import save_figures
 
-    solution = load_solution(options.result)
-    folder = picture_folder(options.out or options.result)
-    for path in save_figures(solution, folder):
+    result = Path(options.result)
+    if (result / "branch.jsonl").is_file():
+        from .branch import draw
+
+        paths = draw(result, picture_folder(options.out or result))
+    else:
+        solution = load_solution(result)
+        paths = save_figures(solution, picture_folder(options.out or result))
+    for path in paths:
         print(path)
     return 0

@@ -91,6 +91,11 @@ def parse_stop(text: str) -> tuple[str, Literal[">", "<"], str]:
     return left, ">" if signs[0] == ">" else "<", right
 
 
+def words_of(text: str) -> list[str]:
+    """Return the words of a formula that are not its grammar's own: names of quantities."""
+    return [word for word in _WORD.findall(text) if word not in RESERVED - OUTPUTS.keys()]
+
+
 def check_continuation(scene: Scene, *, sound: bool) -> list[Problem]:
     """Return what is wrong with `record` and `continuation`.
 

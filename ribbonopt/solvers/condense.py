@@ -79,7 +79,7 @@ class CondensedSystem:
     def __init__(
         self, blocks: Blocks, derivatives: Derivatives, p: Array, only: Residuals | None = None
     ) -> None:
-        """Factor; quicker if it is for the residuals `only`."""
+        """Factor; quicker if it is for the stages' part of the residuals `only`."""
         lay = self._layout = blocks.layout
         self._elements = blocks.eliminate(derivatives, p, only)
         A, B, C = self._elements.relations

@@ -130,12 +130,13 @@ def local(line: Line, row: Array, w: Array, position: float) -> Local:
     system = ExtendedSystem(line, row, 0.0)
     p = line.parameters(position)
     residuals, derivatives = system.linearize(np.append(w, position), p)
-    factors = system.factor(derivatives, p)
     none = Residuals(
         np.zeros_like(residuals.stages),
         np.zeros_like(residuals.nodes),
         np.zeros_like(residuals.conditions),
     )
+    # Whatever is solved for later has its right-hand side in the conditions alone.
+    factors = CondensedSystem(line.blocks.bordered, derivatives, p, only=none)
     last = none.conditions.copy()
     last[-1] = 1.0
     direction = factors.solve(replace(none, conditions=-last))

@@ -7,78 +7,23 @@ was cut short is not read. `branch.csv` has the rows as a table.
 
 from __future__ import annotations
 
-import base64
 import csv
 import json
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-import numpy as np
-
-from ribbonopt.arrays import Array
 from ribbonopt.errors import OutputError
-from ribbonopt.scene import Scene, dump_scene
-from ribbonopt.solution import Solution
+from ribbonopt.scene import Scene, dump_scene, load_scene
 from ribbonopt.staging import unwritable
-from ribbonopt.transcription import Mesh
 
 from .branches import Key
 from .continuation import Continuation
-from .curve import Curve
 from .points import POINT, Point
-from .walk import Ending
+from .stored import Stored, state_of
 
 FILE, TABLE, SCENE = "branch.jsonl", "branch.csv", "scene.yaml"
 FIGURES = ("branch.png", "ribbons.png")
-
-
-class Stored:
-    """What a branch file holds: the history that a continuation goes on from."""
-
-    def __init__(self, continuation: Continuation, lines: list[dict[str, Any]]) -> None:
-        """Read parsed lines."""
-        self.endings: dict[Key, Ending] = {}
-        self._lines: dict[Key, list[dict[str, Any]]] = {}
-        self._prepared, scene = continuation.prepared, continuation.scene
-        self._curves: list[Curve] = []
-        for stage in continuation.stages:
-            self._curves.append(Curve(scene, stage))
-            scene = self._curves[-1].scene_at(self._curves[-1].goals[-1])
-        for line in lines:
-            if "ending" in line:
-                ending = line["ending"]
-                key = ending["stage"], ending["branch"]
-                self.endings[key] = Ending(ending["reached"], ending["reason"])
-            else:
-                row = line["row"]
-                self._lines.setdefault((row["stage"], row["branch"]), []).append(line)
-
-    def points(self, stage: int, branch: int, kind: str) -> list[Point]:
-        """Points of a kind, in order."""
-        lines = self._lines.get((stage, branch), [])
-        return [self.point(line) for line in lines if line["row"]["kind"] == kind]
-
-    def point(self, line: dict[str, Any]) -> Point:
-        """Return the point of a line."""
-        row, state = line["row"], line["state"]
-        curve = self._curves[row["stage"]]
-        arrays = {name: _array(state[name]) for name in ("w", "widths", "tangent")}
-        mesh = Mesh(tuple(np.split(arrays["widths"], np.cumsum(state["elements"])[:-1])))
-        search = self._prepared.search(curve.scene_at(state["position"]))
-        solution = search.on_mesh(tuple(state["sheets"]), mesh).restored(arrays["w"])
-        return Point(
-            solution,
-            state["position"],
-            arrays["tangent"],
-            state["sign"],
-            state["step"],
-            row["number"],
-            row["stage"],
-            row["branch"],
-            row["kind"],
-            row,
-        )
 
 
 class BranchFolder:
@@ -123,7 +68,7 @@ class BranchFolder:
     @property
     def rows(self) -> list[dict[str, Any]]:
         """Rows of all points."""
-        return [line["row"] for line in self.lines if "row" in line]
+        return rows_of(self.lines)
 
     def follow(self, continuation: Continuation) -> Iterator[Point]:
         """Points of a continuation from where the folder's end, each written before it is given."""
@@ -132,21 +77,11 @@ class BranchFolder:
         try:
             for point in continuation.resume(history):
                 known = self._note_endings(continuation, known)
-                self._append({"row": dict(point.row), "state": _state(point)})
+                self._append({"row": dict(point.row), "state": state_of(point)})
                 yield point
             self._note_endings(continuation, known)
         finally:
             self.write_table()
-
-    def spread(
-        self, continuation: Continuation, count: int
-    ) -> list[tuple[dict[str, Any], Solution]]:
-        """Rows and solutions of a few points, spread over all branches."""
-        lines = [line for line in self.lines if "row" in line and line["row"]["kind"] == POINT]
-        history = Stored(continuation, [])
-        places = np.linspace(0, len(lines) - 1, min(count, len(lines))).round()
-        chosen = [lines[int(i)] for i in places]
-        return [(line["row"], history.point(line).solution) for line in chosen]
 
     def write_table(self) -> None:
         """Write the rows as CSV."""
@@ -197,6 +132,19 @@ class BranchFolder:
         beside.replace(self.folder / name)
 
 
+def load_branch(folder: str | Path) -> tuple[Scene, list[dict[str, Any]]]:
+    """Return the scene and the lines of a branch folder; OutputError if it holds none."""
+    folder = Path(folder)
+    if not ((folder / FILE).is_file() and (folder / SCENE).is_file()):
+        raise OutputError(f"{folder}: no branch; expected a folder written by ribbonopt continue")
+    return load_scene(folder / SCENE), _read(folder / FILE)
+
+
+def rows_of(lines: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    """Rows of all points."""
+    return [line["row"] for line in lines if "row" in line]
+
+
 def _read(path: Path) -> list[dict[str, Any]]:
     """Whole lines; special points after the last regular one will be found again."""
     lines = []
@@ -210,30 +158,8 @@ def _read(path: Path) -> list[dict[str, Any]]:
     return lines
 
 
-def _state(point: Point) -> dict[str, Any]:
-    solution = point.solution
-    return {
-        "position": point.position,
-        "step": point.step,
-        "sign": point.sign,
-        "sheets": list(solution.sheets),
-        "elements": list(solution.dense.blocks.layout.elements),
-        "w": _bytes(solution.dense.w),
-        "widths": _bytes(solution.mesh.widths),
-        "tangent": _bytes(point.tangent),
-    }
-
-
 def _line(value: dict[str, Any]) -> str:
     return json.dumps(value) + "\n"
-
-
-def _bytes(array: Array) -> str:
-    return base64.b64encode(np.asarray(array, dtype="<f8").tobytes()).decode("ascii")
-
-
-def _array(text: str) -> Array:
-    return np.array(np.frombuffer(base64.b64decode(text), dtype="<f8"), dtype=float)
 
 
 def _cell(value: Any) -> Any:

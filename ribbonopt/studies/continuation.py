@@ -39,8 +39,8 @@ class Continuation:
         The scene, whose `continuation` says what is followed.
     """
 
-    def __init__(self, scene: Scene) -> None:
-        """Prepare; nothing is solved yet.
+    def __init__(self, scene: Scene, prepared: Prepared | None = None) -> None:
+        """Prepare; nothing is solved yet. `prepared` is the same structure, built before.
 
         Raises
         ------
@@ -54,7 +54,7 @@ class Continuation:
                 "'continuation: {parameter: law.epsilon, to: 1e-4, scale: log}'"
             )
         first = Curve(scene, self.stages[0])
-        self.prepared: Prepared = prepare(first.scene_at(first.start))
+        self.prepared = prepared or prepare(first.scene_at(first.start))
         if not self.prepared.problem.square:
             raise ModelError(
                 f"formulation: {self.scene.formulation} is not a square system of equations, which "
@@ -137,7 +137,7 @@ def _switched(walk: Walk, point: Point, sign: int) -> Point:
         guess = point.unknowns + away * direction
         attempts, position = walk.corrector.along(point, direction, away, guess)
         found = attempts.best
-        if found is not None and found.verified:
+        if found is not None and attempts.check():
             ahead = reduced(found, np.append(found.dense.w, position) - point.unknowns)
             linear, tangent = near(walk.curve, walk.metric, found, position, ahead)
             return replace(

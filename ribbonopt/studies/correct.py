@@ -27,9 +27,12 @@ class Corrector:
     metric: Metric
 
     def at(self, point: Point, unknowns: Array, position: float) -> Attempts:
-        """Correct at a position (natural continuation), from predicted unknowns (nw,)."""
+        """Correct at a position (natural continuation), from predicted unknowns (nw,).
+
+        What is found is not verified yet: `Attempts.check` does that.
+        """
         attempts = self.beside(point.solution, position)
-        attempts.run_from(unknowns, quick=True)
+        attempts.run_from(unknowns, quick=True, check=False)
         return attempts
 
     def along(
@@ -53,7 +56,7 @@ class Corrector:
         Returns
         -------
         Attempts, float
-            With the solution found, verified or not, and its position.
+            With the solution found, not verified yet, and its position.
         """
         solution = point.solution
         line = self.curve.line(solution)
@@ -64,7 +67,7 @@ class Corrector:
         report = Newton(nlp).solve(guess, line.parameters(guess[-1]), None, enough, system)
         position = float(report.w[-1])
         attempts = self.beside(solution, position)
-        attempts.take(_without_last(report))
+        attempts.take(_without_last(report), check=False)
         return attempts, position
 
     def beside(self, solution: Solution, position: float) -> Attempts:

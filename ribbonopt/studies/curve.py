@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -94,9 +95,33 @@ class Curve:
         widths = solution.mesh.widths
         return Line(
             solution.dense.blocks,
-            lambda position: np.concatenate([self._at(position)[1], widths]),
+            lambda position: np.concatenate([self._theta(position), widths]),
             SLOPE * self.span,
         )
+
+    def _theta(self, position: float) -> Array:
+        """Parameters theta at a position."""
+        if self._direct is None:
+            return self._at(position)[1]
+        first, entry, scale = self._direct
+        theta: Array = first.copy()
+        theta[entry] = scale * self.value(position)
+        return theta
+
+    @cached_property
+    def _direct(self) -> tuple[Array, int, float] | None:
+        """Parameters, and which of them is the value times what; None if it is not so simple."""
+        ends = self.start, self.goals[-1]
+        places = [*ends, 0.3 * ends[0] + 0.7 * ends[1], 0.6 * ends[0] + 0.4 * ends[1]]
+        found = np.array([self._at(place)[1] for place in places])
+        values = np.array([self.value(place) for place in places])
+        moving = np.flatnonzero((found != found[0]).any(axis=0))
+        if len(moving) != 1:
+            return None
+        entry = int(moving[0])
+        largest = int(np.abs(values).argmax())
+        scale = float(found[largest, entry] / values[largest])
+        return (found[0], entry, scale) if bool((found[:, entry] == scale * values).all()) else None
 
     def _at(self, position: float) -> tuple[Scene, Array]:
         """Scene and parameters theta at a position."""

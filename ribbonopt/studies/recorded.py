@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable, Mapping
 from typing import Any
 
 import numpy as np
 
 from ribbonopt.accuracy.estimate import relative_error
+from ribbonopt.errors import ModelError
 from ribbonopt.sampling import evaluate_formula
 from ribbonopt.scene import Continuation, Scene
-from ribbonopt.scene.continuation_checks import parse_record, parse_stop
+from ribbonopt.scene.continuation_checks import parse_record, parse_stop, stages_of, words_of
 from ribbonopt.solution import Solution
 
 from .curve import Curve
@@ -19,12 +20,45 @@ from .points import POINT, Point
 Row = Mapping[str, Any]
 
 
+#: numbers that every row has, besides what the scene records
+NUMBERS = (
+    *("value", "error", "energy", "H0", "n0x", "n0y", "n0z", "m0x", "m0y", "m0z", "u2", "u3"),
+    *("number", "stage", "branch", "negative", "intervals", "iterations"),
+)
+
+
 class Recorder:
     """Rows of plain numbers: loads and strains at the start, energy, and what the scene records."""
 
     def __init__(self, scene: Scene) -> None:
-        """Read the formulas of a scene."""
+        """Read the formulas of a scene.
+
+        Raises
+        ------
+        ModelError
+            If a condition of a stage names what is not recorded.
+        """
         self.formulas = {name: parse_record(text, scene) for name, text in scene.record.items()}
+        for stage in stages_of(scene):
+            for text in stage.stop:
+                left, _, right = parse_stop(text)
+                for side in (left, right):
+                    self.known(words_of(side), f"continuation.stop: {text!r}", "continuation")
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of all numbers of a row."""
+        return (*NUMBERS, *self.formulas)
+
+    def known(self, words: Iterable[str], where: str, key: str = "") -> None:
+        """Raise a ModelError where a word is none of the names of a row."""
+        for word in words:
+            if word not in self.names:
+                raise ModelError(
+                    f"{where}: found {word!r}, expected a recorded quantity: "
+                    f"{', '.join(self.names)}; add others under `record`",
+                    key,
+                )
 
     def row(self, point: Point, curve: Curve) -> dict[str, Any]:
         """Return what is recorded of a point, in the units of the scene."""

@@ -29,6 +29,7 @@ NATURAL = 0.1  # least share of the position in the tangent for natural continua
 AIM = 0.02  # wanted distance of a prediction from the branch, in arclength
 GROWTH, SHRINK = 2.0, 0.25  # of a step, after success and failure
 LONGEST = 0.5  # arclength of a step
+SPARE = 0.05  # of the error that a new mesh may leave: it shall serve the points to come
 STRAIGHT = 0.7  # least cosine of the angle between tangents one step apart
 DIGITS = 1e-12  # of a position, relative to the span
 
@@ -147,11 +148,10 @@ class Walk:
         trial = attempts.best
         assert trial is not None
         if not trial.verified:
-            again = self._in_other_phases(point, trial, position)
-            if again is None:
-                self._trouble = trial.message
-                return None
-            return self._arrived(point, again, position, arc), []
+            self._trouble = trial.message
+            # A phase may have lost its length on the way.
+            again = self.corrector.anew(point.solution, position) if point.solution.sheets else None
+            return None if again is None else (self._arrived(point, again, position), [])
         unknowns = np.append(trial.dense.w, position)
         error = self.metric.length(reduced(trial, unknowns - predicted))
         ahead = reduced(trial, unknowns - point.unknowns)
@@ -173,44 +173,42 @@ class Walk:
         special = (
             special_points(self.corrector, point, following) if self.curve.stage.special else []
         )
-        solution = self._brought_to_tolerance(trial)
+        solution = self._finished(point, attempts, position)
         if solution is None:
             return None
         if solution is not trial:
-            following = self._arrived(following, solution, position, abs(arc))
-            following = replace(following, step=abs(arc) * factor)
+            following = self._arrived(following, solution, position)
         return following, special
 
-    def _arrived(self, before: Point, solution: Solution, position: float, arc: float) -> Point:
-        """Return a point whose solution has another layout than the one before it."""
+    def _arrived(self, before: Point, solution: Solution, position: float) -> Point:
+        """Return a point for a solution in another layout, or with other numbers, than a trial."""
+        if solution.joined is before.solution.joined and before.position == position:
+            return replace(before, solution=solution)
         ahead = reduced(before.solution, before.tangent)
         found, tangent = near(self.curve, self.metric, solution, position, ahead)
         return replace(
-            before,
-            solution=solution,
-            position=position,
-            tangent=tangent,
-            sign=found.sign,
-            step=arc,
+            before, solution=solution, position=position, tangent=tangent, sign=found.sign
         )
 
-    def _in_other_phases(self, point: Point, trial: Solution, position: float) -> Solution | None:
-        """Solve anew where the law has a kink and the phases may have changed."""
-        if not self.prepared.ribbon.law.kinked:
-            return None
-        return self.corrector.anew(point.solution, position)
-
-    def _brought_to_tolerance(self, trial: Solution) -> Solution | None:
-        """Return the solution on a mesh that meets the tolerance, in phases if m2 changes sign."""
+    def _finished(self, point: Point, attempts: Attempts, position: float) -> Solution | None:
+        """Return the solution verified, to tolerance, in the phases it needs; None for none."""
+        trial = attempts.best
+        assert trial is not None
+        tolerance = trial.scene.tolerance
         if not trial.sheets and self._needs_phases(trial):
             trial = self.prepared.solve(trial.scene, guess=trial, fallback=False)
-        tolerance = trial.scene.tolerance
-        if trial.verified and tolerance is not None and relative_error(trial)[0] > SAFE * tolerance:
-            trial = self.prepared.refined(trial)
-        if trial.verified:
-            return trial
+        elif tolerance is not None and relative_error(trial)[0] > SAFE * tolerance:
+            trial = self.prepared.refined(trial, SPARE)
+        else:
+            attempts.check()
+            trial = attempts.best
+            assert trial is not None
+        if not trial.verified and self.prepared.ribbon.law.kinked:
+            # Phases may have changed on the way.
+            again = self.corrector.anew(point.solution, position)
+            trial = trial if again is None else again
         self._trouble = trial.message
-        return None
+        return trial if trial.verified else None
 
     def _needs_phases(self, trial: Solution) -> bool:
         scene = trial.scene

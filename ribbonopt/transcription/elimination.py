@@ -51,7 +51,7 @@ class StageElimination:
             sides[..., -1] = -only.stages
             solved = np.asarray(np.linalg.solve(matrix, sides.reshape(N, K * nv, -1)), dtype=float)
         self._to_node, self._to_constants = solved[:, :, :nx], solved[:, :, nx:-1]
-        self._share, self._only = solved[:, :, -1], only
+        self._share, self._only, self._matrix = solved[:, :, -1], only, matrix
         # x_{e+1} = x_e + h sum b_j (dF_j . stages + dF_j/dc . c).
         weighted = t.weights[:, None, None] * dynamic
         self._step = weighted[..., :nv].swapaxes(1, 2).reshape(N, nx, K * nv)
@@ -62,8 +62,8 @@ class StageElimination:
     @property
     def determinant(self) -> tuple[float, float]:
         """Sign and logarithm of the determinant of the stages' equations."""
-        signs, logs = np.linalg.slogdet(self._inverse)
-        return float(np.prod(signs)), -float(np.sum(logs))
+        signs, logs = np.linalg.slogdet(self._matrix)
+        return float(np.prod(signs)), float(np.sum(logs))
 
     @property
     def relations(self) -> tuple[Array, Array, Array]:
@@ -74,10 +74,10 @@ class StageElimination:
         """Right-hand sides d (N, nx), and the stages (N, K nv) if nodes and constants stay."""
         if self._only is None:
             share = times(self._inverse, -residuals.stages.reshape(len(self._inverse), -1))
-        elif residuals is self._only:
+        elif residuals.stages is self._only.stages:
             share = self._share
         else:
-            raise ValueError("these factors are for other residuals only")
+            raise ValueError("these factors are for other residuals of the stages")
         return times(self._step, share) - residuals.nodes, share
 
     def expand(self, nodes: Array, constants: Array, share: Array) -> Array:

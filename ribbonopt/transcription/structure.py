@@ -83,7 +83,7 @@ class Blocks(Protocol):
     ) -> Elimination:
         """Reduce the elements to their nodes; LinAlgError where an element is singular.
 
-        Quicker where it is for the residuals `only`.
+        Quicker where it is for the stages' part of the residuals `only`.
         """
 
     def widths(self, p: Array) -> Array:

@@ -22,7 +22,7 @@ from ribbonopt.solution import Solution
 from .camera import place_camera
 from .facets import SEAM, draw_surface
 from .pieces import Array
-from .ribbon import _paint, _scale_bar
+from .ribbon import paint, scale_bar
 from .style import BENDING, FAINT, INK, TWIST, blank, tidy
 from .subject import subject_of
 from .surface import sweep
@@ -85,11 +85,11 @@ def plot_strip(ribbons: Sequence[Solution], captions: Sequence[str]) -> Figure:
     figure = blank(max(width * len(subjects), 3.4), min(width * tall, TALLEST) + below)
     panels = figure.subplots(1, len(subjects), squeeze=False)[0]
     for axes, drawing, text in zip(panels, drawings, texts, strict=True):
-        _paint(axes, replace(drawing, line_widths=np.maximum(0.6 * drawing.line_widths, SEAM)))
+        paint(axes, replace(drawing, line_widths=np.maximum(0.6 * drawing.line_widths, SEAM)))
         axes.set(xlim=box[:2], ylim=box[2:], aspect="equal", xticks=[], yticks=[])
         axes.spines[:].set_visible(False)
         axes.set_xlabel(text, fontsize=9, color=INK)
-    _scale_bar(panels[0], box, size, " m" if subjects[0].units.si else "")
+    scale_bar(panels[0], box, size, " m" if subjects[0].units.si else "")
     note = "; light: by symmetry" if any(subject.mirrored for subject in subjects) else ""
     figure.supxlabel(f"one scale, one view{note}", fontsize=8.5, color=FAINT)
     return figure

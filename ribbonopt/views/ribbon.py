@@ -54,17 +54,18 @@ def draw_ribbon(subject: Subject, half_width: float | None = None) -> Figure:
     height = min(HEIGHT, page * (box[3] - box[2]))
     figure = blank(WIDTH, max(height, 0.2 * WIDTH) + 0.7)
     axes = figure.add_subplot()
-    _paint(axes, drawing)
+    paint(axes, drawing)
     axes.set(xlim=box[:2], ylim=box[2:], aspect="equal")
     axes.set_axis_off()
     head(axes, subject.name, subject.units)
-    _scale_bar(axes, box, size, " m" if subject.units.si else "")
+    scale_bar(axes, box, size, " m" if subject.units.si else "")
     _triad(axes, camera, box, size)
     figure.supxlabel(_caption(subject, surface), fontsize=8.5, color=INK)
     return figure
 
 
-def _paint(axes: Axes, drawing: Drawing) -> None:
+def paint(axes: Axes, drawing: Drawing) -> None:
+    """Draw the facets and lines of a ribbon into axes."""
     from matplotlib.collections import PolyCollection
 
     axes.add_collection(
@@ -80,7 +81,8 @@ def _paint(axes: Axes, drawing: Drawing) -> None:
     )
 
 
-def _scale_bar(axes: Axes, box: tuple[float, float, float, float], size: float, unit: str) -> None:
+def scale_bar(axes: Axes, box: tuple[float, float, float, float], size: float, unit: str) -> None:
+    """Draw a bar of a round length, at most a quarter of `size`, below a box."""
     exponent = np.floor(np.log10(0.25 * size))
     length = max(k * 10**exponent for k in (1, 2, 5) if k * 10**exponent <= 0.25 * size)
     x, y = box[0] + 0.03 * size, box[2] + 0.03 * size
