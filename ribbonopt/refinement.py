@@ -69,7 +69,11 @@ def refine(
     """
     first, path, before = solution, list(solution.path), np.inf
     for _ in range(ROUNDS):
-        error, _ = relative_error(solution)
+        try:
+            error, _ = relative_error(solution)
+        except np.linalg.LinAlgError:
+            status = Status.SINGULAR
+            return replace(solution, status=status, message=status.value, path=tuple(path))
         if error <= SAFE * tolerance:
             done = solution if solution is first else verified(solution, ribbon)
             return replace(done, path=tuple(path))

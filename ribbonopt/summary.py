@@ -93,7 +93,10 @@ def _error_estimate(solution: Solution) -> dict[str, float | None]:
     """Estimated absolute errors; None without convergence, and for minima (no square system)."""
     if not solution.status.converged or solution.problem.recovered:
         return dict.fromkeys(("n0", "m0", "u0", "H0", "energy", "states"))
-    return dict(estimate_error(solution))
+    try:
+        return dict(estimate_error(solution))
+    except np.linalg.LinAlgError:  # singular equations: the solution is not the only one near
+        return dict.fromkeys(("n0", "m0", "u0", "H0", "energy", "states"))
 
 
 def versions() -> dict[str, str]:

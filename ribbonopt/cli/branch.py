@@ -5,7 +5,8 @@ from __future__ import annotations
 import argparse
 import gc
 import sys
-from collections.abc import Iterator, Mapping
+from collections.abc import Generator, Iterator, Mapping
+from contextlib import closing
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
@@ -36,9 +37,11 @@ def follow(options: argparse.Namespace) -> int:
     for x, y in pairs or []:
         continuation.ledger.recorder.known((x, y), f"--plot {x}:{y}")
     folder = BranchFolder(options.out or f"results/{scene.name}", scene, resume=options.resume)
+    shown = _shown(folder.follow(continuation), continuation)
     try:
-        for _ in _shown(folder.follow(continuation), continuation):
-            pass
+        with closing(shown):  # takes the bar away before anything is said
+            for _ in shown:
+                pass
     except KeyboardInterrupt:
         print(
             f"ribbonopt: interrupted; {len(folder.rows)} points kept in {folder.folder}, "
@@ -152,25 +155,27 @@ def _changes(rows: list[dict[str, Any]]) -> Iterator[str]:
         yield "stable" if count == 0 else f"unstable: {count} negative directions"
 
 
-def _shown(points: Iterator[Point], continuation: Continuation) -> Iterator[Point]:
+def _shown(points: Iterator[Point], continuation: Continuation) -> Generator[Point, None, None]:
     """Give the points on, with a bar of progress on a terminal."""
     if not sys.stderr.isatty():
         yield from points
         return
     width = 0
-    for point in points:
-        row = point.row
-        stage = continuation.stages[point.stage]
-        line = (
-            f"\r{_bar(row, stage.from_, stage.values[-1] if stage.values else stage.to)} "
-            f"{row['parameter']} = {row['value']:.6g}  step {point.step:.2g}"
-        )
-        if row["error"] is not None:
-            line += f"  error {row['error']:.0e}"
-        print(line.ljust(width), end="", file=sys.stderr, flush=True)
-        width = len(line)
-        yield point
-    print("\r" + " " * width + "\r", end="", file=sys.stderr, flush=True)
+    try:
+        for point in points:
+            line = _progress(point, continuation)
+            print("\r" + line.ljust(width), end="", file=sys.stderr, flush=True)
+            width = len(line)
+            yield point
+    finally:
+        print("\r" + " " * width + "\r", end="", file=sys.stderr, flush=True)
+
+
+def _progress(point: Point, continuation: Continuation) -> str:
+    row, stage = point.row, continuation.stages[point.stage]
+    bar = _bar(row, stage.from_, stage.values[-1] if stage.values else stage.to)
+    line = f"{bar} {row['parameter']} = {row['value']:.6g}  step {point.step:.2g}"
+    return line if row["error"] is None else f"{line}  error {row['error']:.0e}"
 
 
 def _bar(row: Mapping[str, Any], begin: float | None, end: float | None) -> str:

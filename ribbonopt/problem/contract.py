@@ -128,6 +128,14 @@ class BoundaryValueProblem:
         """Numbers that the conditions must determine: states at one point and constants."""
         return int(self.state.numel() + self.constants.numel())
 
+    def contains(self, parameter: int) -> bool:
+        """Whether any equation, condition or length contains a parameter, by its place."""
+        parts = [self.start, *self.conditions.values()]
+        for phase in self.phases:
+            parts += [phase.dynamics, phase.algebraic, phase.path, phase.length]
+            parts += [] if phase.cost is None else [phase.cost]
+        return bool(ca.depends_on(ca.vertcat(*parts), self.parameters[parameter]))
+
     @cached_property
     def extent_function(self) -> ca.Function:
         """Function (c, theta) of the arclength where the first phase starts and all lengths."""

@@ -24,6 +24,7 @@ from .stored import Stored, state_of
 
 FILE, TABLE, SCENE = "branch.jsonl", "branch.csv", "scene.yaml"
 FIGURES = ("branch.png", "ribbons.png")
+BESIDE = f".{FILE}.new"  # what a branch file is for a moment
 
 
 class BranchFolder:
@@ -40,7 +41,7 @@ class BranchFolder:
         """
         self.folder, self.scene = Path(folder), scene
         self.lines: list[dict[str, Any]] = []
-        own = {FILE, TABLE, SCENE, *FIGURES}
+        own = {FILE, TABLE, SCENE, *FIGURES, BESIDE}
         try:
             self.folder.mkdir(parents=True, exist_ok=True)
             found = sorted(path.name for path in self.folder.iterdir())
@@ -62,6 +63,8 @@ class BranchFolder:
             self._replace(FILE, "".join(_line(line) for line in self.lines))
             (self.folder / SCENE).write_text(text, encoding="utf-8")
             self._file = open(self.folder / FILE, "a", encoding="utf-8")
+        except OutputError:  # an OSError too, but one that says what to do
+            raise
         except OSError as error:
             raise unwritable(self.folder, error) from error
 
@@ -81,7 +84,22 @@ class BranchFolder:
                 yield point
             self._note_endings(continuation, known)
         finally:
-            self.write_table()
+            self.close()
+
+    def close(self) -> None:
+        """Write the table and close the branch file; OutputError if the disk is full."""
+        try:
+            self._file.close()
+            if self.lines:
+                self.write_table()
+                return
+            # Nothing was found, and so nothing stays.
+            for name in (FILE, SCENE):
+                (self.folder / name).unlink(missing_ok=True)
+            if not any(self.folder.iterdir()):
+                self.folder.rmdir()
+        except OSError as error:
+            raise unwritable(self.folder, error) from error
 
     def write_table(self) -> None:
         """Write the rows as CSV."""
@@ -127,7 +145,7 @@ class BranchFolder:
 
     def _replace(self, name: str, text: str) -> None:
         """Write a file so that it is whole at any time."""
-        beside = self.folder / f".{name}.new"
+        beside = self.folder / BESIDE
         beside.write_text(text, encoding="utf-8")
         beside.replace(self.folder / name)
 
@@ -147,15 +165,33 @@ def rows_of(lines: list[dict[str, Any]]) -> list[dict[str, Any]]:
 
 def _read(path: Path) -> list[dict[str, Any]]:
     """Whole lines; special points after the last regular one will be found again."""
-    lines = []
-    for text in path.read_text(encoding="utf-8").splitlines():
+    lines: list[dict[str, Any]] = []
+    for number, text in enumerate(path.read_bytes().split(b"\n"), start=1):
+        if not text:
+            continue
         try:
-            lines.append(json.loads(text))
+            line = json.loads(text)
         except ValueError:
             break  # cut short when the process died, and nothing after it
+        if not _sound(line):
+            raise OutputError(
+                f"{path}, line {number}: is damaged; remove it and all lines after it to go on"
+            )
+        lines.append(line)
     while lines and "row" in lines[-1] and lines[-1]["row"]["kind"] != POINT:
         lines.pop()
     return lines
+
+
+def _sound(line: Any) -> bool:
+    """Whether a line holds what `BranchFolder` writes."""
+    if not isinstance(line, dict):
+        return False
+    row, ending = line.get("row"), line.get("ending")
+    if isinstance(ending, dict):
+        return {"stage", "branch", "reached", "reason"} <= ending.keys()
+    keys = {"number", "stage", "branch", "kind"}
+    return isinstance(row, dict) and keys <= row.keys() and isinstance(line.get("state"), dict)
 
 
 def _line(value: dict[str, Any]) -> str:

@@ -16,9 +16,11 @@ import numpy as np
 
 from ribbonopt.errors import ConvergenceError, ModelError
 from ribbonopt.pipeline import Prepared, prepare
+from ribbonopt.problem import BoundaryValueProblem
 from ribbonopt.scene import Scene
 from ribbonopt.scene.continuation_checks import stages_of
 from ribbonopt.solution import Solution
+from ribbonopt.solvers import Status
 
 from .branches import Branch, History, Key, Ledger, Nothing
 from .curve import Curve
@@ -27,6 +29,7 @@ from .recorded import Recorder
 from .special import null_direction
 from .walk import Ending, Walk
 
+STRAIGHT = 1e-9  # largest moment of a straight ribbon, in units Dw = L = 1
 AWAY, LEAST_AWAY = 0.05, 1e-4  # arclength of the first step onto a branch that crosses
 
 
@@ -53,8 +56,12 @@ class Continuation:
                 "continuation: the scene has none; add for example "
                 "'continuation: {parameter: law.epsilon, to: 1e-4, scale: log}'"
             )
-        first = Curve(scene, self.stages[0])
+        first, before = Curve(scene, self.stages[0]), scene
         self.prepared = prepared or prepare(first.scene_at(first.start))
+        for stage in self.stages:
+            curve = Curve(before, stage)
+            _refuse_idle(curve, self.prepared.problem)
+            before = curve.scene_at(curve.goals[-1])
         if not self.prepared.problem.square:
             raise ModelError(
                 f"formulation: {self.scene.formulation} is not a square system of equations, which "
@@ -72,7 +79,6 @@ class Continuation:
         scene, before = self.scene, None
         for i, stage in enumerate(self.stages):
             curve = Curve(scene, stage)
-            _refuse_idle(curve)
             known = history.points(i, 0, POINT)
             first = known[0].solution if known else self._first(curve, before)
             metric = Metric.at(first, curve.start, curve.span)
@@ -106,6 +112,8 @@ class Continuation:
         scene = curve.scene_at(curve.start)
         fallback = before is None
         found = self.prepared.solve(scene, guess=before, fallback=fallback)
+        if curve.stage.special and found.status is not Status.NO_START:
+            _refuse_straight(found, self.prepared)
         if not found.verified:
             raise ConvergenceError(
                 f"no solution to begin with, at {curve.stage.parameter} = {curve.stage.from_:g}: "
@@ -153,9 +161,21 @@ def _switched(walk: Walk, point: Point, sign: int) -> Point:
     raise np.linalg.LinAlgError("no point was found on the branch that crosses")
 
 
-def _refuse_idle(curve: Curve) -> None:
+def _refuse_straight(found: Solution, prepared: Prepared) -> None:
+    """Raise a ModelError where branch points are asked of a law without a derivative."""
+    moments = np.abs(found.joined.at_stages["m"]).max()
+    if prepared.ribbon.law.kinked and moments < STRAIGHT:
+        raise ModelError(
+            f"law: {found.scene.law.type} has no derivative at m = 0, so that a straight ribbon of "
+            "it has no branch points to be found; use law: kirchhoff, whose buckling loads they "
+            "are, or 'special: false' in the continuation",
+            "law",
+        )
+
+
+def _refuse_idle(curve: Curve, problem: BoundaryValueProblem) -> None:
     """Raise a ModelError where the parameter changes nothing."""
-    if not curve.moves:
+    if not curve.moves(problem):
         raise ModelError(
             f"continuation.parameter: {curve.stage.parameter} changes nothing in this scene; "
             "continue a number that its equations contain",

@@ -4,11 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
 from functools import cached_property
+from itertools import pairwise
 
 import numpy as np
 
 from ribbonopt.arrays import Array
-from ribbonopt.problem import theta_values
+from ribbonopt.problem import BoundaryValueProblem, theta_values
 from ribbonopt.scene import Continuation, Scene
 from ribbonopt.scene.lens import with_value
 from ribbonopt.scene.units import in_special_units
@@ -56,7 +57,10 @@ class Curve:
     @property
     def largest(self) -> float:
         """Largest change of the position in a step."""
-        return self.stage.largest or max(self.span / STEPS, self.stage.first or 0.0)
+        if self.stage.largest or not self.stage.values:
+            return self.stage.largest or max(self.span / STEPS, self.stage.first or 0.0)
+        places = (self.start, *self.goals)
+        return max(abs(b - a) for a, b in pairwise(places))
 
     @property
     def first(self) -> float:
@@ -68,11 +72,11 @@ class Curve:
         """Change of the position below which a step is not tried."""
         return self.stage.smallest or 1e-6 * min(self.span, self.first)
 
-    @property
-    def moves(self) -> bool:
+    def moves(self, problem: BoundaryValueProblem) -> bool:
         """Whether the equations of the scene contain the parameter."""
         first, last = (self._at(position)[1] for position in (self.start, self.goals[-1]))
-        return not np.array_equal(first, last)
+        moving = [int(i) for i in np.flatnonzero(first != last)]
+        return any(problem.contains(i) for i in moving)
 
     def position(self, value: float) -> float:
         """Position of a value of the parameter."""

@@ -27,6 +27,9 @@ NUMBERS = (
 )
 
 
+WORDS = ("parameter", "kind", "switches")
+
+
 class Recorder:
     """Rows of plain numbers: loads and strains at the start, energy, and what the scene records."""
 
@@ -39,6 +42,12 @@ class Recorder:
             If a condition of a stage names what is not recorded.
         """
         self.formulas = {name: parse_record(text, scene) for name, text in scene.record.items()}
+        for name in self.formulas:
+            if name in (*NUMBERS, *WORDS):
+                raise ModelError(
+                    f"record.{name}: every row has {name!r} already; choose another name",
+                    f"record.{name}",
+                )
         for stage in stages_of(scene):
             for text in stage.stop:
                 left, _, right = parse_stop(text)
@@ -79,8 +88,10 @@ class Recorder:
         for name, vector in (("n0", solution.n0), ("m0", solution.m0)):
             row |= {f"{name}{axis}": float(vector[i]) for i, axis in enumerate("xyz")}
         row |= {"u2": float(solution.u0[1]), "u3": float(solution.u0[2])}
-        for name, (formula, s) in self.formulas.items():
-            row[name] = float(solution.sample(s, formula))
+        with np.errstate(all="ignore"):
+            for name, (formula, s) in self.formulas.items():
+                value = float(solution.sample(s, formula))
+                row[name] = value if np.isfinite(value) else None
         row["switches"] = solution.switch_points.tolist()
         row["intervals"] = solution.dense.blocks.layout.element_count
         row["iterations"] = solution.iterations
@@ -89,9 +100,15 @@ class Recorder:
 
 def stopped(row: Row, stage: Continuation) -> str:
     """Return the condition of a stage that a row meets, "" if none."""
-    values = {name: np.array([value]) for name, value in row.items() if isinstance(value, float)}
+    values = {
+        name: np.array([float(value)])
+        for name, value in row.items()
+        if isinstance(value, int | float)
+    }
     for text in stage.stop:
         left, sign, right = parse_stop(text)
+        if any(word not in values for word in (*words_of(left), *words_of(right))):
+            continue  # not known here
         a, b = (float(evaluate_formula(side, values)[0]) for side in (left, right))
         if a > b if sign == ">" else a < b:
             return text

@@ -28,7 +28,7 @@ from .special import special_points
 NATURAL = 0.1  # least share of the position in the tangent for natural continuation
 AIM = 0.02  # wanted distance of a prediction from the branch, in arclength
 GROWTH, SHRINK = 2.0, 0.25  # of a step, after success and failure
-LONGEST = 0.5  # arclength of a step
+LONGEST = 0.5  # arclength of a step where the parameter turns
 SPARE = 0.05  # of the error that a new mesh may leave: it shall serve the points to come
 STRAIGHT = 0.7  # least cosine of the angle between tangents one step apart
 DIGITS = 1e-12  # of a position, relative to the span
@@ -61,7 +61,7 @@ class Walk:
         ahead[-1] = self.direction or 1
         found, tangent = near(self.curve, self.metric, solution, position, ahead)
         share = max(abs(self._share(solution, tangent)), NATURAL)
-        step = min(self.curve.first / self.curve.span / share, LONGEST)
+        step = self.curve.first / self.curve.span / share
         return Point(solution, position, tangent, found.sign, step, stage=stage)
 
     def points(self, point: Point) -> Iterator[Point]:
@@ -122,8 +122,8 @@ class Walk:
         tangent, here = point.tangent, point.position
         share = self._share(point.solution, tangent)
         longest = self.curve.largest / self.curve.span / max(abs(share), 1e-6)
-        arc = min(step, longest, LONGEST)
         natural = abs(share) > NATURAL
+        arc = min(step, longest) if natural else min(step, longest, LONGEST)
         change = arc * tangent[-1]
         lands = change * (goal - here) > 0 and abs(change) >= abs(goal - here) * (1 - DIGITS)
         if natural and lands:
