@@ -68,6 +68,23 @@ def parser() -> argparse.ArgumentParser:
         help="draw what is recorded, such as value:energy u2:energy, and ribbons along the branch",
     )
 
+    batch = verbs.add_parser(
+        "batch", help="solve all ribbons of a study, on all cores", formatter_class=_help
+    )
+    batch.add_argument(
+        "study", nargs="+", metavar="STUDY", help="study file, scenes, folder of them or pattern"
+    )
+    batch.add_argument(
+        "--set", action="append", default=[], metavar="KEY=VALUE", help="override for all ribbons"
+    )
+    batch.add_argument("--jobs", metavar="N", help="worker processes (default: one for each core)")
+    batch.add_argument("--out", metavar="DIR", help="folder of the rows (default: results/NAME)")
+    batch.add_argument("--resume", action="store_true", help="complete the rows in the folder")
+    batch.add_argument("--scheduler", metavar="ADDRESS", help="Dask scheduler to use instead")
+    batch.add_argument("--yes", action="store_true", help="solve more than 100,000 ribbons")
+    batch.add_argument("--json", action="store_true", help="print exactly one JSON object")
+    batch.add_argument("--quiet", action="store_true", help="print nothing unless it fails")
+
     verbs.add_parser(
         "schema", help="print the JSON schema of scenes, for editors", formatter_class=_help
     )

@@ -85,9 +85,13 @@ class Search:
                 return self._run_phases(arcs, sharp)
         return self.run(guess, quick=True)
 
+    def changes_sign(self, solution: Solution) -> bool:
+        """Whether m2 changes sign along a solution."""
+        return len(sign_changes(solution).kinds) > 1
+
     def jumps(self, solution: Solution) -> bool:
         """Whether the law's strains jump along a solution, so that it needs phases to be right."""
-        return self.needs_phases and len(sign_changes(solution).kinds) > 1
+        return self.needs_phases and self.changes_sign(solution)
 
     @property
     def needs_phases(self) -> bool:

@@ -91,4 +91,5 @@ MODULES = {
     "compare": "several",
     "bench": "several",
     "continue": "branch",
+    "batch": "batch",
 }

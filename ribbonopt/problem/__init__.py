@@ -6,7 +6,7 @@ from importlib import import_module
 from ribbonopt.scene import Algebraic, Scene
 
 from .contract import BoundaryValueProblem, Phase
-from .ribbon import Ribbon, ribbon_of, theta_of, theta_values
+from .ribbon import Ribbon, ribbon_of, structure_of, theta_of, theta_values
 
 Formulation = Callable[[Ribbon, Scene], BoundaryValueProblem]
 
@@ -41,6 +41,7 @@ __all__ = [
     "formulation_name",
     "pose",
     "ribbon_of",
+    "structure_of",
     "theta_of",
     "theta_values",
 ]

@@ -140,6 +140,16 @@ def _theta_of(scene: Scene) -> dict[str, float]:
     return values
 
 
+def structure_of(scene: Scene) -> tuple[object, ...]:
+    """Return what scenes share that differ in numbers only, which serve one built problem."""
+    conditions = [
+        (type(c).__name__, *(v for v in vars(c).values() if isinstance(v, str)))
+        for c in conditions_of(scene)
+    ]
+    settings = scene.law.type, scene.formulation, scene.states, scene.transcription, scene.solver
+    return (*settings, tuple(theta_of(scene)), tuple(conditions), scene.boundary.also)
+
+
 def theta_values(scene: Scene) -> Array:
     """Return the parameters theta (nt,) of a scene."""
     return np.array(list(theta_of(scene).values()))

@@ -110,6 +110,18 @@ def loads_scene(text: str, source: str = "<string>", overrides: Sequence[str] = 
     return scene
 
 
+def plain_yaml(text: str, source: str) -> Any:
+    """Read YAML text as plain data; `source` names it in the SceneError of what is no YAML."""
+    try:
+        found = read(text)
+    except YamlTextError as error:
+        where = f"{source}, line {error.line}" if error.line else source
+        raise SceneError(f"{where}: {error}") from None
+    if found.problems:
+        raise SceneError(report(source, found.problems, found.places))
+    return found.data
+
+
 def validate_scene(scene: Scene) -> Scene:
     """Check a scene built in Python as strictly as one read from a file.
 

@@ -82,12 +82,8 @@ class Recorder:
             "negative": _negative(solution) if stage.stability and point.kind == POINT else None,
             # At a fold the equations at a given parameter are singular: so is their estimate.
             "error": relative_error(solution)[0] if point.kind == POINT else None,
-            "energy": solution.energy,
-            "H0": float(solution.start["H"]),
+            **numbers_of(solution),
         }
-        for name, vector in (("n0", solution.n0), ("m0", solution.m0)):
-            row |= {f"{name}{axis}": float(vector[i]) for i, axis in enumerate("xyz")}
-        row |= {"u2": float(solution.u0[1]), "u3": float(solution.u0[2])}
         with np.errstate(all="ignore"):
             for name, (formula, s) in self.formulas.items():
                 value = float(solution.sample(s, formula))
@@ -96,6 +92,14 @@ class Recorder:
         row["intervals"] = solution.dense.blocks.layout.element_count
         row["iterations"] = solution.iterations
         return row
+
+
+def numbers_of(solution: Solution) -> dict[str, float]:
+    """Return energy, invariant, loads (lab frame) and strains at the start, in scene units."""
+    row = {"energy": solution.energy, "H0": float(solution.start["H"])}
+    for name, vector in (("n0", solution.n0), ("m0", solution.m0)):
+        row |= {f"{name}{axis}": float(vector[i]) for i, axis in enumerate("xyz")}
+    return row | {"u2": float(solution.u0[1]), "u3": float(solution.u0[2])}
 
 
 def stopped(row: Row, stage: Continuation) -> str:

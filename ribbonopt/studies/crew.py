@@ -1,0 +1,142 @@
+"""One worker process and what may happen to it: it dies, it hangs, it is no longer wanted."""
+
+from __future__ import annotations
+
+import json
+import os
+import queue
+import subprocess
+import sys
+import threading
+from collections.abc import Iterator
+from typing import Any
+
+from .chunks import Chunk
+
+Row = dict[str, Any]
+STARTING = 60.0  # seconds that a new process may take before its first ribbon is counted
+ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
+
+
+class Crew:
+    """Runs chunks in a process of its own, begun again when it is lost."""
+
+    def __init__(self, save: str = "none", folder: str = "", time_limit: float = 300.0) -> None:
+        """Begin without a process."""
+        self.save, self.folder, self.time_limit = save, folder, time_limit
+        self._process: subprocess.Popen[str] | None = None
+        self._answers: queue.Queue[str] = queue.Queue()
+
+    def rows(self, chunk: Chunk, known: frozenset[int]) -> Iterator[Row]:
+        """Yield the rows of a chunk that are not known; lost ribbons get a row that says so."""
+        skip: list[int] = []
+        done = set(known)
+        while True:
+            fresh = self._process is None
+            self._send(chunk, skip, done)
+            lost, at = "", chunk.ribbons[0].number
+            while True:
+                answer = self._answer(STARTING * fresh + self.time_limit)
+                fresh = False
+                if isinstance(answer, str):
+                    lost = answer
+                    break
+                if "at" in answer:
+                    at = answer["at"]
+                    continue
+                if "row" not in answer:
+                    return
+                done.add(answer["row"]["number"])
+                yield answer["row"]
+            culprit = next(ribbon for ribbon in chunk.ribbons if ribbon.number == at)
+            skip.append(at)
+            if at in known:  # its row is there already
+                continue
+            yield {
+                "number": culprit.number,
+                "scene": culprit.source.name,
+                **culprit.inputs,
+                "status": lost,
+                "verified": False,
+                "message": _said(lost, self.time_limit),
+            }
+            if all(r.number in done or r.number in skip for r in chunk.ribbons):
+                return
+
+    def close(self) -> None:
+        """End the process."""
+        if self._process is not None:
+            self._process.kill()
+            self._process.wait()
+            for stream in (self._process.stdin, self._process.stdout):
+                if stream is not None:
+                    stream.close()
+            self._process = None
+
+    def _send(self, chunk: Chunk, skip: list[int], known: set[int]) -> None:
+        message = {
+            "ribbons": [
+                {
+                    "number": r.number,
+                    "source": r.source.name,
+                    "text": r.source.text,
+                    "set": r.overrides,
+                    "inputs": r.inputs,
+                }
+                for r in chunk.ribbons
+            ],
+            "skip": skip,
+            "known": sorted(known),
+            "save": self.save,
+            "folder": self.folder,
+        }
+        process = self._process or self._begin()
+        assert process.stdin is not None
+        try:
+            process.stdin.write(json.dumps(message) + "\n")
+            process.stdin.flush()
+        except OSError:  # it died while it had nothing to do
+            self.close()
+            self._send(chunk, skip, known)
+
+    def _begin(self) -> subprocess.Popen[str]:
+        command = [sys.executable, "-m", "ribbonopt.studies.worker"]
+        process = subprocess.Popen(
+            command,
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            text=True,
+            env=os.environ | ONE_THREAD,
+        )
+        self._process, self._answers = process, queue.Queue()
+        threading.Thread(target=_read, args=(process, self._answers), daemon=True).start()
+        return process
+
+    def _answer(self, seconds: float) -> dict[str, Any] | str:
+        """Return the next answer, or how the process was lost."""
+        try:
+            line = self._answers.get(timeout=seconds)
+        except queue.Empty:
+            self.close()
+            return "timed_out"
+        if not line:
+            self.close()
+            return "crashed"
+        answer: dict[str, Any] = json.loads(line)
+        return answer
+
+
+def _read(process: subprocess.Popen[str], answers: queue.Queue[str]) -> None:
+    assert process.stdout is not None
+    try:
+        for line in process.stdout:
+            answers.put(line)
+    except (OSError, ValueError):  # closed meanwhile
+        pass
+    answers.put("")
+
+
+def _said(lost: str, limit: float) -> str:
+    if lost == "timed_out":
+        return f"took more than {limit:g} s: raise time_limit, or start from an easier ribbon"
+    return "its process died: run it alone by ribbonopt solve to see why"

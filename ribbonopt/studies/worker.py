@@ -1,0 +1,145 @@
+"""A worker of a batch: reads chunks as lines of JSON, writes a line for each ribbon.
+
+A process of its own (`python -m ribbonopt.studies.worker`), so that a ribbon that hangs or crashes
+takes nothing with it. What is built for a structure is kept for the ribbons to come.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+import time
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
+import numpy as np
+
+from ribbonopt.accuracy.estimate import relative_error
+from ribbonopt.errors import RibbonoptError
+from ribbonopt.pipeline import Prepared, prepare
+from ribbonopt.pipeline import solve as solve_once
+from ribbonopt.scene import Scene, loads_scene
+from ribbonopt.solution import Solution
+
+from .neighbour import solved_beside
+from .recorded import numbers_of
+
+Row = dict[str, Any]
+
+
+class Worker:
+    """Solves chunks; keeps what it has built."""
+
+    def __init__(self) -> None:
+        """Begin with nothing built."""
+        self._built: list[Prepared] = []
+
+    def answers(self, chunk: dict[str, Any]) -> Iterator[dict[str, Any]]:
+        """Yield for every ribbon that it begins, and its row; those of `skip` are passed over."""
+        before: Solution | None = None
+        number = 0
+        for ribbon in chunk["ribbons"]:
+            if ribbon["number"] in chunk["skip"]:
+                continue
+            yield {"at": ribbon["number"]}
+            row, found = self._solved(ribbon, before, number)
+            if found is not None and found.verified:
+                before, number = found, ribbon["number"]
+            if ribbon["number"] not in chunk["known"]:
+                _save(chunk, ribbon, row, found)
+                yield {"row": row}
+
+    def _solved(
+        self, ribbon: dict[str, Any], before: Solution | None, number: int
+    ) -> tuple[Row, Solution | None]:
+        started = time.perf_counter()
+        row: Row = {"number": ribbon["number"], "scene": ribbon["source"], **ribbon["inputs"]}
+        try:
+            scene = loads_scene(ribbon["text"], ribbon["source"], ribbon["set"])
+            row["scene"] = scene.name
+            found, start = self._from_neighbour(scene, before, number)
+            row |= _outcome(found, start)
+        except (RibbonoptError, np.linalg.LinAlgError) as error:
+            found = None
+            status = getattr(error, "status", "bad_input")
+            row |= {"status": status, "verified": False, "message": str(error)}
+        row["seconds"] = time.perf_counter() - started
+        return row, found
+
+    def _from_neighbour(
+        self, scene: Scene, before: Solution | None, number: int
+    ) -> tuple[Solution, str]:
+        """Solve from the ribbon before if it is one of this structure, else from nothing."""
+        if scene.starts > 1:
+            return solve_once(scene), "own"
+        prepared = self._prepared(scene)
+        if before is not None and prepared.serves(before.scene):
+            found = solved_beside(prepared, scene, before)
+            if found is not None:
+                return found, f"ribbon {number}"
+        return prepared.solve(scene), "own"
+
+    def _prepared(self, scene: Scene) -> Prepared:
+        """Return the structure of a scene, built once."""
+        for prepared in self._built:
+            if prepared.serves(scene):
+                return prepared
+        self._built.append(prepare(replace(scene, continuation=None)))
+        return self._built[-1]
+
+
+def _outcome(found: Solution, start: str) -> Row:
+    row: Row = {
+        "status": found.status.name.lower(),
+        "verified": found.verified,
+        "message": "" if found.verified else found.message,
+    }
+    if found.status.converged:
+        row |= numbers_of(found) | {"error": _error(found)}
+    steps = [step["step"] for step in found.path]
+    return row | {"start": start, "iterations": found.iterations, "path": "; ".join(steps)}
+
+
+def _error(found: Solution) -> float | None:
+    """Relative error of the answer; None for minima and singular equations."""
+    if found.problem.recovered:
+        return None
+    try:
+        return relative_error(found)[0]
+    except np.linalg.LinAlgError:
+        return None
+
+
+def _save(chunk: dict[str, Any], ribbon: dict[str, Any], row: Row, found: Solution | None) -> None:
+    """Keep the full solution where the study wants it."""
+    wanted = chunk["save"] == "all" or (chunk["save"] == "failed" and not row["verified"])
+    if not wanted or found is None or not chunk["folder"]:
+        return
+    from ribbonopt.results import save_solution
+    from ribbonopt.staging import staged_result
+
+    with staged_result(Path(chunk["folder"]) / "solutions" / str(ribbon["number"])) as stage:
+        save_solution(found, stage.folder)
+        stage.commit()
+
+
+def main() -> None:
+    """Serve until stdin ends."""
+    answers = os.fdopen(os.dup(1), "w", encoding="utf-8")
+    os.dup2(2, 1)  # what libraries print must not stand among the answers
+    worker = Worker()
+    for line in sys.stdin:
+        for answer in worker.answers(json.loads(line)):
+            answers.write(json.dumps(answer) + "\n")
+            answers.flush()
+        answers.write('{"done": true}\n')
+        answers.flush()
+
+
+if __name__ == "__main__":
+    main()
