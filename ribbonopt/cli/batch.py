@@ -22,7 +22,7 @@ HUGE = 100_000  # ribbons, beyond which a study may be a mistake
 
 def batch(options: argparse.Namespace) -> int:
     """Solve all ribbons of a study."""
-    from ribbonopt.studies.batch import run_batch
+    from ribbonopt.studies.batch import reach, run_batch
     from ribbonopt.studies.batch_files import BatchFolder
     from ribbonopt.studies.sweep import load_study
 
@@ -31,6 +31,8 @@ def batch(options: argparse.Namespace) -> int:
     if study.count > HUGE and not options.yes:
         raise SceneError(f"{study.name}: {study.count} ribbons; say --yes if that is meant")
     study.check()
+    if options.scheduler:
+        reach(options.scheduler).close()  # before anything is written
     folder = BatchFolder(options.out or f"results/{study.name}", study, resume=options.resume)
     rows = run_batch(
         study,
@@ -47,15 +49,15 @@ def batch(options: argparse.Namespace) -> int:
                 bar.show()
     except KeyboardInterrupt:
         bar.clear()
-        folder.close()
         print(
             f"ribbonopt: interrupted; {len(folder.rows)} of {study.count} rows kept in "
             f"{folder.folder}, --resume goes on from there",
             file=sys.stderr,
         )
         return INTERRUPTED
+    finally:
+        folder.close()
     bar.clear()
-    folder.close()
     return _tell(options, folder)
 
 

@@ -106,16 +106,9 @@ def _on_this_machine(
 def _on_cluster(
     study: Study, chunks: list[Chunk], address: str, known: frozenset[int], folder: str
 ) -> Generator[Row, None, None]:
-    try:
-        from distributed import Client, as_completed  # the extra `distributed`
-    except ImportError:
-        raise SceneError(
-            "--scheduler: needs Dask; install it by pip install 'ribbonopt[distributed]'"
-        ) from None
-    try:
-        client: Any = Client(address, timeout=10)  # type: ignore[no-untyped-call]
-    except (OSError, TimeoutError, ValueError) as error:
-        raise SceneError(f"--scheduler {address}: cannot be reached ({error})") from None
+    from distributed import as_completed
+
+    client = reach(address)
     with client:
         futures = [
             client.submit(run_chunk, chunk, study.save, folder, study.time_limit, known, pure=False)
@@ -124,6 +117,20 @@ def _on_cluster(
         ready: Any = as_completed(futures)  # type: ignore[no-untyped-call]
         for future in ready:
             yield from future.result()
+
+
+def reach(address: str) -> Any:
+    """Return a client of a Dask scheduler; SceneError if it cannot be reached."""
+    try:
+        from distributed import Client  # the extra `distributed`
+    except ImportError:
+        raise SceneError(
+            "--scheduler: needs Dask; install it by pip install 'ribbonopt[distributed]'"
+        ) from None
+    try:
+        return Client(address, timeout=10)  # type: ignore[no-untyped-call]
+    except (OSError, TimeoutError, ValueError) as error:
+        raise SceneError(f"--scheduler {address}: cannot be reached ({error})") from None
 
 
 def run_chunk(

@@ -107,6 +107,7 @@ class Crew:
             stdout=subprocess.PIPE,
             text=True,
             env=os.environ | ONE_THREAD,
+            start_new_session=True,  # what interrupts the batch is told to it alone
         )
         self._process, self._answers = process, queue.Queue()
         threading.Thread(target=_read, args=(process, self._answers), daemon=True).start()

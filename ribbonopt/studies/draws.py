@@ -33,7 +33,7 @@ class Draw:
         if not isinstance(value, dict) or set(value) - {"count", "seed", "over"}:
             raise ValueError(f"found {value!r}, {expected}")
         over = value.get("over")
-        count, seed = (_whole(name, value.get(name)) for name in ("count", "seed"))
+        count, seed = (_whole(n, value.get(n, d)) for n, d in (("count", None), ("seed", 0)))
         if not isinstance(over, dict) or not over:
             raise ValueError(f"over: found {over!r}, {expected}")
         return cls(count, seed, {str(key): _distribution(key, item) for key, item in over.items()})

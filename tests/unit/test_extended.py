@@ -31,7 +31,7 @@ FOLD = FOLD_T**2 / (2 * math.cosh(FOLD_T / 4) ** 2)
 ACCURATE: dict[str, Scheme] = {
     "gauss 6": Collocation.named("gauss", 6),
     "radau 6": Collocation.named("radau", 6),
-    "rk8": MultipleShooting.named("rk8", steps=4),
+    "rk8": MultipleShooting.named("rk8", steps=3),
     "shot gauss 4": MultipleShooting.named("gauss", 4, 2),
 }
 ROUGH: dict[str, Scheme] = {
@@ -41,8 +41,9 @@ ROUGH: dict[str, Scheme] = {
     "shot gauss 1": MultipleShooting.named("gauss", 1, 1),
     "shot gauss 3": MultipleShooting.named("gauss", 3, 2),
 }
-MESHES = [(7,), (12,), (3, 6), (5, 3, 11)]
-FINE = [(1,), (5,), (23,), (2, 3, 1), (37, 14)]
+# nodes are reduced where a phase has more than 25 elements (of three states) or 39 (of two)
+MESHES = [(7,), (3, 6), (5, 3, 27)]
+FINE = [(1,), (5,), (2, 3, 1), (45, 2)]
 each_mesh = pytest.mark.parametrize("elements", MESHES, ids=str)
 each_accurate = pytest.mark.parametrize("scheme", ACCURATE)
 each_rough = pytest.mark.parametrize("scheme", ROUGH)
@@ -235,7 +236,7 @@ def test_determinant_is_the_dense_one_up_to_a_factor(
 ) -> None:
     nlp, line, parameters = random_line(scheme, elements)
     signs, logs = [], []
-    for seed in range(8):
+    for seed in range(6):
         w, _ = random_data(nlp, elements, seed)
         row, position = random_row(line, w, seed), 0.1 * seed
         if not np.isfinite(nlp.blocks.residuals(w, parameters(position)[0]).vector()).all():
@@ -244,15 +245,15 @@ def test_determinant_is_the_dense_one_up_to_a_factor(
         sign, log = np.linalg.slogdet(dense_jacobian(nlp, w, *parameters(position), row))
         signs.append(found.sign * sign)
         logs.append(found.log - log)
-    assert len(signs) >= 4
+    assert len(signs) >= 3
     assert signs == [signs[0]] * len(signs)
     assert abs(signs[0]) == 1
     np.testing.assert_allclose(logs, logs[0], rtol=0, atol=1e-6)
 
 
 def test_both_signs_of_determinants_occur() -> None:
-    nlp, line, _ = random_line("gauss 3", (23,))
-    found = [random_data(nlp, (23,), seed)[0] for seed in range(8)]
+    nlp, line, _ = random_line("gauss 3", (43,))
+    found = [random_data(nlp, (43,), seed)[0] for seed in range(8)]
     signs = [local(line, random_row(line, w, i), w, 0.4).sign for i, w in enumerate(found)]
     assert sorted(set(signs)) == [-1.0, 1.0]
     # the other way round the row, the other sign
@@ -260,7 +261,7 @@ def test_both_signs_of_determinants_occur() -> None:
     assert other == [-sign for sign in signs]
 
 
-@pytest.mark.parametrize("count", [1, 6, 23])
+@pytest.mark.parametrize("count", [1, 6, 47])
 @pytest.mark.parametrize("scheme", ["rk8", "shot gauss 4", "gauss 6"])
 def test_determinant_vanishes_where_branches_cross(scheme: str, count: int) -> None:
     nlp = ACCURATE[scheme].transcribe(swinging(), (count,))
