@@ -86,6 +86,7 @@ def test_rows_are_those_of_single_solves(study: Path) -> None:
         assert row["energy"] == pytest.approx(alone.energy, rel=1e-7)
 
 
+@pytest.mark.slow
 def test_rows_of_a_cluster_are_the_same(study: Path) -> None:
     distributed = pytest.importorskip("distributed")
     here = without_times(list(run_batch(load_study([study]), jobs=1)))
@@ -138,6 +139,7 @@ def test_a_worker_that_dies_takes_one_ribbon_with_it(study: Path) -> None:
     assert "its process died" in rows[3]["message"]
 
 
+@pytest.mark.slow
 def test_a_ribbon_that_hangs_is_given_up(study: Path) -> None:
     rows = lost(study, "hang", time_limit=5)
     assert [row["status"] for row in rows] == [*["converged"] * 3, "timed_out", *["converged"] * 2]
