@@ -60,8 +60,9 @@ class BranchFolder:
             if FILE in found:
                 self._same(text)
                 self.lines = _read(self.folder / FILE)
+            if SCENE not in found:
+                self._replace(SCENE, text)
             self._replace(FILE, "".join(_line(line) for line in self.lines))
-            (self.folder / SCENE).write_text(text, encoding="utf-8")
             self._file = open(self.folder / FILE, "a", encoding="utf-8")
         except OutputError:  # an OSError too, but one that says what to do
             raise

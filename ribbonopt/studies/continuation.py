@@ -19,6 +19,7 @@ from ribbonopt.pipeline import Prepared, prepare
 from ribbonopt.problem import BoundaryValueProblem
 from ribbonopt.scene import Scene
 from ribbonopt.scene.continuation_checks import stages_of
+from ribbonopt.scene.lens import value_at
 from ribbonopt.solution import Solution
 from ribbonopt.solvers import Status
 
@@ -74,11 +75,25 @@ class Continuation:
         """Follow all stages from the start."""
         return self.resume(Nothing())
 
+    def curve(self, stage: int, scene: Scene) -> Curve:
+        """Return the curve of a stage that begins at a scene.
+
+        Where the stage does not say from where, that is where the stages before have ended.
+        """
+        found, given = self.stages[stage], self.scene.continuation
+        given = given[stage] if isinstance(given, tuple) else given
+        if given is not None and given.from_ is None and given.values is None:
+            found = replace(found, from_=value_at(scene, found.parameter))
+        return Curve(scene, found)
+
     def resume(self, history: History) -> Iterator[Point]:
         """Go on where a history ends, as if there had been no break."""
         scene, before = self.scene, None
         for i, stage in enumerate(self.stages):
-            curve = Curve(scene, stage)
+            curve = self.curve(i, scene)
+            if curve.span == 0:
+                self.ledger.endings[i, 0] = Ending(True, "its goal is where it begins")
+                continue
             known = history.points(i, 0, POINT)
             first = known[0].solution if known else self._first(curve, before)
             metric = Metric.at(first, curve.start, curve.span)

@@ -27,9 +27,6 @@ class Stored:
         self._lines: dict[Key, list[dict[str, Any]]] = {}
         self._prepared, scene = continuation.prepared, continuation.scene
         self._curves: list[Curve] = []
-        for stage in continuation.stages:
-            self._curves.append(Curve(scene, stage))
-            scene = self._curves[-1].scene_at(self._curves[-1].goals[-1])
         for line in lines:
             if "ending" in line:
                 ending = line["ending"]
@@ -38,6 +35,11 @@ class Stored:
             else:
                 row = line["row"]
                 self._lines.setdefault((row["stage"], row["branch"]), []).append(line)
+        for i in range(len(continuation.stages)):
+            self._curves.append(continuation.curve(i, scene))
+            regular = [x for x in self._lines.get((i, 0), []) if x["row"]["kind"] == POINT]
+            if regular:  # where a stage ended, at its goal or before
+                scene = self._curves[-1].scene_at(regular[-1]["state"]["position"])
 
     def points(self, stage: int, branch: int, kind: str) -> list[Point]:
         """Points of a kind, in order."""
@@ -71,7 +73,7 @@ def spread(
 ) -> list[tuple[dict[str, Any], Solution]]:
     """Rows and solutions of a few points, spread over all branches."""
     regular = [line for line in lines if "row" in line and line["row"]["kind"] == POINT]
-    history = Stored(continuation, [])
+    history = Stored(continuation, lines)
     places = np.linspace(0, len(regular) - 1, min(count, len(regular))).round()
     chosen = [regular[int(i)] for i in places]
     return [(line["row"], history.point(line).solution) for line in chosen]

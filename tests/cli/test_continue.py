@@ -170,17 +170,10 @@ def whole(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Whole]:
 # what is written and said
 
 
-@pytest.fixture
-def column(run: Run, tmp_path: Path) -> Any:
-    """Return what a run of a column in two stages says; it writes into the folder `o`."""
-    return run("continue", written(tmp_path, COLUMN + STAGES), "--out", "o")
-
-
-def test_branch_is_written(column: Any, tmp_path: Path) -> None:
-    assert (column.status, column.err) == (0, "")
-    assert names(tmp_path) == ["o", "scene_.yaml"]
-    assert names(tmp_path / "o") == FILES
-    rows = points(tmp_path / "o")
+def test_branch_is_written(whole: Callable[[str], Whole]) -> None:
+    folder = whole("branches and stages").folder
+    assert names(folder) == FILES
+    rows = points(folder)
     assert [row["number"] for row in rows] == list(range(len(rows)))
     places = [(row["stage"], row["branch"]) for row in rows]
     assert places == sorted(places)
@@ -193,7 +186,10 @@ def test_branch_is_written(column: Any, tmp_path: Path) -> None:
         assert asked in values
 
 
-def test_report_says_what_was_found(column: Any, tmp_path: Path) -> None:
+def test_report_says_what_was_found(run: Run, tmp_path: Path) -> None:
+    status, out, err = run("continue", written(tmp_path, COLUMN + STAGES), "--out", "o")
+    assert (status, err) == (0, "")
+    assert names(tmp_path) == ["o", "scene_.yaml"]
     rows = points(tmp_path / "o")
     for words in (
         f"column: {len(rows)} points\n",
@@ -208,13 +204,13 @@ def test_report_says_what_was_found(column: Any, tmp_path: Path) -> None:
         "parameters.turn = 0 to 0.05",
         "  written: o: branch.csv, branch.jsonl, scene.yaml\n",
     ):
-        assert words in column.out
+        assert words in out
 
 
-def test_table_has_the_rows_of_the_branch(column: Any, tmp_path: Path) -> None:
-    assert column.status == 0
-    rows = points(tmp_path / "o")
-    with open(tmp_path / "o" / TABLE, newline="", encoding="utf-8") as file:
+def test_table_has_the_rows_of_the_branch(whole: Callable[[str], Whole]) -> None:
+    folder = whole("branches and stages").folder
+    rows = points(folder)
+    with open(folder / TABLE, newline="", encoding="utf-8") as file:
         table = list(csv.DictReader(file))
     assert len(table) == len(rows)
     for cells, row in zip(table, rows, strict=True):
@@ -224,9 +220,8 @@ def test_table_has_the_rows_of_the_branch(column: Any, tmp_path: Path) -> None:
         assert (cells["kind"], cells["parameter"]) == (row["kind"], row["parameter"])
 
 
-def test_switched_branches_are_mirror_images(column: Any, tmp_path: Path) -> None:
-    assert column.status == 0
-    rows = points(tmp_path / "o")
+def test_switched_branches_are_mirror_images(whole: Callable[[str], Whole]) -> None:
+    rows = points(whole("branches and stages").folder)
     one, other = ([row for row in rows if row["branch"] == branch] for branch in (1, 2))
     assert abs(one[-1]["deflection"]) > 0.1
     assert one[-1]["deflection"] == pytest.approx(-other[-1]["deflection"], abs=1e-8)
@@ -295,7 +290,8 @@ def test_counts_may_stop_the_branch(run: Run, tmp_path: Path, condition: str) ->
 
 def test_figures_are_drawn_and_drawn_again(run: Run, tmp_path: Path) -> None:
     scene = written(tmp_path, COLUMN + SHORT)
-    status, out, err = run("continue", scene, "--out", "o", "--plot")
+    pairs = ["value:deflection", "shortening:energy"]
+    status, out, err = run("continue", scene, "--out", "o", "--plot", *pairs)
     assert (status, err) == (0, "")
     assert names(tmp_path / "o") == [TABLE, BRANCH, "branch.png", "ribbons.png", SCENE]
     assert "branch.png" in out
@@ -303,12 +299,44 @@ def test_figures_are_drawn_and_drawn_again(run: Run, tmp_path: Path) -> None:
     first = (tmp_path / "o" / "branch.png").read_bytes()
     assert first.startswith(b"\x89PNG")
     before = (tmp_path / "o" / BRANCH).read_bytes()
-    pairs = ["value:deflection", "shortening:energy"]
-    assert run("continue", scene, "--out", "o", "--resume", "--quiet", "--plot", *pairs).status == 0
-    assert (tmp_path / "o" / BRANCH).read_bytes() == before
-    assert (tmp_path / "o" / "branch.png").read_bytes() != first
     assert run("plot", "o", "--out", "p").status == 0
     assert names(tmp_path / "p") == ["branch.png", "ribbons.png"]
+    assert (tmp_path / "p" / "branch.png").read_bytes() != first
+    # figures are no foreign files
+    assert run("continue", scene, "--out", "o", "--resume", "--quiet").status == 0
+    assert (tmp_path / "o" / BRANCH).read_bytes() == before
+
+
+@pytest.mark.parametrize(
+    ("asked", "drawn"),
+    [
+        (["u2:H0", "value:negative"], [("u2", "H0"), ("value", "negative")]),
+        ([], [("value", name) for name in ("shortening", "deflection", "u2", "energy")]),
+    ],
+    ids=["pairs", "usual"],
+)
+def test_what_is_drawn(
+    run: Run,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    asked: list[str],
+    drawn: list[tuple[str, str]],
+) -> None:
+    calls: list[tuple[Any, ...]] = []
+
+    def note(*arguments: Any, **_: Any) -> list[Path]:
+        calls.append(arguments)
+        return []
+
+    monkeypatch.setattr("ribbonopt.views.branch.save_branch_figures", note)
+    scene = written(tmp_path, COLUMN + SHORT)
+    assert run("continue", scene, "--out", "o", "--quiet", "--plot", *asked).status == 0
+    ((rows, ribbons, captions, _, pairs),) = calls
+    assert list(pairs) == drawn
+    assert rows == points(tmp_path / "o")
+    assert captions[0] == "parameters.P = 30"
+    assert captions[-1] == "parameters.P = 38"
+    assert len(ribbons) == len(captions) == min(5, len(rows))
 
 
 # a terminal
@@ -475,13 +503,12 @@ def test_resuming_nothing_is_beginning(run: Run, tmp_path: Path) -> None:
     assert (tmp_path / "o" / BRANCH).read_bytes() == (tmp_path / "p" / BRANCH).read_bytes()
 
 
-@pytest.mark.parametrize("flag", ["--quiet", "--json"])
 def test_interrupted_and_resumed_is_the_same(
-    run: Run, whole: Callable[[str], Whole], tmp_path: Path, flag: str
+    run: Run, whole: Callable[[str], Whole], tmp_path: Path
 ) -> None:
     reference = whole("fold")
     folder = tmp_path / "branch"
-    process = started(reference.scene, "--out", folder, flag)
+    process = started(reference.scene, "--out", folder, "--json")
     lines_appear(folder / BRANCH, 3, process)
     process.send_signal(signal.SIGINT)
     out, err = process.communicate(timeout=WAIT)

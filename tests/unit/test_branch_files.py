@@ -65,12 +65,6 @@ HEAD = [
 TAIL = ["switches", "intervals", "iterations"]
 
 each_scene = pytest.mark.parametrize("name", SCENES)
-#: Stored builds the scenes of later stages from the goal of a stage, not from where it stopped
-FORGOTTEN = pytest.mark.xfail(strict=True, reason="where a stage stopped is forgotten")
-each_scene_restored = pytest.mark.parametrize(
-    "name",
-    [pytest.param(name, marks=FORGOTTEN if name == "stopped" else ()) for name in SCENES],
-)
 
 
 class Followed(NamedTuple):
@@ -122,7 +116,7 @@ def stored(of: Followed) -> Iterator[tuple[Point, Point]]:
         yield point, next(other for other in same if other.number == point.number)
 
 
-@each_scene_restored
+@each_scene
 def test_points_come_back_bit_for_bit(followed: dict[str, Followed], name: str) -> None:
     pairs = list(stored(followed[name]))
     assert len(pairs) > 5
@@ -144,7 +138,7 @@ def test_points_come_back_bit_for_bit(followed: dict[str, Followed], name: str) 
         assert layout.elements == other.elements
 
 
-@each_scene_restored
+@each_scene
 def test_solutions_come_back_with_their_scene(followed: dict[str, Followed], name: str) -> None:
     s = np.linspace(*followed[name].scene.interval, 7)
     for point, back in stored(followed[name]):
@@ -322,13 +316,13 @@ def test_special_points_before_an_ending_stay(
     assert len(load_branch(path)[1]) == ending + 1
 
 
-@each_scene_restored
+@each_scene
 def test_going_on_after_every_line_is_the_same(
     followed: dict[str, Followed], tmp_path: Path, name: str
 ) -> None:
     of = followed[name]
     table = (of.folder / TABLE).read_bytes()
-    for count in range(1, len(of.lines), 1 if name == "stopped" else 4):
+    for count in range(1, len(of.lines), 1 if name == "stopped" else 6):
         path = copied(of, tmp_path / str(count), of.lines[:count])
         continuation = Continuation(of.scene)
         list(BranchFolder(path, of.scene, resume=True).follow(continuation))
