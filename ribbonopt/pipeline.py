@@ -16,7 +16,7 @@ import numpy as np
 from ribbonopt.built import Built
 from ribbonopt.errors import ConvergenceError
 from ribbonopt.guess import Guess, guess_of, initial_unknowns, words
-from ribbonopt.problem import BoundaryValueProblem, Ribbon, pose, structure_of, theta_values
+from ribbonopt.problem import BoundaryValueProblem, Ribbon, pose, theta_values
 from ribbonopt.problem.examine import examine, refuse_idle_settings, refuse_unreachable
 from ribbonopt.scene import Scene, SolutionGuess, validate_scene
 from ribbonopt.scene.units import in_special_units
@@ -101,10 +101,6 @@ class Prepared:
         search = self.search(self.scene)
         _ = search.run_smooth(guess) if isinstance(guess, Solution) else search.run(guess)
         return self._told(search, time.perf_counter() - started)
-
-    def serves(self, scene: Scene) -> bool:
-        """Whether a scene is of this structure: other numbers at most."""
-        return structure_of(in_special_units(scene)) == structure_of(in_special_units(self.scene))
 
     def search(self, scene: Scene) -> Search:
         """Return a search for solutions of a scene of this structure; nothing is solved yet."""

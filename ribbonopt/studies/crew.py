@@ -9,6 +9,7 @@ import subprocess
 import sys
 import threading
 from collections.abc import Iterator
+from contextlib import suppress
 from typing import Any
 
 from .chunks import Chunk
@@ -129,11 +130,9 @@ class Crew:
 
 def _read(process: subprocess.Popen[str], answers: queue.Queue[str]) -> None:
     assert process.stdout is not None
-    try:
+    with suppress(OSError, ValueError):  # closed meanwhile
         for line in process.stdout:
             answers.put(line)
-    except (OSError, ValueError):  # closed meanwhile
-        pass
     answers.put("")
 
 

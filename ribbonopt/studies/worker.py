@@ -26,7 +26,7 @@ from ribbonopt.pipeline import solve as solve_once
 from ribbonopt.scene import Scene, loads_scene
 from ribbonopt.solution import Solution
 
-from .neighbour import solved_beside
+from .neighbour import serves, solved_beside
 from .recorded import numbers_of
 
 Row = dict[str, Any]
@@ -78,7 +78,7 @@ class Worker:
         if scene.starts > 1:
             return solve_once(scene), "own"
         prepared = self._prepared(scene)
-        if before is not None and prepared.serves(before.scene):
+        if before is not None and serves(prepared, before.scene):
             found = solved_beside(prepared, scene, before)
             if found is not None:
                 return found, f"ribbon {number}"
@@ -87,7 +87,7 @@ class Worker:
     def _prepared(self, scene: Scene) -> Prepared:
         """Return the structure of a scene, built once."""
         for prepared in self._built:
-            if prepared.serves(scene):
+            if serves(prepared, scene):
                 return prepared
         self._built.append(prepare(replace(scene, continuation=None)))
         return self._built[-1]
