@@ -8,10 +8,10 @@ from __future__ import annotations
 
 import statistics
 import time
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
+
+from stopwatches import stopwatches
 
 from ribbonopt import attempts, refinement
 from ribbonopt.accuracy.estimate import estimate_error, relative_error
@@ -27,6 +27,13 @@ CASES = {
     "whole 1e-9": (WHOLE, 1e-9, 7, 8, 15.0),
     "whole 1e-12": (WHOLE, 1e-12, 8, 10, 25.0),
 }
+WATCHED = (
+    (refinement, "relative_error", "estimate"),
+    (refinement, "_better_mesh", "remesh"),
+    (attempts, "initial_unknowns", "unknowns"),
+    (attempts.Attempts, "run", "solve, its unknowns and verification included"),
+    (attempts, "verify", "verification"),
+)
 BUILD = 150.0  # target of building the structure, in ms
 
 
@@ -54,7 +61,7 @@ def bench_bars(repeat: int) -> dict[str, Any]:
         }
     for _ in range(repeat):
         for name, prepared in runs.items():
-            with stopwatches() as steps:
+            with stopwatches(WATCHED) as steps:
                 used = time.process_time()
                 estimate_error(prepared.solve())
                 result[name]["runs"].append((1e3 * (time.process_time() - used), steps))
@@ -75,32 +82,4 @@ def report(result: dict[str, Any]) -> None:
             f"{row['minimum_ms']:.2f}), build {row['build_ms']:.0f} (target {BUILD:g}); estimate "
             f"{row['estimate']:.1e} on {row['elements']}{'' if row['met'] else '  NOT MET'}"
         )
-        print("    " + ", ".join(f"{label} {ms:.2f}" for label, ms in row["steps"]))
-
-
-@contextmanager
-def stopwatches() -> Iterator[list[tuple[str, float]]]:
-    """Note the CPU milliseconds of every guess, solve, estimate, remesh and verification."""
-    steps: list[tuple[str, float]] = []
-    watched = [
-        (refinement, "relative_error", "estimate"),
-        (refinement, "_better_mesh", "remesh"),
-        (attempts, "initial_unknowns", "unknowns"),
-        (attempts.Attempts, "run", "solve, its unknowns and verification included"),
-        (attempts, "verify", "verification"),
-    ]
-    before = [getattr(place, name) for place, name, _ in watched]
-    for (place, name, label), call in zip(watched, before, strict=True):
-
-        def timed(*args: Any, label: str = label, call: Any = call, **options: Any) -> Any:
-            start = time.process_time()
-            answer = call(*args, **options)
-            steps.append((label, 1e3 * (time.process_time() - start)))
-            return answer
-
-        setattr(place, name, timed)
-    try:
-        yield steps
-    finally:
-        for (place, name, _), call in zip(watched, before, strict=True):
-            setattr(place, name, call)
+        print("    " + ", ".join(f"{label} {1e3 * s:.2f}" for label, s in row["steps"]))

@@ -14,8 +14,6 @@ import json
 import os
 import statistics
 import time
-from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -23,6 +21,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 
 import numpy as np
+from stopwatches import stopwatches
 
 from ribbonopt.accuracy import estimate
 from ribbonopt.pipeline import Prepared
@@ -60,6 +59,15 @@ DELTA = [
 ]
 
 
+WATCHED = (
+    (Newton, "solve", "Newton"),
+    (walk, "near", "tangents and determinants"),
+    (estimate, "_analysed", "estimates"),
+    (walk, "special_points", "special points"),
+    (recorded.Recorder, "row", "recording"),
+)
+
+
 def main() -> None:
     """Measure, print, write JSON and figure."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
@@ -93,13 +101,16 @@ def followed(
     scene: Scene, prepared: Prepared | None
 ) -> tuple[dict[str, Any], list[dict[str, Any]], Prepared]:
     """Follow a branch: seconds, rows, and the structure that was built."""
-    with stopwatches() as steps:
+    with stopwatches(WATCHED) as steps:
         wall, cpu = time.perf_counter(), time.process_time()
         continuation = Continuation(scene, prepared)
         rows = [dict(point.row) for point in continuation]
         seconds = {"cpu": time.process_time() - cpu, "wall": time.perf_counter() - wall}
     assert continuation.ending.reached, continuation.ending.reason
-    return seconds | {"steps": dict(steps)}, rows, continuation.prepared
+    sums: dict[str, float] = {}
+    for label, spent in steps:
+        sums[label] = sums.get(label, 0.0) + spent
+    return seconds | {"steps": sums}, rows, continuation.prepared
 
 
 def summary(
@@ -118,34 +129,6 @@ def summary(
         "minimum_s": {kind: min(run[kind] for run in again) for kind in ("cpu", "wall")},
         "steps_s": median["steps"],
     }
-
-
-@contextmanager
-def stopwatches() -> Iterator[dict[str, float]]:
-    """Sum the CPU seconds of the parts of all steps."""
-    steps: dict[str, float] = {}
-    watched: list[tuple[Any, str, str]] = [
-        (Newton, "solve", "Newton"),
-        (walk, "near", "tangents and determinants"),
-        (estimate, "_analysed", "estimates"),
-        (walk, "special_points", "special points"),
-        (recorded.Recorder, "row", "recording"),
-    ]
-    before = [getattr(place, name) for place, name, _ in watched]
-    for (place, name, label), call in zip(watched, before, strict=True):
-
-        def timed(*args: Any, label: str = label, call: Any = call, **options: Any) -> Any:
-            start = time.process_time()
-            answer = call(*args, **options)
-            steps[label] = steps.get(label, 0.0) + time.process_time() - start
-            return answer
-
-        setattr(place, name, timed)
-    try:
-        yield steps
-    finally:
-        for (place, name, _), call in zip(watched, before, strict=True):
-            setattr(place, name, call)
 
 
 def slope(rows: list[dict[str, Any]], least: float) -> float:

@@ -81,7 +81,7 @@ def _on_this_machine(
                     rows.put(row)
         except queue.Empty:
             rows.put(None)
-        except BaseException as error:
+        except BaseException as error:  # given on: without a word, the batch would wait for ever
             rows.put(error)
 
     threads = [threading.Thread(target=serve, args=(crew,), daemon=True) for crew in crews]

@@ -1,7 +1,7 @@
 """Batches on disk: a row for each ribbon, appended as it comes; nothing that is there is lost.
 
 `rows.jsonl` holds one JSON object in a line; `table.csv` has them sorted by number; `study.json`
-says which study it is; `solutions/NUMBER` are full results, `report.html` pictures.
+says which study it is; `solutions/NUMBER` are full results.
 """
 
 from __future__ import annotations
@@ -16,13 +16,7 @@ from ribbonopt.staging import unwritable
 
 from .sweep import Study
 
-ROWS, TABLE, STUDY, REPORT, SOLUTIONS = (
-    "rows.jsonl",
-    "table.csv",
-    "study.json",
-    "report.html",
-    "solutions",
-)
+ROWS, TABLE, STUDY, SOLUTIONS = "rows.jsonl", "table.csv", "study.json", "solutions"
 
 Row = dict[str, Any]
 
@@ -79,7 +73,7 @@ class BatchFolder:
     def _claim(self, resume: bool) -> None:
         self.folder.mkdir(parents=True, exist_ok=True)
         found = sorted(path.name for path in self.folder.iterdir())
-        own = {ROWS, TABLE, STUDY, REPORT, SOLUTIONS}
+        own = {ROWS, TABLE, STUDY, SOLUTIONS}
         foreign = [name for name in found if name not in own]
         if foreign:
             raise OutputError(

@@ -3,18 +3,10 @@
 from __future__ import annotations
 
 from ribbonopt.pipeline import Prepared
-from ribbonopt.problem import structure_of
 from ribbonopt.scene import Scene
-from ribbonopt.scene.units import in_special_units
 from ribbonopt.solution import Solution
 
 SPARE = 0.05  # of the error that a new mesh may leave: it shall serve the neighbours to come
-
-
-def serves(prepared: Prepared, scene: Scene) -> bool:
-    """Whether a scene differs in numbers only from the one that a structure was built for."""
-    mine, other = (structure_of(in_special_units(s)) for s in (prepared.scene, scene))
-    return mine == other
 
 
 def solved_beside(prepared: Prepared, scene: Scene, before: Solution) -> Solution | None:

@@ -81,7 +81,7 @@ class Recorder:
             "kind": point.kind,
             "negative": _negative(solution) if stage.stability and point.kind == POINT else None,
             # At a fold the equations at a given parameter are singular: so is their estimate.
-            "error": relative_error(solution)[0] if point.kind == POINT else None,
+            "error": error_of(solution) if point.kind == POINT else None,
             **numbers_of(solution),
         }
         with np.errstate(all="ignore"):
@@ -92,6 +92,16 @@ class Recorder:
         row["intervals"] = solution.dense.blocks.layout.element_count
         row["iterations"] = solution.iterations
         return row
+
+
+def error_of(solution: Solution) -> float | None:
+    """Relative error of the answer; None for minima and singular equations."""
+    if solution.problem.recovered:
+        return None
+    try:
+        return relative_error(solution)[0]
+    except np.linalg.LinAlgError:
+        return None
 
 
 def numbers_of(solution: Solution) -> dict[str, float]:

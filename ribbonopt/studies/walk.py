@@ -12,7 +12,6 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ribbonopt.accuracy.arcs import sign_changes
 from ribbonopt.accuracy.estimate import relative_error
 from ribbonopt.arrays import Array
 from ribbonopt.attempts import Attempts
@@ -22,6 +21,7 @@ from ribbonopt.solution import Solution
 
 from .correct import Corrector
 from .curve import Curve
+from .neighbour import SPARE
 from .points import BRANCH_POINT, Metric, Point, near, reduced
 from .special import special_points
 
@@ -29,7 +29,6 @@ NATURAL = 0.1  # least share of the position in the tangent for natural continua
 AIM = 0.02  # wanted distance of a prediction from the branch, in arclength
 GROWTH, SHRINK = 2.0, 0.25  # of a step, after success and failure
 LONGEST = 0.5  # arclength of a step where the parameter turns
-SPARE = 0.05  # of the error that a new mesh may leave: it shall serve the points to come
 STRAIGHT = 0.7  # least cosine of the angle between tangents one step apart
 DIGITS = 1e-12  # of a position, relative to the span
 
@@ -60,7 +59,7 @@ class Walk:
         ahead = np.zeros_like(reduced(solution, np.append(solution.dense.w, position)))
         ahead[-1] = self.direction or 1
         found, tangent = near(self.curve, self.metric, solution, position, ahead)
-        share = max(abs(self._share(solution, tangent)), NATURAL)
+        share = max(abs(self._share(tangent)), NATURAL)
         step = self.curve.first / self.curve.span / share
         return Point(solution, position, tangent, found.sign, step, stage=stage)
 
@@ -120,7 +119,7 @@ class Walk:
     def _try(self, point: Point, goal: float, step: float) -> tuple[Point, list[Point]] | None:
         """Try one step; None where it has to be shorter."""
         tangent, here = point.tangent, point.position
-        share = self._share(point.solution, tangent)
+        share = self._share(tangent)
         longest = self.curve.largest / self.curve.span / max(abs(share), 1e-6)
         natural = abs(share) > NATURAL
         arc = min(step, longest) if natural else min(step, longest, LONGEST)
@@ -211,12 +210,10 @@ class Walk:
         return trial if trial.verified else None
 
     def _needs_phases(self, trial: Solution) -> bool:
-        scene = trial.scene
-        if scene.formulation != "inverted" or scene.switching == "off":
-            return False
-        return self.prepared.ribbon.law.kinked and len(sign_changes(trial).kinds) > 1
+        search = self.prepared.search(trial.scene)
+        return search.phases_help and search.changes_sign(trial)
 
-    def _share(self, solution: Solution, tangent: Array) -> float:
+    def _share(self, tangent: Array) -> float:
         """Share of the position in a unit tangent, with its sign."""
         return float(tangent[-1] / self.metric.sizes[-1])
 

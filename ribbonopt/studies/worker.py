@@ -19,15 +19,16 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import numpy as np
 
-from ribbonopt.accuracy.estimate import relative_error
 from ribbonopt.errors import RibbonoptError
 from ribbonopt.pipeline import Prepared, prepare
 from ribbonopt.pipeline import solve as solve_once
+from ribbonopt.problem import structure_of
 from ribbonopt.scene import Scene, loads_scene
+from ribbonopt.scene.units import in_special_units
 from ribbonopt.solution import Solution
 
-from .neighbour import serves, solved_beside
-from .recorded import numbers_of
+from .neighbour import solved_beside
+from .recorded import error_of, numbers_of
 
 Row = dict[str, Any]
 
@@ -37,7 +38,7 @@ class Worker:
 
     def __init__(self) -> None:
         """Begin with nothing built."""
-        self._built: list[Prepared] = []
+        self._built: dict[tuple[object, ...], Prepared] = {}
 
     def answers(self, chunk: dict[str, Any]) -> Iterator[dict[str, Any]]:
         """Yield for every ribbon that it begins, and its row; those of `skip` are passed over."""
@@ -78,7 +79,8 @@ class Worker:
         if scene.starts > 1:
             return solve_once(scene), "own"
         prepared = self._prepared(scene)
-        if before is not None and serves(prepared, before.scene):
+        # Neighbours that share what was built share the structure.
+        if before is not None and self._prepared(before.scene) is prepared:
             found = solved_beside(prepared, scene, before)
             if found is not None:
                 return found, f"ribbon {number}"
@@ -86,11 +88,10 @@ class Worker:
 
     def _prepared(self, scene: Scene) -> Prepared:
         """Return the structure of a scene, built once."""
-        for prepared in self._built:
-            if serves(prepared, scene):
-                return prepared
-        self._built.append(prepare(replace(scene, continuation=None)))
-        return self._built[-1]
+        structure = structure_of(in_special_units(scene))
+        if structure not in self._built:
+            self._built[structure] = prepare(replace(scene, continuation=None))
+        return self._built[structure]
 
 
 def _outcome(found: Solution, start: str) -> Row:
@@ -100,19 +101,9 @@ def _outcome(found: Solution, start: str) -> Row:
         "message": "" if found.verified else found.message,
     }
     if found.status.converged:
-        row |= numbers_of(found) | {"error": _error(found)}
+        row |= numbers_of(found) | {"error": error_of(found)}
     steps = [step["step"] for step in found.path]
     return row | {"start": start, "iterations": found.iterations, "path": "; ".join(steps)}
-
-
-def _error(found: Solution) -> float | None:
-    """Relative error of the answer; None for minima and singular equations."""
-    if found.problem.recovered:
-        return None
-    try:
-        return relative_error(found)[0]
-    except np.linalg.LinAlgError:
-        return None
 
 
 def _save(chunk: dict[str, Any], ribbon: dict[str, Any], row: Row, found: Solution | None) -> None:

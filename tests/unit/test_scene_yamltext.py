@@ -90,9 +90,10 @@ def test_aliases_are_copies() -> None:
         ("[&a 1, &a [*a]]", "repeats itself"),
         ("a: *b", "alias"),
         ("[" * 60 + "]" * 60, "nests too deeply"),
-        ("[" * 100_000, "nests too deeply"),
-        ("{a: " * 100_000, "nests too deeply"),
-        ("{a: 1, a: " * 100_000, "nests too deeply"),
+        # libyaml, which reads ahead, may have a limit of its own.
+        ("[" * 100_000, "nests too deeply|nesting depth"),
+        ("{a: " * 100_000, "nests too deeply|nesting depth"),
+        ("{a: 1, a: " * 100_000, "nests too deeply|nesting depth"),
         ("--- a\n--- b", "second document"),
         ("a: b: c", "mapping values are not allowed"),
         ("a:\n\t- b", "indent with spaces"),
