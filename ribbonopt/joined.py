@@ -16,7 +16,7 @@ from numpy.typing import NDArray
 
 from ribbonopt.arrays import Array
 from ribbonopt.problem import BoundaryValueProblem
-from ribbonopt.transcription.buffered import buffered, buffered_map
+from ribbonopt.transcription.buffered import buffered, mapped
 
 if TYPE_CHECKING:
     from ribbonopt.transcription.structure import Output
@@ -128,7 +128,7 @@ class Joined:
             rows = phase == i
             count = int(np.count_nonzero(rows))
             if count:
-                (found,) = buffered_map(function, count)(v[rows], *known, s[rows])
+                (found,) = mapped(function)(v[rows], *known, s[rows])
                 column[rows] = found.reshape(count, -1)
         result, at = {}, 0
         for name, size in sizes.items():

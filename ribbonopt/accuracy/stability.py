@@ -34,7 +34,7 @@ from ribbonopt.scene import Scene
 from ribbonopt.scene.units import in_special_units
 from ribbonopt.solution import Solution
 from ribbonopt.transcription import Tableau, gauss
-from ribbonopt.transcription.buffered import buffered, buffered_map
+from ribbonopt.transcription.buffered import buffered, mapped
 from ribbonopt.transcription.functions import condition_functions, stage_functions
 
 NX, NZ = 7, 2
@@ -138,7 +138,7 @@ class _Energy:
         tableau, count, none = gauss(degree), degree * len(widths), np.empty(0)
         points, v = self._sampled(solution, widths, tableau)
         inputs = v, none, theta, np.zeros(count)
-        J, slopes = buffered_map(self.first, count)(*inputs)
+        J, slopes = mapped(self.first)(*inputs)
         J = J.reshape(*v.shape, NX).swapaxes(2, 3)  # CasADi stores columns first
         chain = _Chain(J, slopes.reshape(v.shape), widths, tableau)
         b, B = buffered(self.conditions)(points, none, theta)
@@ -150,7 +150,7 @@ class _Energy:
         multipliers = -left @ (right @ g / singular)
         residual = np.linalg.norm(g - right @ g @ right) / max(float(np.linalg.norm(g)), FLAT)
         weights = chain.weights(B[:, NX:].T @ multipliers)
-        (H,) = buffered_map(self.second, count)(*inputs, weights)
+        (H,) = mapped(self.second)(*inputs, weights)
         (bent,) = buffered(self.bent)(points, none, theta, multipliers)
         hessian = chain.hessian(H.reshape(*v.shape, NX + NZ))
         hessian += chain.ends.T @ bent.reshape(2 * NX, 2 * NX) @ chain.ends

@@ -13,7 +13,9 @@ from ribbonopt.mechanics import RodFields
 from ribbonopt.mechanics.boundary import start_frame, start_position
 from ribbonopt.problem import BoundaryValueProblem, Ribbon, theta_values
 from ribbonopt.scene import LoadGuess, Scene
-from ribbonopt.transcription.buffered import Buffered, buffered_map
+from ribbonopt.transcription.buffered import Buffered, mapped
+
+STEPS = 32  # of one call
 
 
 @dataclass(frozen=True, eq=False)
@@ -31,7 +33,7 @@ class IntegratedLoads:
     def fields(self, fraction: Array) -> RodFields:
         """Fields at fractions (k,) of the length, increasing from 0 to 1."""
         x, c = self._integrated(fraction)
-        section = buffered_map(self.ribbon.section_function, len(fraction))
+        section = mapped(self.ribbon.section_function)
         parts = section(x, c, theta_values(self.scene))[:6]
         r, d1, d2, d3, n, m = (part.reshape(-1, 3) for part in parts)
         return RodFields(r, np.stack([d1, d2, d3], axis=2), n, m)
@@ -58,16 +60,20 @@ class IntegratedLoads:
         substeps = int(np.clip(np.ceil(np.abs(widths).max() * strain), 1, 100))
         theta = theta_values(self.scene)
         widths = np.repeat(widths / substeps, substeps)
+        steps, shared = _steps(self.ribbon), (np.tile(c, STEPS), np.tile(theta, STEPS))
         count = len(widths)
-        steps = _steps(self.ribbon, count)
-        (after,) = steps(states[0], np.tile(c, count), np.tile(theta, count), widths)
-        return np.vstack([states, after.reshape(count, -1)])[::substeps], c
+        widths = np.append(widths, np.zeros(-count % STEPS))  # steps of no width go nowhere
+        parts = [states]
+        for part in widths.reshape(-1, STEPS):
+            (after,) = steps(parts[-1][-1], *shared, part)
+            parts.append(after.reshape(STEPS, -1))
+        return np.vstack(parts)[: count + 1 : substeps], c
 
 
-@lru_cache(maxsize=32)
-def _steps(ribbon: Ribbon, count: int) -> Buffered:
-    """States after each of many steps, from the first state and all c, theta and h."""
-    return Buffered(_step(ribbon).mapaccum("steps", count))
+@lru_cache(maxsize=8)
+def _steps(ribbon: Ribbon) -> Buffered:
+    """States after each of `STEPS` steps, from the first state and all c, theta and h."""
+    return Buffered(_step(ribbon).mapaccum("steps", STEPS))
 
 
 @lru_cache(maxsize=8)

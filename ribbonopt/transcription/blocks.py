@@ -9,12 +9,11 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
-import casadi as ca
 import numpy as np
 
 from ribbonopt.arrays import Array
 
-from .buffered import Buffered, buffered_map
+from .buffered import Mapped, mapped
 from .elimination import StageElimination
 from .functions import StageFunctions
 from .layout import Layout
@@ -171,7 +170,7 @@ class ElementBlocks:
     def _depends_on_position(self) -> bool:
         return any(f.depends_on_position for f in self.phases)
 
-    def _evaluate(self, mapped: tuple[Buffered, ...], parts: Parts, p: Array) -> list[Array]:
+    def _evaluate(self, calls: tuple[Mapped, ...], parts: Parts, p: Array) -> list[Array]:
         """Return outputs of functions at the stages of all phases."""
         lay = self.layout
         _, stages, c = parts
@@ -180,24 +179,18 @@ class ElementBlocks:
             positions = self.stage_positions(p)
         else:
             positions = np.zeros((lay.element_count, lay.stages))
-        if len(mapped) == 1:
-            return mapped[0](stages, c, theta, positions)
+        if len(calls) == 1:
+            return calls[0](stages, c, theta, positions)
         groups = [
             call(stages[s], c, theta, positions[s])
-            for call, s in zip(mapped, lay.phase_slices, strict=True)
+            for call, s in zip(calls, lay.phase_slices, strict=True)
         ]
         return [np.concatenate(group) for group in zip(*groups, strict=True)]
 
     @cached_property
-    def _values(self) -> tuple[Buffered, ...]:
-        return self._mapped([f.values for f in self.phases])
+    def _values(self) -> tuple[Mapped, ...]:
+        return tuple(mapped(f.values) for f in self.phases)
 
     @cached_property
-    def _dense(self) -> tuple[Buffered, ...]:
-        return self._mapped([f.dense for f in self.phases])
-
-    def _mapped(self, functions: list[ca.Function]) -> tuple[Buffered, ...]:
-        count = self.layout.stages
-        return tuple(
-            buffered_map(f, n * count) for f, n in zip(functions, self.layout.elements, strict=True)
-        )
+    def _dense(self) -> tuple[Mapped, ...]:
+        return tuple(mapped(f.dense) for f in self.phases)

@@ -10,6 +10,9 @@ import numpy as np
 
 from ribbonopt.arrays import Array
 
+SHARED = (1, 2)  # inputs of a stage function that all stages have in common
+LARGEST = 64  # stages of a block
+
 
 class Buffered:
     """A CasADi function called through preallocated, contiguous arrays.
@@ -40,8 +43,49 @@ class Buffered:
 
 def shared_map(function: ca.Function, count: int) -> ca.Function:
     """Map a stage function over `count` stages that share constants and parameters."""
-    shared = [1, 2]
-    return function.map(f"{function.name()}_map", "serial", count, shared, [])
+    return function.map(f"{function.name()}_map", "serial", count, list(SHARED), [])
+
+
+class Mapped:
+    """A stage function over any number of stages that share constants and parameters.
+
+    Called in blocks of 1, 2, 4 ... stages, straight on the arrays given: what is built serves every
+    mesh, so that neither memory nor time to build grows with the number of meshes.
+    """
+
+    def __init__(self, function: ca.Function) -> None:
+        self._function = function
+        self._inputs = [function.numel_in(i) for i in range(function.n_in())]
+        self._outputs = [function.numel_out(i) for i in range(function.n_out())]
+        self._blocks: dict[int, tuple[Any, Any]] = {}
+
+    def __call__(self, *values: Array) -> list[Array]:
+        """Evaluate at all stages: one flat array for each output."""
+        arguments = [np.ascontiguousarray(value, dtype=float).reshape(-1) for value in values]
+        count = len(arguments[0]) // self._inputs[0]
+        results = [np.empty(count * size) for size in self._outputs]
+        for i, size in enumerate(self._inputs):
+            wanted = size if i in SHARED else count * size
+            if len(arguments[i]) != wanted:  # CasADi would read beyond it
+                raise ValueError(f"argument {i} is expected to have {wanted} numbers")
+        at = 0
+        while at < count:
+            block = min(LARGEST, 1 << (count - at).bit_length() - 1)
+            buffer, evaluate = self._block(block)
+            for i, size in enumerate(self._inputs):
+                part = slice(None) if i in SHARED else slice(at * size, (at + block) * size)
+                buffer.set_arg(i, arguments[i][part].data)
+            for i, size in enumerate(self._outputs):
+                buffer.set_res(i, results[i][at * size : (at + block) * size].data)
+            evaluate()
+            at += block
+        return results
+
+    def _block(self, count: int) -> tuple[Any, Any]:
+        """Buffer and evaluation of a block of stages, built once."""
+        if count not in self._blocks:
+            self._blocks[count] = shared_map(self._function, count).buffer()
+        return self._blocks[count]
 
 
 @lru_cache(maxsize=64)
@@ -50,7 +94,7 @@ def buffered(function: ca.Function) -> Buffered:
     return Buffered(function)
 
 
-@lru_cache(maxsize=256)
-def buffered_map(function: ca.Function, count: int) -> Buffered:
-    """Return `shared_map` with its buffers, made once."""
-    return Buffered(shared_map(function, count))
+@lru_cache(maxsize=64)
+def mapped(function: ca.Function) -> Mapped:
+    """Return a stage function to be called over stages, made once."""
+    return Mapped(function)

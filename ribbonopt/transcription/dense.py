@@ -16,7 +16,7 @@ import numpy as np
 from ribbonopt.arrays import Array
 
 from .blocks import ElementBlocks
-from .buffered import Buffered, buffered_map
+from .buffered import mapped
 from .layout import Index
 
 MOST_SWEEPS = 40  # of a substep's stages
@@ -101,7 +101,7 @@ class DenseOutput:
         positions = self.blocks.layout.starts(self.p)[e][:, None] + h[:, None] * stage_t
         lay = self.blocks.layout
         z = self._interpolated(repeated, stage_t.ravel())
-        equations = self._mapped(phase, count * K)
+        equations = mapped(self.blocks.phases[phase].values)
         step = (h * t)[:, None]
         before = np.inf
         for _ in range(MOST_SWEEPS):
@@ -161,7 +161,8 @@ class DenseOutput:
             v, sigma = everywhere[s].reshape(-1, lay.nv), positions[s].ravel()
             x = v[:, : lay.nx]
             v = np.hstack([x, self._solved(phase, x, v[:, lay.nx :], sigma)])
-            values = self._mapped(phase, len(v))(v, self.constants, self.theta, sigma)[0]
+            equations = mapped(self.blocks.phases[phase].values)
+            values = equations(v, self.constants, self.theta, sigma)[0]
             F = values.reshape(-1, count, values.size // len(v))[:, :, : lay.nx]
             result[s] = np.abs(found[s] - F).max(axis=2)
         return np.asarray(result / np.abs(self._rates).max())
@@ -202,7 +203,7 @@ class DenseOutput:
         lay = self.blocks.layout
         if not lay.nz or lay.nz != lay.ng:
             return z
-        dense = buffered_map(self.blocks.phases[phase].dense, len(x))
+        dense = mapped(self.blocks.phases[phase].dense)
         rows, columns = slice(lay.nx, lay.nx + lay.ng), slice(lay.nx, lay.nv)
         for _ in range(3):  # from the accuracy of the polynomial to rounding
             values, jacobian = dense(np.hstack([x, z]), self.constants, self.theta, sigma)
@@ -218,6 +219,3 @@ class DenseOutput:
         x: Array = nodes[element] + h[:, None] * increments
         x[t == 1] = nodes[element[t == 1] + 1]
         return x
-
-    def _mapped(self, phase: int, count: int) -> Buffered:
-        return buffered_map(self.blocks.phases[phase].values, count)

@@ -14,7 +14,7 @@ import numpy as np
 
 from ribbonopt.arrays import Array
 
-from .buffered import Buffered, buffered_map
+from .buffered import Mapped, mapped
 from .elimination import NothingToEliminate
 from .functions import StageFunctions
 from .layout import Layout
@@ -136,25 +136,20 @@ class ShootingBlocks:
         stages = np.empty((lay.element_count, 0, lay.stage_equations))
         return Residuals(stages, nodes[1:] - after.reshape(-1, lay.nx), b)
 
-    def _evaluate(self, mapped: tuple[Buffered, ...], w: Array, p: Array) -> list[Array]:
+    def _evaluate(self, calls: tuple[Mapped, ...], w: Array, p: Array) -> list[Array]:
         lay = self.layout
         nodes, _, c = lay.unpack(w)
         theta, starts, widths = lay.theta(p), lay.starts(p), lay.widths(p)
         parts = [
             call(nodes[s], c, theta, starts[s], widths[s])
-            for call, s in zip(mapped, lay.phase_slices, strict=True)
+            for call, s in zip(calls, lay.phase_slices, strict=True)
         ]
         return [np.concatenate(group) for group in zip(*parts, strict=True)]
 
     @cached_property
-    def _values(self) -> tuple[Buffered, ...]:
-        return self._mapped([flow.step.values for flow in self.flows])
+    def _values(self) -> tuple[Mapped, ...]:
+        return tuple(mapped(flow.step.values) for flow in self.flows)
 
     @cached_property
-    def _dense(self) -> tuple[Buffered, ...]:
-        return self._mapped([flow.step.dense for flow in self.flows])
-
-    def _mapped(self, functions: list[ca.Function]) -> tuple[Buffered, ...]:
-        return tuple(
-            buffered_map(f, n) for f, n in zip(functions, self.layout.elements, strict=True)
-        )
+    def _dense(self) -> tuple[Mapped, ...]:
+        return tuple(mapped(flow.step.dense) for flow in self.flows)

@@ -9,12 +9,11 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-import casadi as ca
 import numpy as np
 
 from ribbonopt.arrays import Array
 
-from .buffered import Buffered, buffered_map
+from .buffered import mapped
 from .shooting_blocks import ShootingBlocks
 from .tableaus import gauss
 
@@ -129,7 +128,7 @@ class ShootingOutput:
 
     def _after(self, phase: int, x: Array, sigma: Array, h: Array) -> Array:
         """States (k, nx) after the steps of an element of widths h (k,) from x at sigma."""
-        step = self._mapped(self.blocks.flows[phase].step.values, len(x))
+        step = mapped(self.blocks.flows[phase].step.values)
         after: Array = step(x, self.constants, self.theta, sigma, h)[0].reshape(x.shape)
         return after
 
@@ -137,15 +136,12 @@ class ShootingOutput:
         nz = self.blocks.layout.nz
         if not nz or not len(x):
             return np.empty((len(x), nz))
-        solve = self._mapped(self.blocks.flows[phase].algebraic, len(x))
+        solve = mapped(self.blocks.flows[phase].algebraic)
         z: Array = solve(x, self.constants, self.theta, sigma)[0].reshape(-1, nz)
         return z
 
     def _largest_rate(self, phase: int, x: Array, sigma: Array) -> float:
         v = np.hstack([x, self._algebraic(phase, x, sigma)])
-        values = self._mapped(self.blocks.flows[phase].stage.values, len(v))
+        values = mapped(self.blocks.flows[phase].stage.values)
         equations = values(v, self.constants, self.theta, sigma)[0].reshape(len(v), -1)
         return float(np.abs(equations[:, : x.shape[1]]).max())
-
-    def _mapped(self, function: ca.Function, count: int) -> Buffered:
-        return buffered_map(function, count)
