@@ -16,11 +16,13 @@ from ribbonopt.scene import Scene
 from ribbonopt.solution import Solution
 from ribbonopt.solvers import SolveReport, Status
 from ribbonopt.solvers.auto import Auto
+from ribbonopt.solvers.newton import Newton
 from ribbonopt.starts.found import solution_of
 from ribbonopt.transcription import NLP
 
 if TYPE_CHECKING:
     from ribbonopt.solvers import Solver
+    from ribbonopt.solvers.protocols import Factors
 
 
 UNSEEN = 1e-2  # of the tolerance
@@ -69,12 +71,23 @@ class Attempts:
         parts = self.ribbon, self.problem, self.nlp.blocks, self.p, self.switches
         return self.run_from(initial_unknowns(guess, *parts), quick=quick, check=check)
 
-    def run_from(self, w: Array, *, quick: bool = False, check: bool = True) -> bool:
-        """Solve from unknowns w (nw,); see `run`."""
+    def run_from(
+        self,
+        w: Array,
+        *,
+        quick: bool = False,
+        check: bool = True,
+        factors: Factors | None = None,
+    ) -> bool:
+        """Solve from unknowns w (nw,); see `run`. Newton's method may begin with given factors."""
         solver = self.solver
         if quick and isinstance(solver, Auto) and self.nlp.square:
             solver = solver.newton
-        return self.take(solver.solve(w, self.p, enough=self.enough), check=check)
+        if factors is not None and isinstance(solver, Newton):
+            report = solver.solve(w, self.p, enough=self.enough, factors=factors)
+        else:
+            report = solver.solve(w, self.p, enough=self.enough)
+        return self.take(report, check=check)
 
     def take(self, report: SolveReport, *, check: bool = True) -> bool:
         """Take what a solver found; return whether there is a verified solution now."""
@@ -108,6 +121,16 @@ class Attempts:
         """Last step of Newton's method, relative, that does not show in the answer."""
         tolerance = self.scene.tolerance
         return 0.0 if tolerance is None else min(UNSEEN * tolerance, LEAST)
+
+    @property
+    def factors(self) -> Factors | None:
+        """Factors of the Jacobian at the last solution, or near it; None if they were not kept."""
+        return self._reports[-1].factors if self._reports else None
+
+    @property
+    def factorizations(self) -> int:
+        """Matrices factored by all attempts."""
+        return sum(report.factorizations for report in self._reports)
 
     @property
     def iterations(self) -> int:

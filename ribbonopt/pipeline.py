@@ -106,17 +106,20 @@ class Prepared:
         """Return a search for solutions of a scene of this structure; nothing is solved yet."""
         return Search(scene, self.built, self._phased)
 
-    def refined(self, solution: Solution, spare: float = 1.0) -> Solution:
+    def refined(
+        self, solution: Solution, spare: float = 1.0, search: Search | None = None
+    ) -> Solution:
         """Return a verified solution of this structure on a mesh that meets its tolerance.
 
-        A new mesh is fine enough for `spare` times what one usually aims at.
+        A new mesh is fine enough for `spare` times what one usually aims at. What it takes is
+        added to a search for the solution's scene, if one is given.
         """
         scene = solution.scene
         if scene.tolerance is None or not solution.verified:
             return solution
         from ribbonopt.refinement import AIM, refine  # for scenes with a tolerance
 
-        on_mesh = partial(self.search(scene).on_mesh, solution.sheets)
+        on_mesh = partial((search or self.search(scene)).on_mesh, solution.sheets)
         return refine(solution, scene.tolerance, self.ribbon, on_mesh, spare * AIM)
 
     def start(

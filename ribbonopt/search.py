@@ -12,7 +12,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -24,6 +24,9 @@ from ribbonopt.guess import Guess
 from ribbonopt.scene import Scene
 from ribbonopt.solution import Solution
 from ribbonopt.transcription import Mesh
+
+if TYPE_CHECKING:
+    from ribbonopt.solvers.protocols import Factors
 
 
 @dataclass(eq=False)
@@ -103,6 +106,11 @@ class Search:
         """The solution in phases, or the best without."""
         last = self._all[-1] if self._all else self.plain
         return last.best if last.sheets and last.best and last.best.verified else self.plain.best
+
+    @property
+    def factors(self) -> Factors | None:
+        """Factors of the Jacobian that the last attempts ended with, if they were kept."""
+        return self._all[-1].factors if self._all else None
 
     @property
     def iterations(self) -> int:

@@ -8,9 +8,9 @@ solution is the estimate.
 
 from __future__ import annotations
 
+from collections import deque
 from collections.abc import Mapping
 from dataclasses import dataclass
-from functools import lru_cache
 
 import numpy as np
 
@@ -35,17 +35,36 @@ class Analysis:
         its size along the ribbon.
     errors, sizes : mappings of str to float
         Absolute errors of the parts of the answer, and what they are relative to; Dw = L = 1.
+    factors : CondensedSystem or None
+        Factors of the better scheme, if they were to be kept.
     """
 
     better: Joined
     local: Array
     errors: Mapping[str, float]
     sizes: Mapping[str, float]
+    factors: CondensedSystem | None = None
 
 
-def analyse(solution: Solution) -> Analysis:
-    """Analyse a solution of a square problem; LinAlgError if its equations are singular."""
-    return _analysed(solution.joined)
+# Refinement, rows and summaries ask for the same analysis one after the other.
+_latest: deque[tuple[Joined, Analysis]] = deque(maxlen=2)
+
+
+def analyse(
+    solution: Solution, near: CondensedSystem | None = None, *, keep: bool = False
+) -> Analysis:
+    """Analyse a solution of a square problem; LinAlgError if its equations are singular.
+
+    `near` are factors kept from a solution on the same mesh, so near that with its own factors
+    Newton's method contracted by q: the errors then come out with a relative error of q / (1 - q).
+    Factors that are to be kept cost twice as much.
+    """
+    for joined, found in _latest:
+        if joined is solution.joined:
+            return found
+    found = _analysed(solution.joined, near, keep)
+    _latest.append((solution.joined, found))
+    return found
 
 
 def estimate_error(solution: Solution) -> dict[str, float]:
@@ -76,19 +95,22 @@ def relative_error(solution: Solution) -> tuple[float, str]:
     return relative[worst], worst
 
 
-@lru_cache(maxsize=2)
-def _analysed(joined: Joined) -> Analysis:
+def _analysed(joined: Joined, near: CondensedSystem | None, keep: bool) -> Analysis:
     dense = joined.dense
     blocks, w, p, split = dense.refined()
-    residuals, derivatives = blocks.linearize(w, p)
-    step = CondensedSystem(blocks, derivatives, p, only=residuals).solve(residuals)
+    if near is None:
+        residuals, derivatives = blocks.linearize(w, p)
+        factors = CondensedSystem(blocks, derivatives, p, only=None if keep else residuals)
+    else:
+        residuals, factors, keep = blocks.residuals(w, p), near, True
+    step = factors.solve(residuals)
     better = Joined(joined.problem, blocks.dense(w + step, p))
     size = np.maximum(np.abs(dense.at_nodes).max(axis=0), 1.0)
     local = np.abs(residuals.nodes / size).max(axis=1).reshape(-1, split).sum(axis=1)
     errors = _errors(joined, better, split)
     # Between the nodes the output starts from the node before, with the error of that element.
     errors["states"] = max(errors["states"], float(local.max()))
-    return Analysis(better, local, errors, _sizes(joined))
+    return Analysis(better, local, errors, _sizes(joined), factors if keep else None)
 
 
 def _errors(joined: Joined, better: Joined, split: int) -> dict[str, float]:

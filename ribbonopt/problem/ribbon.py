@@ -114,14 +114,19 @@ _latest: list[Any] = []
 
 def theta_of(scene: Scene) -> dict[str, float]:
     """Return every number of a scene, in units Dw = L = 1, by name and in the order of theta."""
-    if _latest and _latest[0] is scene:
-        return dict(_latest[1])
-    values = _theta_of(scene)
-    _latest[:] = scene, values
-    return dict(values)
+    return dict(_read(scene)[1])
 
 
-def _theta_of(scene: Scene) -> dict[str, float]:
+def _read(scene: Scene) -> tuple[tuple[Condition, ...], dict[str, float]]:
+    """Conditions and numbers of a scene."""
+    if not _latest or _latest[0] is not scene:
+        conditions = conditions_of(scene)
+        _latest[:] = scene, (conditions, _theta_of(scene, conditions))
+    found: tuple[tuple[Condition, ...], dict[str, float]] = _latest[1]
+    return found
+
+
+def _theta_of(scene: Scene, conditions: tuple[Condition, ...]) -> dict[str, float]:
     if scene.ribbon is not None:
         raise ModelError("this scene is in SI; convert it by `in_special_units` first", "ribbon")
     values = {
@@ -133,7 +138,7 @@ def _theta_of(scene: Scene) -> dict[str, float]:
     reference = start_position(scene.boundary, scene.parameters)
     values |= {f"reference.{axis}": float(reference[i]) for i, axis in enumerate("xyz")}
     values |= {f"parameters.{name}": value for name, value in scene.parameters.items()}
-    for condition in conditions_of(scene):
+    for condition in conditions:
         values |= condition.theta()
     if scene.formulation == "energy":
         values |= dict.fromkeys(RECOVERED, 0.0)
@@ -142,12 +147,12 @@ def _theta_of(scene: Scene) -> dict[str, float]:
 
 def structure_of(scene: Scene) -> tuple[object, ...]:
     """Return what scenes share that differ in numbers only, which serve one built problem."""
-    conditions = [
-        (type(c).__name__, *(v for v in vars(c).values() if isinstance(v, str)))
-        for c in conditions_of(scene)
-    ]
+    posed, values = _read(scene)
+    conditions = tuple(
+        (type(c).__name__, *(v for v in vars(c).values() if isinstance(v, str))) for c in posed
+    )
     settings = scene.law.type, scene.formulation, scene.states, scene.transcription, scene.solver
-    return (*settings, tuple(theta_of(scene)), tuple(conditions), scene.boundary.also)
+    return (*settings, tuple(values), conditions, scene.boundary.also)
 
 
 def theta_values(scene: Scene) -> Array:

@@ -5,7 +5,7 @@ Every branch of a union has a tag: the name of a dataclass, or the shape a value
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from dataclasses import is_dataclass
 from functools import cache
 from numbers import Real
@@ -27,7 +27,8 @@ def hints(cls: type) -> dict[str, Any]:
     return {key_of(name): annotation for name, annotation in members}
 
 
-def branches(annotation: Any) -> dict[str, Any]:
+@cache
+def branches(annotation: Any) -> Mapping[str, Any]:
     """Return the branches of a union by tag; empty for what is not a union."""
     if get_origin(annotation) not in (Union, UnionType):
         return {}

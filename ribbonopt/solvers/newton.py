@@ -22,9 +22,10 @@ from .status import SolveReport, Status
 from .systems import ElementSystem, RelaxedSystem, SparseSystem
 
 if TYPE_CHECKING:
-    from .protocols import System
+    from .protocols import Factors, System
 
 KEEP = 0.1
+INHERIT = 0.5  # contraction with which factors of other equations are kept: they cost nothing
 SMALLEST_DAMPING = 1e-4
 ROUNDING = 1e3 * np.finfo(float).eps
 
@@ -54,18 +55,21 @@ class Newton:
         relaxed: Array | None = None,
         enough: float = 0.0,
         system: System | None = None,
+        factors: Factors | None = None,
     ) -> SolveReport:
         """Solve from the guess w (nw,) for the parameters p (np,).
 
         `relaxed` (nb,) are residuals that the conditions shall have instead of zero; `enough` is a
         tolerance that will do, where it is larger than the solver's own; `system` is solved instead
-        of the program's own equations.
+        of the program's own equations; `factors` are those of equations nearby, of the same sizes,
+        which are used as long as they contract by `INHERIT`.
         """
         if not self.nlp.square:
             return _Run(self, w, p).report(Status.NOT_SQUARE)
         run = _Run(self, np.array(w, dtype=float), np.asarray(p, dtype=float))
         run.tolerance = max(self.tolerance, enough)
         run.system = system or run.system
+        run.factors = factors
         if relaxed is not None:
             if not isinstance(self.system, ElementSystem):
                 raise TypeError("conditions can be relaxed where the program has element blocks")
@@ -80,6 +84,7 @@ class _Run:
     def __init__(self, settings: Newton, w: Array, p: Array) -> None:
         self.settings, self.w, self.p = settings, w, p
         self.system: System = settings.system
+        self.factors: Factors | None = None
         self.tolerance = settings.tolerance
         self.iterations = self.factorizations = 0
         self.evaluate = self.linear = 0.0
@@ -87,6 +92,8 @@ class _Run:
 
     def iterate(self) -> Status:
         """Iterate until an end is reached."""
+        if self.factors is not None and self._with_inherited_factors():
+            return Status.CONVERGED
         damping = 1.0
         while self.iterations < self.settings.max_iterations:
             try:
@@ -100,6 +107,24 @@ class _Run:
             if status is not None:
                 return status
         return Status.MAX_ITERATIONS
+
+    def _with_inherited_factors(self) -> bool:
+        """Iterate as long as factors of other equations contract; whether that was enough."""
+        step = self._simplified_step(self.w)
+        while self.iterations < self.settings.max_iterations:
+            size = self._size(step)
+            if not size < np.inf:
+                return False
+            if size <= self.tolerance:
+                self.w = self.w + step
+                return True
+            self.iterations += 1
+            trial = self.w + step
+            step = self._simplified_step(trial)
+            if not self._size(step) <= INHERIT * size:
+                return False
+            self.w = trial
+        return False
 
     def _with_these_factors(self, step: Array, damping: float) -> tuple[Status | None, float]:
         """Iterate while the factors are good enough: the end reached, or None; and the damping."""
@@ -139,8 +164,9 @@ class _Run:
         start = time.perf_counter()
         residuals, derivatives = self.system.linearize(self.w, self.p)
         middle = time.perf_counter()
-        self.factors = self.system.factor(derivatives, self.p)
-        step = self.factors.solve(residuals)
+        factors = self.system.factor(derivatives, self.p)
+        step = factors.solve(residuals)
+        self.factors = factors
         self.evaluate += middle - start
         self.linear += time.perf_counter() - middle
         self.factorizations += 1
@@ -150,6 +176,7 @@ class _Run:
         start = time.perf_counter()
         residuals = self.system.residuals(w, self.p)
         middle = time.perf_counter()
+        assert self.factors is not None
         step = self.factors.solve(residuals)
         self.evaluate += middle - start
         self.linear += time.perf_counter() - middle
@@ -168,4 +195,5 @@ class _Run:
             linear=self.linear,
             total=time.perf_counter() - self.started,
             solver="newton",
+            factors=self.factors,
         )

@@ -4,8 +4,12 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 from enum import Enum
+from typing import TYPE_CHECKING
 
 from ribbonopt.arrays import Array
+
+if TYPE_CHECKING:
+    from .protocols import Factors
 
 
 class Status(Enum):
@@ -101,6 +105,8 @@ class SolveReport:
         Name of the solver.
     earlier : tuple of SolveReport
         Reports of solvers that were tried before this one and failed.
+    factors : Factors or None
+        Last factors of the Jacobian, where the solver keeps them.
     """
 
     status: Status
@@ -114,6 +120,7 @@ class SolveReport:
     total: float
     solver: str
     earlier: tuple[SolveReport, ...] = ()
+    factors: Factors | None = None
 
     @property
     def attempts(self) -> tuple[SolveReport, ...]:

@@ -1,27 +1,108 @@
-"""From a solution to one of a scene near by: on the same mesh and in the same phases first."""
+"""From a solved ribbon to one whose numbers differ little: everything that is near enough is kept.
+
+Mesh and phases, the unknowns (continued along the last step from ribbon to ribbon), and the factors
+of the Jacobian, which serve as long as Newton's method contracts with them: a ribbon then costs a
+few evaluations of its equations.
+"""
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
+import numpy as np
+
+from ribbonopt.accuracy.estimate import analyse
+from ribbonopt.arrays import Array
+from ribbonopt.attempts import Attempts
 from ribbonopt.pipeline import Prepared
 from ribbonopt.scene import Scene
 from ribbonopt.solution import Solution
+from ribbonopt.solvers.condense import CondensedSystem
+from ribbonopt.solvers.protocols import Factors
 
 SPARE = 0.05  # of the error that a new mesh may leave: it shall serve the neighbours to come
+FARTHEST = 2.0  # times the step before, that it is continued
 
 
-def solved_beside(prepared: Prepared, scene: Scene, before: Solution) -> Solution | None:
-    """Return a verified solution of a scene, from that of another of its structure; None for none.
+@dataclass(frozen=True, eq=False)
+class Neighbour:
+    """A solved ribbon that others of its structure start from.
 
-    Where the neighbour's mesh or phases do not do, its shape is the guess for all that a single
-    scene may need.
+    Attributes
+    ----------
+    prepared : Prepared
+        The structure.
+    solution : Solution
+        The ribbon, verified.
+    factors, finer : factors or None
+        Of its equations, and of those that estimate the error; of a ribbon near by at least.
+    before : Solution or None
+        The ribbon that it was solved from, if that is on the same mesh.
     """
-    search = prepared.search(scene)
-    attempts = search.on_mesh(before.sheets, before.mesh, before.joined.ends[1:-1])
-    if attempts.run(before, quick=True) and attempts.best is not None:
-        found = attempts.best
-        if found.sheets or not (search.phases_help and search.changes_sign(found)):
-            found = prepared.refined(found, SPARE)
-            if found.verified:
-                return found
-    found = prepared.solve(scene, guess=before, fallback=False)
-    return found if found.verified else None
+
+    prepared: Prepared
+    solution: Solution
+    factors: Factors | None = None
+    finer: CondensedSystem | None = None
+    before: Solution | None = None
+
+    def solve(self, scene: Scene) -> Neighbour | None:
+        """Return a verified solution of another scene of this structure; None if there is none.
+
+        Where the mesh or the phases do not do, the shape is the guess for all that a single scene
+        may need.
+        """
+        search, old = self.prepared.search(scene), self.solution
+        attempts = search.on_mesh(old.sheets, old.mesh, old.joined.ends[1:-1])
+        if self._run(attempts) and attempts.best is not None:
+            found = attempts.best
+            if found.sheets or not (search.phases_help and search.changes_sign(found)):
+                finer = self._finer(found, served=attempts.factorizations == 0)
+                refined = self.prepared.refined(found, SPARE, search)
+                on_new_mesh = refined.joined is not found.joined
+                if refined.verified and on_new_mesh:
+                    return Neighbour(self.prepared, refined, search.factors)
+                if refined.verified and attempts.check():
+                    kept = attempts.best, attempts.factors, finer, old
+                    return Neighbour(self.prepared, *kept)
+        anew = self.prepared.solve(scene, guess=old, fallback=False)
+        return Neighbour(self.prepared, anew) if anew.verified else None
+
+    def _run(self, attempts: Attempts) -> bool:
+        old = self.solution
+        if not _same_meaning(attempts, old):
+            return attempts.run(old, quick=True, check=False)
+        w = self._continued(attempts.p)
+        return attempts.run_from(w, quick=True, check=False, factors=self.factors)
+
+    def _continued(self, p: Array) -> Array:
+        """Unknowns (nw,) for other parameters on this mesh: what the last step was, once more."""
+        here = self.solution.dense
+        if self.before is None:
+            return here.w
+        there = self.before.dense
+        step, wanted = here.theta - there.theta, p[: len(here.theta)] - here.theta
+        length = float(step @ step)
+        share = float(wanted @ step) / length if length > 0 else 0.0
+        if not abs(share) <= FARTHEST:
+            return here.w
+        continued: Array = here.w + share * (here.w - there.w)
+        return continued
+
+    def _finer(self, found: Solution, served: bool) -> CondensedSystem | None:
+        """Analyse a solution; return the factors of that, if they are worth to be kept."""
+        if found.problem.recovered:
+            return None
+        try:
+            # Where the factors of the equations had to be made anew, those are not near either.
+            return analyse(found, self.finer if served else None, keep=served).factors
+        except np.linalg.LinAlgError:
+            return None
+
+
+def _same_meaning(attempts: Attempts, old: Solution) -> bool:
+    """Whether unknowns can be taken as they are: moments are about a point of reference."""
+    names = attempts.problem.parameter_names
+    where = [names.index(f"reference.{axis}") for axis in "xyz"]
+    same = attempts.nlp.blocks is old.dense.blocks
+    return same and bool((attempts.p[where] == old.dense.theta[where]).all())

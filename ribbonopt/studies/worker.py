@@ -27,7 +27,7 @@ from ribbonopt.scene import Scene, loads_scene
 from ribbonopt.scene.units import in_special_units
 from ribbonopt.solution import Solution
 
-from .neighbour import solved_beside
+from .neighbour import Neighbour
 from .recorded import error_of, numbers_of
 
 Row = dict[str, Any]
@@ -42,49 +42,48 @@ class Worker:
 
     def answers(self, chunk: dict[str, Any]) -> Iterator[dict[str, Any]]:
         """Yield for every ribbon that it begins, and its row; those of `skip` are passed over."""
-        before: Solution | None = None
+        before: Neighbour | None = None
         number = 0
         for ribbon in chunk["ribbons"]:
             if ribbon["number"] in chunk["skip"]:
                 continue
             yield {"at": ribbon["number"]}
-            row, found = self._solved(ribbon, before, number)
-            if found is not None and found.verified:
-                before, number = found, ribbon["number"]
+            row, found, neighbour = self._solved(ribbon, before, number)
+            if neighbour is not None:
+                before, number = neighbour, ribbon["number"]
             if ribbon["number"] not in chunk["known"]:
                 _save(chunk, ribbon, row, found)
                 yield {"row": row}
 
     def _solved(
-        self, ribbon: dict[str, Any], before: Solution | None, number: int
-    ) -> tuple[Row, Solution | None]:
+        self, ribbon: dict[str, Any], before: Neighbour | None, number: int
+    ) -> tuple[Row, Solution | None, Neighbour | None]:
+        """Return row and solution of a ribbon, and what the next one may start from."""
         started = time.perf_counter()
         row: Row = {"number": ribbon["number"], "scene": ribbon["source"], **ribbon["inputs"]}
+        found, neighbour = None, None
         try:
             scene = loads_scene(ribbon["text"], ribbon["source"], ribbon["set"])
             row["scene"] = scene.name
-            found, start = self._from_neighbour(scene, before, number)
-            row |= _outcome(found, start)
+            neighbour = self._beside(scene, before)
+            found = self._alone(scene) if neighbour is None else neighbour.solution
+            row |= _outcome(found, "own" if neighbour is None else f"ribbon {number}")
+            if neighbour is None and found.verified and scene.starts == 1:
+                neighbour = Neighbour(self._prepared(scene), found)
         except (RibbonoptError, np.linalg.LinAlgError) as error:
-            found = None
             status = getattr(error, "status", "bad_input")
             row |= {"status": status, "verified": False, "message": str(error)}
         row["seconds"] = time.perf_counter() - started
-        return row, found
+        return row, found, neighbour
 
-    def _from_neighbour(
-        self, scene: Scene, before: Solution | None, number: int
-    ) -> tuple[Solution, str]:
-        """Solve from the ribbon before if it is one of this structure, else from nothing."""
-        if scene.starts > 1:
-            return solve_once(scene), "own"
-        prepared = self._prepared(scene)
-        # Neighbours that share what was built share the structure.
-        if before is not None and self._prepared(before.scene) is prepared:
-            found = solved_beside(prepared, scene, before)
-            if found is not None:
-                return found, f"ribbon {number}"
-        return prepared.solve(scene), "own"
+    def _beside(self, scene: Scene, before: Neighbour | None) -> Neighbour | None:
+        """Solve from the ribbon before, if it is one of this structure; None where that fails."""
+        if before is None or scene.starts > 1 or self._prepared(scene) is not before.prepared:
+            return None
+        return before.solve(scene)
+
+    def _alone(self, scene: Scene) -> Solution:
+        return solve_once(scene) if scene.starts > 1 else self._prepared(scene).solve(scene)
 
     def _prepared(self, scene: Scene) -> Prepared:
         """Return the structure of a scene, built once."""
