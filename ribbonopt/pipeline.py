@@ -68,23 +68,23 @@ class Prepared:
         return self.built.on((self.scene.transcription.intervals,))[1]
 
     def solve(
-        self, scene: Scene | None = None, guess: Guess | None = None, *, fallback: bool = True
+        self,
+        scene: Scene | None = None,
+        guess: Guess | None = None,
+        *,
+        fallback: bool = True,
+        quick: bool = False,
     ) -> Solution:
         """Solve a scene of this structure (default: the prepared one).
 
-        Parameters
-        ----------
-        scene
-            Numbers; must agree with the prepared scene in everything else.
-        guess
-            Where to start, instead of the scene's own guess.
-        fallback
-            Whether to go on from the automatic start where that leads nowhere.
+        `guess` is where to start, instead of the scene's own guess; `fallback` whether to go on
+        from the automatic start where that leads nowhere; `quick` whether to leave it at Newton's
+        method from the guess, where that can be.
 
         Raises
         ------
         ModelError
-            If the scene has another structure.
+            If the scene has another structure than the prepared one.
         ConvergenceError
             If the prescribed ends are further apart than the ribbon is long.
         """
@@ -92,7 +92,7 @@ class Prepared:
         scene = scene or self.scene
         refuse_unreachable(scene)
         search = self.search(scene)
-        self._try_all(search, guess, fallback)
+        self._try_all(search, guess, fallback, quick)
         return self._told(search, time.perf_counter() - started)
 
     def polish(self, guess: Guess) -> Solution:
@@ -111,8 +111,8 @@ class Prepared:
     ) -> Solution:
         """Return a verified solution of this structure on a mesh that meets its tolerance.
 
-        A new mesh is fine enough for `spare` times what one usually aims at. What it takes is
-        added to a search for the solution's scene, if one is given.
+        A new mesh is fine enough for `spare` times the usual aim. A search for the solution's
+        scene, if given, remembers what it took.
         """
         scene = solution.scene
         if scene.tolerance is None or not solution.verified:
@@ -122,13 +122,10 @@ class Prepared:
         on_mesh = partial((search or self.search(scene)).on_mesh, solution.sheets)
         return refine(solution, scene.tolerance, self.ribbon, on_mesh, spare * AIM)
 
-    def start(
-        self, scene: Scene | None = None, guess: Guess | None = None
-    ) -> tuple[np.ndarray, np.ndarray]:
-        """Return the unknowns w of the guess and the parameters p = [theta, widths] of a scene."""
-        scene = scene or self.scene
-        p = self.built.attempts(scene).p
-        source = guess or self.guess(scene)
+    def start(self, guess: Guess | None = None) -> tuple[np.ndarray, np.ndarray]:
+        """Return the unknowns w of a guess for the scene and its parameters p = [theta, widths]."""
+        p = self.built.attempts(self.scene).p
+        source = guess or self.guess()
         return initial_unknowns(source, self.ribbon, self.problem, self.nlp.blocks, p), p
 
     def guess(self, scene: Scene | None = None) -> Guess:
@@ -146,7 +143,7 @@ class Prepared:
 
         return Automatic(in_special_units(self.scene))
 
-    def _try_all(self, search: Search, given: Guess | None, fallback: bool) -> None:
+    def _try_all(self, search: Search, given: Guess | None, fallback: bool, quick: bool) -> None:
         """Try the guess given or the scene's, then the automatic ones, until one leads on."""
         scene = in_special_units(search.scene)
         started = time.perf_counter()
@@ -154,7 +151,7 @@ class Prepared:
         if own is not None:
             step = "guess: given" if given else f"guess: {words(scene.guess)}"
             search.path.append({"step": step, "seconds": time.perf_counter() - started})
-            if search.run(own) or not fallback:
+            if search.run(own, quick=quick) or not fallback:
                 return
         first: Guess | None = None
         for guess in self.automatic.guesses(scene, search.path):

@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from .protocols import Factors, System
 
 KEEP = 0.1
-INHERIT = 0.5  # contraction with which factors of other equations are kept: they cost nothing
+INHERIT = 0.3  # contraction with which factors of other equations are kept: they cost nothing
 SMALLEST_DAMPING = 1e-4
 ROUNDING = 1e3 * np.finfo(float).eps
 

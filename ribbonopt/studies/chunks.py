@@ -13,7 +13,9 @@ import numpy as np
 
 from .sweep import Ribbon, Study
 
-SIZE = 25  # ribbons of a chunk, the first of which starts from nothing
+# Ribbons of a chunk, the first of which starts from nothing, and chunks of a group if they may be
+# larger: enough for all cores to end together.
+SMALLEST, LARGEST, CHUNKS = 25, 100, 40
 MANY = 20_000  # above, neighbours are found by sorting instead of one after another
 
 
@@ -61,8 +63,9 @@ def _in_order(group: Sequence[Ribbon]) -> list[Ribbon]:
 
 
 def _parts(ribbons: list[Ribbon]) -> Iterator[list[Ribbon]]:
-    for start in range(0, len(ribbons), SIZE):
-        yield ribbons[start : start + SIZE]
+    size = min(max(len(ribbons) // CHUNKS, SMALLEST), LARGEST)
+    for start in range(0, len(ribbons), size):
+        yield ribbons[start : start + size]
 
 
 def _is_number(value: object) -> bool:

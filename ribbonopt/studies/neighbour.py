@@ -47,10 +47,9 @@ class Neighbour:
     before: Solution | None = None
 
     def solve(self, scene: Scene) -> Neighbour | None:
-        """Return a verified solution of another scene of this structure; None if there is none.
+        """Return a verified solution of another scene of this structure; None if none is near.
 
-        Where the mesh or the phases do not do, the shape is the guess for all that a single scene
-        may need.
+        Where the mesh or the phases do not do, they are made anew from the shape.
         """
         search, old = self.prepared.search(scene), self.solution
         attempts = search.on_mesh(old.sheets, old.mesh, old.joined.ends[1:-1])
@@ -65,8 +64,12 @@ class Neighbour:
                 if refined.verified and attempts.check():
                     kept = attempts.best, attempts.factors, finer, old
                     return Neighbour(self.prepared, *kept)
-        anew = self.prepared.solve(scene, guess=old, fallback=False)
+        anew = self.prepared.solve(scene, guess=old, fallback=False, quick=True)
         return Neighbour(self.prepared, anew) if anew.verified else None
+
+    def solve_at_any_cost(self, scene: Scene) -> Solution:
+        """Return a solution of another scene of this structure, by all that a guess may lead to."""
+        return self.prepared.solve(scene, guess=self.solution, fallback=False)
 
     def _run(self, attempts: Attempts) -> bool:
         old = self.solution

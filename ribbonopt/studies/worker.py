@@ -65,25 +65,32 @@ class Worker:
         try:
             scene = loads_scene(ribbon["text"], ribbon["source"], ribbon["set"])
             row["scene"] = scene.name
-            neighbour = self._beside(scene, before)
-            found = self._alone(scene) if neighbour is None else neighbour.solution
-            row |= _outcome(found, "own" if neighbour is None else f"ribbon {number}")
-            if neighbour is None and found.verified and scene.starts == 1:
-                neighbour = Neighbour(self._prepared(scene), found)
+            if scene.starts > 1:
+                found, start = solve_once(scene), "own"
+            else:
+                neighbour, found, start = self._one(scene, before, f"ribbon {number}")
+            row |= _outcome(found, start)
         except (RibbonoptError, np.linalg.LinAlgError) as error:
             status = getattr(error, "status", "bad_input")
             row |= {"status": status, "verified": False, "message": str(error)}
         row["seconds"] = time.perf_counter() - started
         return row, found, neighbour
 
-    def _beside(self, scene: Scene, before: Neighbour | None) -> Neighbour | None:
-        """Solve from the ribbon before, if it is one of this structure; None where that fails."""
-        if before is None or scene.starts > 1 or self._prepared(scene) is not before.prepared:
-            return None
-        return before.solve(scene)
-
-    def _alone(self, scene: Scene) -> Solution:
-        return solve_once(scene) if scene.starts > 1 else self._prepared(scene).solve(scene)
+    def _one(
+        self, scene: Scene, before: Neighbour | None, name: str
+    ) -> tuple[Neighbour | None, Solution, str]:
+        """Solve from the ribbon before, if that is near, else from nothing."""
+        prepared = self._prepared(scene)
+        if before is not None and before.prepared is not prepared:
+            before = None
+        beside = before and before.solve(scene)
+        if beside is not None:
+            return beside, beside.solution, name
+        found, start = prepared.solve(scene), "own"
+        if before is not None and not found.verified:
+            other = before.solve_at_any_cost(scene)
+            found, start = (other, name) if other.verified else (found, start)
+        return (Neighbour(prepared, found) if found.verified else None), found, start
 
     def _prepared(self, scene: Scene) -> Prepared:
         """Return the structure of a scene, built once."""
