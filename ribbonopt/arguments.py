@@ -81,6 +81,12 @@ def parser() -> argparse.ArgumentParser:
     batch.add_argument("--out", metavar="DIR", help="folder of the rows (default: results/NAME)")
     batch.add_argument("--resume", action="store_true", help="complete the rows in the folder")
     batch.add_argument("--scheduler", metavar="ADDRESS", help="Dask scheduler to use instead")
+    batch.add_argument(
+        "--plot",
+        nargs="*",
+        metavar="X:Y",
+        help="draw columns against each other too, such as law.epsilon:energy",
+    )
     batch.add_argument("--yes", action="store_true", help="solve more than 100,000 ribbons")
     batch.add_argument("--json", action="store_true", help="print exactly one JSON object")
     batch.add_argument("--quiet", action="store_true", help="print nothing unless it fails")
@@ -92,7 +98,10 @@ def parser() -> argparse.ArgumentParser:
     plot = verbs.add_parser(
         "plot", help="draw the pictures of a saved result", formatter_class=_help
     )
-    plot.add_argument("result", metavar="RESULT", help="folder written by solve or continue")
+    plot.add_argument("result", metavar="RESULT", help="folder written by solve, continue or batch")
+    plot.add_argument(
+        "pairs", nargs="*", metavar="X:Y", help="columns of a branch or a batch, such as u2:energy"
+    )
     plot.add_argument("--out", metavar="DIR", help="folder for the pictures (default: RESULT)")
     return result
 

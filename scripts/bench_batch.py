@@ -19,7 +19,8 @@ from typing import Any
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 from ribbonopt.studies.batch import run_batch
-from ribbonopt.studies.sweep import Study, load_study
+from ribbonopt.studies.study import Study
+from ribbonopt.studies.sweep import load_study
 
 CONFIGS = Path(__file__).resolve().parent.parent / "configs"
 CLAMPS = """\

@@ -3,36 +3,45 @@
 from __future__ import annotations
 
 import argparse
+import gc
 import sys
 import time
 from collections import Counter
 from contextlib import closing
+from datetime import timedelta
 from typing import TYPE_CHECKING
 
 from ribbonopt.arguments import count
 from ribbonopt.errors import SceneError
 
-from .common import INTERRUPTED, NOT_CONVERGED, print_json
+from .common import INTERRUPTED, NOT_CONVERGED, pairs_of, print_json
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from ribbonopt.studies.batch_files import BatchFolder
 
 HUGE = 100_000  # ribbons, beyond which a study may be a mistake
+OFTEN = 0.1  # seconds between two pictures of the bar
 
 
 def batch(options: argparse.Namespace) -> int:
     """Solve all ribbons of a study."""
-    from ribbonopt.studies.batch import reach, run_batch
+    pairs = pairs_of("--plot", options.plot)
+    from ribbonopt.studies.batch import run_batch
     from ribbonopt.studies.batch_files import BatchFolder
     from ribbonopt.studies.sweep import load_study
 
+    gc.enable()  # many rows, and threads that serve the workers
     jobs = None if options.jobs is None else count("--jobs", options.jobs)
     study = load_study(options.study, options.set)
     if study.count > HUGE and not options.yes:
         raise SceneError(f"{study.name}: {study.count} ribbons; say --yes if that is meant")
     study.check()
     if options.scheduler:
-        reach(options.scheduler).close()  # before anything is written
+        from ribbonopt.studies.cluster import check_cluster
+
+        check_cluster(options.scheduler)  # before anything is written
     folder = BatchFolder(options.out or f"results/{study.name}", study, resume=options.resume)
     rows = run_batch(
         study,
@@ -43,12 +52,11 @@ def batch(options: argparse.Namespace) -> int:
     )
     bar = _Bar(study.count, folder)
     try:
-        with closing(rows):
+        with closing(rows), closing(bar):
             for row in rows:
                 folder.append(row)
                 bar.show()
     except KeyboardInterrupt:
-        bar.clear()
         print(
             f"ribbonopt: interrupted; {len(folder.rows)} of {study.count} rows kept in "
             f"{folder.folder}, --resume goes on from there",
@@ -57,8 +65,34 @@ def batch(options: argparse.Namespace) -> int:
         return INTERRUPTED
     finally:
         folder.close()
-    bar.clear()
+    _draw(folder, pairs)
     return _tell(options, folder)
+
+
+def draw(result: Path, out: Path, pairs: list[tuple[str, str]]) -> list[Path]:
+    """Write report and figures of a batch folder again and return where."""
+    from ribbonopt.studies.batch_files import load_batch
+    from ribbonopt.views.batch import save_batch_figures
+    from ribbonopt.views.report import write_report
+
+    said, rows = load_batch(result)
+    report = write_report(
+        rows, tuple(said["inputs"]), out / "report.html", name=said["name"], count=said["ribbons"]
+    )
+    return [report, *save_batch_figures(rows, tuple(said["inputs"]), out, pairs)]
+
+
+def _draw(folder: BatchFolder, pairs: list[tuple[str, str]] | None) -> None:
+    """Write the report, and the figures where they are wanted."""
+    from ribbonopt.views.report import write_report
+
+    study = folder.study
+    path = folder.folder / "report.html"
+    write_report(folder.rows, study.keys, path, name=study.name, count=study.count)
+    if pairs is not None:
+        from ribbonopt.views.batch import save_batch_figures  # matplotlib
+
+        save_batch_figures(folder.rows, study.keys, folder.folder, pairs)
 
 
 def _tell(options: argparse.Namespace, folder: BatchFolder) -> int:
@@ -78,10 +112,11 @@ def _tell(options: argparse.Namespace, folder: BatchFolder) -> int:
     elif not options.quiet:
         said = ", ".join(f"{number} {status}" for status, number in statuses.most_common())
         seconds = sum(row.get("seconds", 0.0) for row in folder.rows)
+        names = ", ".join(sorted(path.name for path in folder.folder.iterdir()))
         print(
             f"{folder.study.name}: {len(folder.rows)} ribbons: {said}\n"
             f"  {seconds:.1f} s of solving\n"
-            f"  written: {folder.folder}: rows.jsonl, table.csv, study.json"
+            f"  written: {folder.folder}: {names}"
         )
     if not failed:
         return 0
@@ -99,19 +134,20 @@ class _Bar:
 
     def __init__(self, total: int, folder: BatchFolder) -> None:
         self.total, self.folder, self.width = total, folder, 0
-        self.started, self.before = time.perf_counter(), len(folder.rows)
+        self.before, self.started, self.shown = len(folder.rows), time.perf_counter(), 0.0
+        self.wanted = sys.stderr.isatty()
 
     def show(self) -> None:
-        if not sys.stderr.isatty():
+        now, done = time.perf_counter(), len(self.folder.rows)
+        if not self.wanted or (now - self.shown < OFTEN and done < self.total):
             return
-        done = len(self.folder.rows)
-        failed = sum(not row["verified"] for row in self.folder.rows)
-        rate = (done - self.before) / max(time.perf_counter() - self.started, 1e-9)
-        left = (self.total - done) / rate if rate else 0.0
-        line = f"{done}/{self.total} done, {failed} failed, {rate:.1f}/s, {left:.0f} s left"
+        self.shown = now
+        rate = (done - self.before) / max(now - self.started, 1e-9)
+        left = f"{timedelta(seconds=round((self.total - done) / rate))} left"
+        line = f"{done}/{self.total} done, {self.folder.failed} failed, {rate:.1f}/s, {left}"
         print("\r" + line.ljust(self.width), end="", file=sys.stderr, flush=True)
         self.width = len(line)
 
-    def clear(self) -> None:
+    def close(self) -> None:
         if self.width:
             print("\r" + " " * self.width + "\r", end="", file=sys.stderr, flush=True)

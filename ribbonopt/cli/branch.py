@@ -10,9 +10,7 @@ from contextlib import closing
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
-from ribbonopt.errors import SceneError
-
-from .common import INTERRUPTED, NOT_CONVERGED, load, print_json
+from .common import INTERRUPTED, NOT_CONVERGED, load, pairs_of, print_json
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -27,7 +25,7 @@ BAR = 24
 
 def follow(options: argparse.Namespace) -> int:
     """Follow the branches of a scene's `continuation`."""
-    pairs = _pairs(options.plot)
+    pairs = pairs_of("--plot", options.plot)
     scene, _ = load(options)
     from ribbonopt.studies.branch_files import BranchFolder
     from ribbonopt.studies.continuation import Continuation
@@ -54,13 +52,16 @@ def follow(options: argparse.Namespace) -> int:
     return _tell(options, folder, continuation)
 
 
-def draw(result: Path, out: Path) -> list[Path]:
+def draw(result: Path, out: Path, pairs: list[tuple[str, str]]) -> list[Path]:
     """Draw the figures of a branch folder again and return where."""
     from ribbonopt.studies.branch_files import load_branch
     from ribbonopt.studies.continuation import Continuation
 
     scene, lines = load_branch(result)
-    return _draw(Continuation(scene), lines, [], out)
+    continuation = Continuation(scene)
+    for pair in pairs:
+        continuation.ledger.recorder.known(pair, ":".join(pair))
+    return _draw(continuation, lines, pairs, out)
 
 
 def _draw(
@@ -188,19 +189,6 @@ def _bar(row: Mapping[str, Any], begin: float | None, end: float | None) -> str:
         share = log(row["value"] / begin) / log(end / begin)
     done = round(BAR * min(max(share, 0.0), 1.0))
     return f"[{'#' * done}{'.' * (BAR - done)}]"
-
-
-def _pairs(texts: list[str] | None) -> list[tuple[str, str]] | None:
-    """Read X:Y; None where no figure is wanted."""
-    if texts is None:
-        return None
-    pairs = []
-    for text in texts:
-        x, colon, y = text.partition(":")
-        if not (x and colon and y):
-            raise SceneError(f"--plot: found {text!r}; expected X:Y, such as value:energy")
-        pairs.append((x, y))
-    return pairs
 
 
 def _usual(record: Mapping[str, str]) -> list[tuple[str, str]]:

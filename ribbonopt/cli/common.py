@@ -6,6 +6,8 @@ import argparse
 import time
 from typing import TYPE_CHECKING, Any
 
+from ribbonopt.errors import SceneError
+
 if TYPE_CHECKING:
     from ribbonopt.scene import Scene
 
@@ -25,6 +27,19 @@ def load(options: argparse.Namespace) -> tuple[Scene, float]:
     import ribbonopt.pipeline  # noqa: F401
 
     return scene, (reading - start) + (time.perf_counter() - read)
+
+
+def pairs_of(option: str, texts: list[str] | None) -> list[tuple[str, str]] | None:
+    """Read X:Y; None where no figure is wanted."""
+    if texts is None:
+        return None
+    pairs = []
+    for text in texts:
+        x, colon, y = text.partition(":")
+        if not (x and colon and y):
+            raise SceneError(f"{option}: found {text!r}; expected X:Y, such as value:energy")
+        pairs.append((x, y))
+    return pairs
 
 
 def print_json(value: dict[str, Any], indent: int | None = None) -> None:

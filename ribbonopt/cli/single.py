@@ -6,7 +6,9 @@ import argparse
 import sys
 from typing import TYPE_CHECKING, Any
 
-from .common import NOT_CONVERGED, load, print_json
+from ribbonopt.errors import SceneError
+
+from .common import NOT_CONVERGED, load, pairs_of, print_json
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -101,11 +103,17 @@ def plot(options: argparse.Namespace) -> int:
     from ribbonopt.staging import picture_folder
     from ribbonopt.views import save_figures
 
-    result = Path(options.result)
+    result, pairs = Path(options.result), pairs_of("plot", options.pairs) or []
     if (result / "branch.jsonl").is_file():
-        from .branch import draw
+        from .branch import draw as draw_branch
 
-        paths = draw(result, picture_folder(options.out or result))
+        paths = draw_branch(result, picture_folder(options.out or result), pairs)
+    elif (result / "rows.jsonl").is_file():
+        from .batch import draw as draw_batch
+
+        paths = draw_batch(result, picture_folder(options.out or result), pairs)
+    elif pairs:
+        raise SceneError(f"plot: {result} is no branch and no batch, which X:Y is drawn of")
     else:
         solution = load_solution(result)
         paths = save_figures(solution, picture_folder(options.out or result))

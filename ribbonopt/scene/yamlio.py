@@ -13,7 +13,7 @@ from .laws import Sadowsky
 from .model import Scene
 from .problems import InvalidSceneError, Problem, report
 from .validation import validate
-from .yamltext import YamlTextError, read
+from .yamltext import PlainData, YamlTextError, read
 
 
 def load_scene(path: str | os.PathLike[str], overrides: Sequence[str] = ()) -> Scene:
@@ -112,6 +112,11 @@ def loads_scene(text: str, source: str = "<string>", overrides: Sequence[str] = 
 
 def plain_yaml(text: str, source: str) -> Any:
     """Read YAML text as plain data; `source` names it in the SceneError of what is no YAML."""
+    return read_yaml(text, source).data
+
+
+def read_yaml(text: str, source: str) -> PlainData:
+    """Read YAML text as plain data with the places of its values; see `plain_yaml`."""
     try:
         found = read(text)
     except YamlTextError as error:
@@ -119,7 +124,7 @@ def plain_yaml(text: str, source: str) -> Any:
         raise SceneError(f"{where}: {error}") from None
     if found.problems:
         raise SceneError(report(source, found.problems, found.places))
-    return found.data
+    return found
 
 
 def validate_scene(scene: Scene) -> Scene:

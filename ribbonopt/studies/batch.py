@@ -12,14 +12,12 @@ from __future__ import annotations
 import os
 import queue
 import threading
-from collections.abc import Generator, Iterable
+from collections.abc import Generator, Mapping
 from typing import Any
-
-from ribbonopt.errors import SceneError
 
 from .chunks import Chunk, chunks_of
 from .crew import Crew
-from .sweep import Study
+from .study import Study
 
 Row = dict[str, Any]
 
@@ -29,7 +27,7 @@ def run_batch(
     *,
     jobs: int | None = None,
     scheduler: str | None = None,
-    known: Iterable[int] = (),
+    known: Mapping[int, str] | None = None,
     folder: str = "",
 ) -> Generator[Row, None, None]:
     """Yield the rows of a study, in the order in which they are ready.
@@ -43,28 +41,32 @@ def run_batch(
     scheduler
         Address of a Dask scheduler, whose workers are used instead.
     known
-        Numbers of ribbons whose rows are there already.
+        Statuses of ribbons whose rows are there already, by number.
     folder
         Where full solutions go, in `solutions/NUMBER`; "" for nowhere.
 
     Raises
     ------
     SceneError
-        If the scheduler cannot be reached.
+        If the scheduler cannot be reached, or its workers cannot run this.
+    ConvergenceError
+        If the scheduler is lost on the way.
     """
-    done = frozenset(known)
+    done = dict(known or {})
     chunks = [
         chunk for chunk in chunks_of(study) if any(r.number not in done for r in chunk.ribbons)
     ]
     if scheduler is not None:
-        yield from _on_cluster(study, chunks, scheduler, done, folder)
+        from .cluster import rows_of_cluster  # the extra `distributed`
+
+        yield from rows_of_cluster(study, chunks, scheduler, done, folder)
         return
     count = min(jobs or os.cpu_count() or 1, len(chunks))
     yield from _on_this_machine(study, chunks, count, done, folder)
 
 
 def _on_this_machine(
-    study: Study, chunks: list[Chunk], jobs: int, known: frozenset[int], folder: str
+    study: Study, chunks: list[Chunk], jobs: int, known: Mapping[int, str], folder: str
 ) -> Generator[Row, None, None]:
     work: queue.SimpleQueue[Chunk] = queue.SimpleQueue()
     for chunk in chunks:
@@ -101,44 +103,3 @@ def _on_this_machine(
         wanted.clear()
         for crew in crews:
             crew.close()
-
-
-def _on_cluster(
-    study: Study, chunks: list[Chunk], address: str, known: frozenset[int], folder: str
-) -> Generator[Row, None, None]:
-    from distributed import as_completed
-
-    client = reach(address)
-    with client:
-        futures = [
-            client.submit(run_chunk, chunk, study.save, folder, study.time_limit, known, pure=False)
-            for chunk in chunks
-        ]
-        ready: Any = as_completed(futures)  # type: ignore[no-untyped-call]
-        for future in ready:
-            yield from future.result()
-
-
-def reach(address: str) -> Any:
-    """Return a client of a Dask scheduler; SceneError if it cannot be reached."""
-    try:
-        from distributed import Client  # the extra `distributed`
-    except ImportError:
-        raise SceneError(
-            "--scheduler: needs Dask; install it by pip install 'ribbonopt[distributed]'"
-        ) from None
-    try:
-        return Client(address, timeout=10)  # type: ignore[no-untyped-call]
-    except (OSError, TimeoutError, ValueError) as error:
-        raise SceneError(f"--scheduler {address}: cannot be reached ({error})") from None
-
-
-def run_chunk(
-    chunk: Chunk, save: str, folder: str, time_limit: float, known: frozenset[int]
-) -> list[Row]:
-    """Return the rows of a chunk, solved in a process of its own; what a cluster's worker runs."""
-    crew = Crew(save, folder, time_limit)
-    try:
-        return list(crew.rows(chunk, known))
-    finally:
-        crew.close()

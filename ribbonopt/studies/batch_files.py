@@ -6,17 +6,20 @@ says which study it is; `solutions/NUMBER` are full results.
 
 from __future__ import annotations
 
+import contextlib
 import csv
 import json
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 from ribbonopt.errors import OutputError
 from ribbonopt.staging import unwritable
 
-from .sweep import Study
+from .study import Study
 
 ROWS, TABLE, STUDY, SOLUTIONS = "rows.jsonl", "table.csv", "study.json", "solutions"
+PICTURES = ("report.html", "outcomes.png", "scatter.png")  # what views write beside them
 
 Row = dict[str, Any]
 
@@ -35,6 +38,7 @@ class BatchFolder:
         """
         self.folder, self.study = Path(folder), study
         self.rows: list[Row] = []
+        self.failed = 0
         try:
             self._claim(resume)
         except OutputError:  # an OSError too, but one that says what to do
@@ -43,9 +47,9 @@ class BatchFolder:
             raise unwritable(self.folder, error) from error
 
     @property
-    def known(self) -> set[int]:
-        """Numbers of the ribbons whose rows are there."""
-        return {row["number"] for row in self.rows}
+    def known(self) -> dict[int, str]:
+        """Statuses of the ribbons whose rows are there."""
+        return {row["number"]: row["status"] for row in self.rows}
 
     def append(self, row: Row) -> None:
         """Add a row, on disk before this returns."""
@@ -53,39 +57,59 @@ class BatchFolder:
             self._file.write(json.dumps(row) + "\n")
             self._file.flush()
         except OSError as error:
-            raise unwritable(self.folder, error) from error
-        self.rows.append(row)
+            with contextlib.suppress(OSError):  # it tries to write the rest of the row once more
+                self._file.close()
+            raise self._full(error) from error
+        self._count(row)
 
     def close(self) -> None:
         """Write the table, sorted by number, and close the file of rows."""
+        names: dict[str, None] = {}
+        for row in self.rows:
+            names |= dict.fromkeys(row)
         try:
             self._file.close()
-            names: dict[str, None] = {}
-            for row in self.rows:
-                names |= dict.fromkeys(row)
-            with open(self.folder / TABLE, "w", newline="", encoding="utf-8") as file:
-                writer = csv.DictWriter(file, sorted_columns(list(names), self.study))
+            with open(self.folder / f"{TABLE}.new", "w", newline="", encoding="utf-8") as file:
+                writer = csv.DictWriter(file, sorted_columns(list(names), self.study.keys))
                 writer.writeheader()
                 writer.writerows(sorted(self.rows, key=lambda row: row["number"]))
+            (self.folder / f"{TABLE}.new").replace(self.folder / TABLE)
         except OSError as error:
-            raise unwritable(self.folder, error) from error
+            with contextlib.suppress(OSError):
+                (self.folder / f"{TABLE}.new").unlink()
+            raise self._full(error) from error
+
+    def _count(self, row: Row) -> None:
+        self.rows.append(row)
+        self.failed += not row["verified"]
+
+    def _full(self, error: OSError) -> OutputError:
+        return OutputError(
+            f"{self.folder}: cannot be written ({error.strerror}); {len(self.rows)} of "
+            f"{self.study.count} rows are kept, make room and go on by --resume"
+        )
 
     def _claim(self, resume: bool) -> None:
         self.folder.mkdir(parents=True, exist_ok=True)
         found = sorted(path.name for path in self.folder.iterdir())
-        own = {ROWS, TABLE, STUDY, SOLUTIONS}
+        own = {ROWS, TABLE, STUDY, SOLUTIONS, *PICTURES, f"{ROWS}.new", f"{TABLE}.new"}
         foreign = [name for name in found if name not in own]
         if foreign:
             raise OutputError(
                 f"{self.folder}: holds files that are no batch ({', '.join(foreign[:3])}); choose "
                 "a new or an empty folder"
             )
-        said = {"name": self.study.name, "ribbons": self.study.count, "digest": self.study.digest}
+        said = {
+            "name": self.study.name,
+            "ribbons": self.study.count,
+            "inputs": self.study.keys,
+            "digest": self.study.digest,
+        }
         if STUDY in found:
-            known = json.loads((self.folder / STUDY).read_text(encoding="utf-8"))
-            if known.get("digest") != said["digest"]:
+            known = _said(self.folder)
+            if known["digest"] != said["digest"]:
                 raise OutputError(
-                    f"{self.folder}: holds rows of another study ({known.get('name')}); choose "
+                    f"{self.folder}: holds rows of another study ({known['name']}); choose "
                     "another folder"
                 )
             if not resume:
@@ -93,7 +117,8 @@ class BatchFolder:
                     f"{self.folder}: holds rows of this study already; go on by --resume, or "
                     "choose another folder"
                 )
-            self.rows = _read(self.folder / ROWS)
+            for row in _read(self.folder / ROWS):
+                self._count(row)
         text = "".join(json.dumps(row) + "\n" for row in self.rows)
         (self.folder / STUDY).write_text(json.dumps(said, indent=2) + "\n", encoding="utf-8")
         beside = self.folder / f"{ROWS}.new"
@@ -102,12 +127,40 @@ class BatchFolder:
         self._file = open(self.folder / ROWS, "a", encoding="utf-8")
 
 
-def sorted_columns(names: list[str], study: Study) -> list[str]:
+def sorted_columns(names: list[str], inputs: Sequence[str]) -> list[str]:
     """Return columns: number, scene, inputs, what came out, and what it cost last."""
-    first = ["number", "scene", *study.keys, "status", "verified", "energy"]
+    first = ["number", "scene", *inputs, "status", "verified", "energy"]
     last = ["start", "iterations", "path", "message", "seconds"]
     middle = [name for name in sorted(names) if name not in (*first, *last)]
     return [name for name in (*first, *middle, *last) if name in names]
+
+
+def load_batch(folder: str | Path) -> tuple[dict[str, Any], list[Row]]:
+    """Return what a batch folder says of its study (name, ribbons, inputs), and its rows.
+
+    Raises
+    ------
+    OutputError
+        If it holds none, or is damaged.
+    """
+    folder = Path(folder)
+    try:
+        return _said(folder), _read(folder / ROWS)
+    except FileNotFoundError:
+        raise OutputError(
+            f"{folder}: no batch; expected a folder written by ribbonopt batch"
+        ) from None
+
+
+def _said(folder: Path) -> dict[str, Any]:
+    path = folder / STUDY
+    try:
+        said = json.loads(path.read_text(encoding="utf-8"))
+    except ValueError:
+        said = None
+    if not isinstance(said, dict) or not {"name", "ribbons", "inputs", "digest"} <= said.keys():
+        raise OutputError(f"{path}: is damaged; choose another folder")
+    return said
 
 
 def _read(path: Path) -> list[Row]:
@@ -115,9 +168,16 @@ def _read(path: Path) -> list[Row]:
     rows: list[Row] = []
     if not path.exists():
         return rows
-    for line in path.read_text(encoding="utf-8").splitlines():
+    for number, line in enumerate(path.read_bytes().split(b"\n"), start=1):
+        if not line:
+            continue
         try:
-            rows.append(json.loads(line))
+            row = json.loads(line)
         except ValueError:
-            break
+            break  # cut short when the process died, and nothing after it
+        if not isinstance(row, dict) or not {"number", "status", "verified"} <= row.keys():
+            raise OutputError(
+                f"{path}, line {number}: is damaged; remove it and all lines after it to go on"
+            )
+        rows.append(row)
     return rows

@@ -6,16 +6,23 @@ the same however many there are.
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Sequence
+import math
+from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
-from .sweep import Ribbon, Study
+from ribbonopt.arrays import Array
+from ribbonopt.errors import RibbonoptError
+from ribbonopt.scene.units import in_special_units
+from ribbonopt.scene.yamlio import loads_scene
 
-# Ribbons of a chunk, the first of which starts from nothing, and chunks of a group if they may be
-# larger: enough for all cores to end together.
-SMALLEST, LARGEST, CHUNKS = 25, 100, 40
+from .study import Ribbon, Study
+
+Group = tuple[object, ...]
+Point = tuple[float, ...]
+
+LARGEST = 100  # ribbons of a chunk, the first of which starts from nothing
 MANY = 20_000  # above, neighbours are found by sorting instead of one after another
 
 
@@ -28,42 +35,62 @@ class Chunk:
 
 def chunks_of(study: Study) -> list[Chunk]:
     """Divide the ribbons of a study."""
-    groups: dict[tuple[object, ...], list[Ribbon]] = {}
+    groups: dict[Group, list[Ribbon]] = {}
+    points: dict[Group, list[Point]] = {}
     for ribbon in study.ribbons:
-        groups.setdefault(_structure(ribbon), []).append(ribbon)
-    return [Chunk(tuple(part)) for group in groups.values() for part in _parts(_in_order(group))]
+        group, point = _swept(ribbon) if ribbon.inputs else _plain(ribbon)
+        groups.setdefault(group, []).append(ribbon)
+        points.setdefault(group, []).append(point)
+    return [
+        Chunk(tuple(part))
+        for group, ribbons in groups.items()
+        for part in _parts([ribbons[i] for i in _order(np.array(points[group]))])
+    ]
 
 
-def _structure(ribbon: Ribbon) -> tuple[object, ...]:
-    """Return what ribbons that can follow each other share: the scene and all but its numbers."""
-    other = {k: v for k, v in ribbon.inputs.items() if not _is_number(v)}
-    return ribbon.source.name, tuple(ribbon.inputs), repr(sorted(other.items()))
+def _swept(ribbon: Ribbon) -> tuple[Group, Point]:
+    """Group by the scene and all inputs but numbers; these are the place in it."""
+    numbers = {k: v for k, v in ribbon.inputs.items() if _is_number(v)}
+    other = {k: v for k, v in ribbon.inputs.items() if k not in numbers}
+    group = ribbon.source.name, tuple(ribbon.inputs), repr(sorted(other.items()))
+    return group, tuple(float(number) for number in numbers.values())
 
 
-def _in_order(group: Sequence[Ribbon]) -> list[Ribbon]:
-    """Return ribbons so that each is the nearest of those left to the one before."""
-    keys = [key for key, value in group[0].inputs.items() if _is_number(value)]
-    if not keys or len(group) < 3:
-        return list(group)
-    points = np.array([[float(ribbon.inputs[key]) for key in keys] for ribbon in group])
+def _plain(ribbon: Ribbon) -> tuple[Group, Point]:
+    """Group a scene by its structure; its numbers are the place in it."""
+    from ribbonopt.problem import structure_of, theta_values  # only where scenes come as files
+
+    try:
+        scene = loads_scene(ribbon.source.text, ribbon.source.name, ribbon.overrides)
+        special = in_special_units(scene)
+        return structure_of(special), tuple(theta_values(special).tolist())
+    except RibbonoptError:  # its row will say so
+        return ("no scene", ribbon.number), ()
+
+
+def _order(points: Array) -> list[int]:
+    """Order points (k, d) so that each is the nearest of those left to the one before."""
+    count = len(points)
+    if not points.size or count < 3:
+        return list(range(count))
     spans = np.ptp(points, axis=0)
     points = (points - points.min(axis=0)) / np.where(spans > 0, spans, 1.0)
-    if len(group) > MANY:
-        return [group[int(i)] for i in np.lexsort(points.T[::-1])]
-    left = np.ones(len(group), dtype=bool)
-    at = int(np.lexsort(points.T[::-1])[0])
-    order = [at]
-    left[at] = False
-    for _ in range(len(group) - 1):
-        gaps = np.where(left, np.abs(points - points[at]).sum(axis=1), np.inf)
-        at = int(gaps.argmin())
-        order.append(at)
-        left[at] = False
-    return [group[i] for i in order]
+    sorted_ = np.lexsort(points.T[::-1])
+    if count > MANY:
+        return [int(i) for i in sorted_]
+    left = np.ones(count, dtype=bool)
+    order = [int(sorted_[0])]
+    left[order[0]] = False
+    for _ in range(count - 1):
+        gaps = np.where(left, np.abs(points - points[order[-1]]).sum(axis=1), np.inf)
+        order.append(int(gaps.argmin()))
+        left[order[-1]] = False
+    return order
 
 
 def _parts(ribbons: list[Ribbon]) -> Iterator[list[Ribbon]]:
-    size = min(max(len(ribbons) // CHUNKS, SMALLEST), LARGEST)
+    """Yield chunks, about as many as there are ribbons in each, so that all cores end together."""
+    size = min(math.isqrt(len(ribbons) - 1) + 1, LARGEST)
     for start in range(0, len(ribbons), size):
         yield ribbons[start : start + size]
 

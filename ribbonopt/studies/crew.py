@@ -8,13 +8,15 @@ import queue
 import subprocess
 import sys
 import threading
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from contextlib import suppress
 from typing import Any
 
 from .chunks import Chunk
+from .study import Ribbon
 
 Row = dict[str, Any]
+LOST = ("crashed", "timed_out")  # statuses of ribbons that took their worker with them
 STARTING = 60.0  # seconds that a new process may take before its first ribbon is counted
 ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
 
@@ -28,9 +30,12 @@ class Crew:
         self._process: subprocess.Popen[str] | None = None
         self._answers: queue.Queue[str] = queue.Queue()
 
-    def rows(self, chunk: Chunk, known: frozenset[int]) -> Iterator[Row]:
-        """Yield the rows of a chunk that are not known; lost ribbons get a row that says so."""
-        skip: list[int] = []
+    def rows(self, chunk: Chunk, known: Mapping[int, str]) -> Iterator[Row]:
+        """Yield the rows of a chunk; lost ribbons get a row that says so.
+
+        Ribbons whose status is known are solved for their neighbours only, lost ones not again.
+        """
+        skip = [r.number for r in chunk.ribbons if known.get(r.number) in LOST]
         done = set(known)
         while True:
             fresh = self._process is None
@@ -51,16 +56,8 @@ class Crew:
                 yield answer["row"]
             culprit = next(ribbon for ribbon in chunk.ribbons if ribbon.number == at)
             skip.append(at)
-            if at in known:  # its row is there already
-                continue
-            yield {
-                "number": culprit.number,
-                "scene": culprit.source.name,
-                **culprit.inputs,
-                "status": lost,
-                "verified": False,
-                "message": _said(lost, self.time_limit),
-            }
+            if at not in done:
+                yield lost_row(culprit, lost, _said(lost, self.time_limit))
             if all(r.number in done or r.number in skip for r in chunk.ribbons):
                 return
 
@@ -126,6 +123,12 @@ class Crew:
             return "crashed"
         answer: dict[str, Any] = json.loads(line)
         return answer
+
+
+def lost_row(ribbon: Ribbon, status: str, message: str) -> Row:
+    """Return the row of a ribbon that no worker could finish."""
+    row = {"number": ribbon.number, "scene": ribbon.source.name, **ribbon.inputs}
+    return row | {"status": status, "verified": False, "message": message}
 
 
 def _read(process: subprocess.Popen[str], answers: queue.Queue[str]) -> None:

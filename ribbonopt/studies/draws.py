@@ -4,9 +4,12 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
+
+from ribbonopt.scene.problems import InvalidSceneError, Problem, shown
 
 Two = tuple[float, float]
 
@@ -16,10 +19,11 @@ DISTRIBUTIONS: dict[str, Callable[[np.random.Generator, float, float], float]] =
     "log_uniform": lambda rng, a, b: float(np.exp(rng.uniform(np.log(a), np.log(b)))),
     "normal": lambda rng, a, b: float(rng.normal(a, b)),
 }
+EXAMPLE = "expected {count: 100, seed: 1, over: {parameters.a: {uniform: [0, 1]}}}"
 
 
 @dataclass(frozen=True)
-class Draw:
+class Draws:
     """How many ribbons, the seed, and the distribution of each key."""
 
     count: int
@@ -27,44 +31,50 @@ class Draw:
     over: Mapping[str, tuple[str, Two]]
 
     @classmethod
-    def read(cls, value: Any) -> Draw:
-        """Read plain data; ValueError says what is wrong."""
-        expected = "expected {count: 100, seed: 1, over: {parameters.a: {uniform: [0, 1]}}}"
+    def read(cls, value: Any) -> Draws:
+        """Read plain data; InvalidSceneError says what is wrong."""
         if not isinstance(value, dict) or set(value) - {"count", "seed", "over"}:
-            raise ValueError(f"found {value!r}, {expected}")
+            raise _fault((), EXAMPLE, value)
         over = value.get("over")
-        count, seed = (_whole(n, value.get(n, d)) for n, d in (("count", None), ("seed", 0)))
         if not isinstance(over, dict) or not over:
-            raise ValueError(f"over: found {over!r}, {expected}")
+            raise _fault(("over",) if "over" in value else (), EXAMPLE, over)
+        count, seed = (_whole(n, value.get(n, d)) for n, d in (("count", None), ("seed", 0)))
         return cls(count, seed, {str(key): _distribution(key, item) for key, item in over.items()})
 
-
-def draws_of(draw: Draw) -> list[dict[str, float]]:
-    """Return the inputs of all ribbons; each key has a stream of its own."""
-    streams = {key: np.random.default_rng([draw.seed, i]) for i, key in enumerate(draw.over)}
-    return [
-        {key: DISTRIBUTIONS[kind](streams[key], *two) for key, (kind, two) in draw.over.items()}
-        for _ in range(draw.count)
-    ]
+    @cached_property
+    def rows(self) -> list[dict[str, float]]:
+        """Inputs of all ribbons; each key has a stream of its own."""
+        streams = {key: np.random.default_rng([self.seed, i]) for i, key in enumerate(self.over)}
+        return [
+            {key: DISTRIBUTIONS[kind](streams[key], *two) for key, (kind, two) in self.over.items()}
+            for _ in range(self.count)
+        ]
 
 
 def _distribution(key: Any, item: Any) -> tuple[str, Two]:
-    kinds = ", ".join(f"{{{name}: [a, b]}}" for name in DISTRIBUTIONS)
+    kinds = " or ".join(f"{{{name}: [a, b]}}" for name in DISTRIBUTIONS)
+    path = "over", str(key)
     if not isinstance(item, dict) or len(item) != 1:
-        raise ValueError(f"over.{key}: found {item!r}, expected one of {kinds}")
+        raise _fault(path, f"expected {kinds}", item)
     ((kind, two),) = item.items()
     numbers = isinstance(two, list) and len(two) == 2 and all(_is_number(n) for n in two)
     if kind not in DISTRIBUTIONS or not numbers:
-        raise ValueError(f"over.{key}: found {item!r}, expected one of {kinds}")
+        raise _fault(path, f"expected {kinds}", item)
     if kind == "log_uniform" and min(two) <= 0:
-        raise ValueError(f"over.{key}: log_uniform needs bounds > 0, found {two}")
+        raise _fault(path, "log_uniform needs bounds > 0", item)
+    if kind == "normal" and two[1] < 0:
+        raise _fault(path, "expected {normal: [mean, standard deviation >= 0]}", item)
     return str(kind), (float(two[0]), float(two[1]))
 
 
 def _whole(name: str, value: Any) -> int:
     if not isinstance(value, int) or isinstance(value, bool) or value < 0:
-        raise ValueError(f"{name}: found {value!r}, expected a whole number >= 0")
+        raise _fault((name,), "expected a whole number >= 0", value)
     return value
+
+
+def _fault(path: tuple[str, ...], message: str, found: Any) -> InvalidSceneError:
+    return InvalidSceneError([Problem(("random", *path), message, shown(found))])
 
 
 def _is_number(value: Any) -> bool:

@@ -1,114 +1,85 @@
-"""Inputs of the ribbons of a study: the kinds of sweep, each read from plain data."""
+"""Inputs of the ribbons of a study: the kinds of sweep, each read from plain data.
+
+Rows are made when they are asked for: how many there are is known before any exists.
+"""
 
 from __future__ import annotations
 
 import csv
 import io
-import itertools
-from collections.abc import Iterator
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from functools import cached_property
 from pathlib import Path
-from typing import Any
+from typing import Any, overload
 
 from ribbonopt.errors import SceneError
+from ribbonopt.scene.problems import InvalidSceneError, Problem, shown, suggestion
+from ribbonopt.scene.problems import Path as Keys
 from ribbonopt.scene.yamlio import plain_yaml
 
-from .draws import Draw, draws_of
+from .draws import Draws
 
 Inputs = dict[str, Any]
-KINDS = ("grid", "zip", "list", "random", "csv")
 
 
-def inputs_of(file: Path, sweep: Any) -> Iterator[Inputs]:
-    """Yield the inputs of all ribbons: the product of all kinds of sweep that are given."""
-    if not isinstance(sweep, dict) or not sweep or any(kind not in KINDS for kind in sweep):
-        raise SceneError(
-            f"{file}: sweep: found {shown(sweep)}, expected one or more of {', '.join(KINDS)}"
-        )
-    readers = {"grid": _grid, "zip": _zip, "list": _list, "random": _random, "csv": _csv}
-    kinds = [readers[kind](file, value) for kind, value in sweep.items()]
-    for parts in itertools.product(*kinds):
-        joined: Inputs = {}
-        for part in parts:
-            if twice := joined.keys() & part.keys():
-                raise SceneError(f"{file}: sweep: {min(twice)} is swept twice; keep one of them")
-            joined |= part
-        yield joined
+@dataclass(frozen=True)
+class Rows(Sequence[Inputs]):
+    """Inputs of ribbons: how many, which keys they set, and each by its index."""
+
+    size: int
+    keys: tuple[str, ...]
+    at: Callable[[int], Inputs]
+
+    def __len__(self) -> int:
+        """Return the number of ribbons."""
+        return self.size
+
+    @overload
+    def __getitem__(self, index: int) -> Inputs: ...
+    @overload
+    def __getitem__(self, index: slice) -> list[Inputs]: ...
+    def __getitem__(self, index: int | slice) -> Inputs | list[Inputs]:
+        """Return the inputs of a ribbon."""
+        if isinstance(index, slice):
+            return [self.at(i) for i in range(*index.indices(self.size))]
+        if not 0 <= index < self.size:
+            raise IndexError(index)
+        return self.at(index)
+
+    def __iter__(self) -> Iterator[Inputs]:
+        """Yield the inputs of all ribbons."""
+        return map(self.at, range(self.size))
 
 
-def _grid(file: Path, value: Any) -> list[Inputs]:
-    axes = _axes(file, "grid", value)
-    return [dict(zip(axes, row, strict=True)) for row in itertools.product(*axes.values())]
+NOTHING = Rows(1, (), lambda index: {})
 
 
-def _zip(file: Path, value: Any) -> list[Inputs]:
-    axes = _axes(file, "zip", value)
-    lengths = {key: len(values) for key, values in axes.items()}
-    if len(set(lengths.values())) > 1:
-        found = ", ".join(f"{key}: {length}" for key, length in lengths.items())
-        raise SceneError(f"{file}: sweep.zip: lists of unequal length ({found}); make them equal")
-    return [dict(zip(axes, row, strict=True)) for row in zip(*axes.values(), strict=True)]
+def rows_of(folder: Path, sweep: Any) -> Rows:
+    """Return the inputs of a `sweep`: the product of all kinds that are given.
+
+    Files are looked for in a folder. InvalidSceneError says what is wrong.
+    """
+    if not isinstance(sweep, dict) or not sweep:
+        raise fault((), f"expected one or more of {', '.join(KINDS)}", sweep)
+    parts: dict[str, Rows] = {}
+    for kind, value in sweep.items():
+        if kind not in KINDS:
+            known = f"unknown kind of sweep; expected {', '.join(KINDS)}"
+            raise fault((kind,), known + suggestion(str(kind), KINDS))
+        parts[kind] = KINDS[kind](folder, value)
+        if not parts[kind].size:
+            raise fault((kind,), "the sweep is empty; give it values")
+        for other in list(parts)[:-1]:
+            if twice := set(parts[kind].keys) & set(parts[other].keys):
+                raise fault((kind, min(twice)), f"is swept by {other} already; keep one of them")
+    return _product(list(parts.values()))
 
 
-def _list(file: Path, value: Any) -> list[Inputs]:
-    if not isinstance(value, list) or not all(isinstance(item, dict) for item in value):
-        raise SceneError(
-            f"{file}: sweep.list: found {shown(value)}, expected a list of mappings such as "
-            "- {law.epsilon: 0.1}"
-        )
-    return [{str(key): item for key, item in row.items()} for row in value]
-
-
-def _random(file: Path, value: Any) -> list[Inputs]:
-    try:
-        return draws_of(Draw.read(value))
-    except ValueError as error:
-        raise SceneError(f"{file}: sweep.random: {error}") from None
-
-
-def _csv(file: Path, value: Any) -> list[Inputs]:
-    if not isinstance(value, str):
-        raise SceneError(f"{file}: sweep.csv: found {value!r}, expected the name of a CSV file")
-    path = file.parent / value
-    rows = list(csv.reader(io.StringIO(text_of(path))))
-    if not rows:
-        raise SceneError(f"{path}: is empty; expected a line of keys and a line for each ribbon")
-    for line, row in enumerate(rows[1:], start=2):
-        if len(row) != len(rows[0]):
-            raise SceneError(
-                f"{path}, line {line}: found {len(row)} values, expected {len(rows[0])}"
-            )
-    return [
-        {key: plain_yaml(text, str(path)) for key, text in zip(rows[0], row, strict=True)}
-        for row in rows[1:]
-    ]
-
-
-def _axes(file: Path, kind: str, value: Any) -> dict[str, list[Any]]:
-    if not isinstance(value, dict) or not value:
-        raise SceneError(
-            f"{file}: sweep.{kind}: found {shown(value)}, expected keys and their values, such "
-            "as {law.epsilon: [0.1, 0.01]}"
-        )
-    return {str(key): _values(file, f"sweep.{kind}.{key}", item) for key, item in value.items()}
-
-
-def _values(file: Path, where: str, item: Any) -> list[Any]:
-    """Values of one key: a list, or numbers evenly spaced between two, or between two powers."""
-    if isinstance(item, list):
-        return item
-    wanted = {"from", "to", "count"}
-    if isinstance(item, dict) and wanted <= set(item) <= wanted | {"scale"}:
-        a, b, count, scale = item["from"], item["to"], item["count"], item.get("scale", "linear")
-        sound = all(isinstance(n, int | float) for n in (a, b)) and isinstance(count, int)
-        if sound and count >= 1 and (scale == "linear" or (scale == "log" and a > 0 and b > 0)):
-            shares = [i / max(count - 1, 1) for i in range(count)]
-            if scale == "log":
-                return [float(a * (b / a) ** share) for share in shares]
-            return [float(a + (b - a) * share) for share in shares]
-    raise SceneError(
-        f"{file}: {where}: found {shown(item)}, expected a list, or {{from: 0, to: 1, count: 11}} "
-        "(scale: log for powers)"
-    )
+def fault(path: Keys, message: str, *found: Any) -> InvalidSceneError:
+    """Return the error of a key of the study."""
+    return InvalidSceneError([Problem(path, message, *(shown(value) for value in found))])
 
 
 def text_of(path: Path) -> str:
@@ -121,7 +92,149 @@ def text_of(path: Path) -> str:
         raise SceneError(f"{path}: cannot be read: {error}") from None
 
 
-def shown(value: Any) -> str:
-    """Return a value in few characters, for messages."""
-    text = repr(value)
-    return text if len(text) <= 60 else text[:57] + "..."
+def _product(parts: Sequence[Rows]) -> Rows:
+    """All combinations, the last part changing fastest."""
+    counts = [part.size for part in parts]
+
+    def at(index: int) -> Inputs:
+        chosen: Inputs = {}
+        for part, i in zip(parts, _digits(index, counts), strict=True):
+            chosen |= part.at(i)
+        return chosen
+
+    keys = tuple(key for part in parts for key in part.keys)
+    return Rows(math.prod(counts), keys, at)
+
+
+def _digits(index: int, counts: Sequence[int]) -> list[int]:
+    digits = []
+    for count in reversed(counts):
+        index, digit = divmod(index, count)
+        digits.append(digit)
+    return digits[::-1]
+
+
+def _grid(_: Path, value: Any) -> Rows:
+    axes = _axes("grid", value)
+    return _product([_column(key, values) for key, values in axes.items()])
+
+
+def _zip(_: Path, value: Any) -> Rows:
+    axes = _axes("zip", value)
+    lengths = {key: len(values) for key, values in axes.items()}
+    if len(set(lengths.values())) > 1:
+        found = ", ".join(f"{key}: {length}" for key, length in lengths.items())
+        raise fault(("zip",), f"lists of unequal length ({found}); make them equal")
+    count = next(iter(lengths.values()))
+    return Rows(count, tuple(axes), lambda i: {key: values[i] for key, values in axes.items()})
+
+
+def _list(_: Path, value: Any) -> Rows:
+    if not isinstance(value, list) or not all(isinstance(item, dict) for item in value):
+        example = "expected a list of mappings such as - {law.epsilon: 0.1}"
+        raise fault(("list",), example, value)
+    return _table([{str(key): item for key, item in row.items()} for row in value])
+
+
+def _random(_: Path, value: Any) -> Rows:
+    draws = Draws.read(value)
+    return Rows(draws.count, tuple(draws.over), lambda i: draws.rows[i])
+
+
+def _csv(folder: Path, value: Any) -> Rows:
+    if not isinstance(value, str):
+        raise fault(("csv",), "expected the name of a CSV file", value)
+    path = folder / value
+    lines = csv.reader(io.StringIO(text_of(path)))
+    # Lines of a spreadsheet's end may hold nothing but separators.
+    rows = [(lines.line_num, row) for row in lines if any(cell.strip() for cell in row)]
+    if not rows:
+        raise SceneError(f"{path}: is empty; expected a line of keys and a line for each ribbon")
+    (_, keys), *rest = rows
+    for line, row in rest:
+        if len(row) != len(keys):
+            raise SceneError(f"{path}, line {line}: found {len(row)} values, expected {len(keys)}")
+    return _table(
+        [
+            {key.strip(): plain_yaml(text, f"{path}, line {line}") for key, text in pairs}
+            for line, pairs in ((line, zip(keys, row, strict=True)) for line, row in rest)
+        ]
+    )
+
+
+def _table(rows: list[Inputs]) -> Rows:
+    keys = tuple(dict.fromkeys(key for row in rows for key in row))
+    return Rows(len(rows), keys, rows.__getitem__)
+
+
+def _column(key: str, values: Sequence[Any]) -> Rows:
+    return Rows(len(values), (key,), lambda i: {key: values[i]})
+
+
+def _axes(kind: str, value: Any) -> dict[str, Sequence[Any]]:
+    if not isinstance(value, dict) or not value:
+        example = "expected keys and their values, such as {law.epsilon: [0.1, 0.01]}"
+        raise fault((kind,), example, value)
+    return {str(key): _values((kind, key), item) for key, item in value.items()}
+
+
+def _values(path: Keys, item: Any) -> Sequence[Any]:
+    """Values of one key: a list, or numbers evenly spaced between two, or between two powers."""
+    if isinstance(item, list):
+        return item
+    wanted = {"from", "to", "count"}
+    if isinstance(item, dict) and wanted <= set(item) <= wanted | {"scale"}:
+        spaced = Spaced(item["from"], item["to"], item["count"], item.get("scale", "linear"))
+        if spaced.sound:
+            return spaced
+    example = "expected a list, or {from: 0, to: 1, count: 11} (scale: log for powers)"
+    raise fault(path, example, item)
+
+
+@dataclass(frozen=True)
+class Spaced(Sequence[float]):
+    """Numbers evenly spaced between two, or between two powers."""
+
+    first: Any
+    last: Any
+    size: Any
+    scale: Any
+
+    @property
+    def sound(self) -> bool:
+        """Whether they can be made."""
+        ends = (self.first, self.last)
+        numbers = all(isinstance(n, int | float) and not isinstance(n, bool) for n in ends)
+        counts = isinstance(self.size, int) and not isinstance(self.size, bool)
+        log = self.scale == "log" and numbers and min(ends) > 0
+        return numbers and counts and self.size >= 1 and (self.scale == "linear" or log)
+
+    @cached_property
+    def values(self) -> list[float]:
+        """The numbers."""
+        a, b = self.first, self.last
+        shares = [i / max(self.size - 1, 1) for i in range(self.size)]
+        if self.scale == "log":
+            return [float(a * (b / a) ** share) for share in shares]
+        return [float(a + (b - a) * share) for share in shares]
+
+    def __len__(self) -> int:
+        """Return how many there are."""
+        return int(self.size)
+
+    @overload
+    def __getitem__(self, index: int) -> float: ...
+    @overload
+    def __getitem__(self, index: slice) -> list[float]: ...
+    def __getitem__(self, index: int | slice) -> float | list[float]:
+        """Return one of them."""
+        return self.values[index]
+
+
+KINDS: Mapping[str, Callable[[Path, Any], Rows]] = {
+    "grid": _grid,
+    "zip": _zip,
+    "list": _list,
+    "random": _random,
+    "csv": _csv,
+}

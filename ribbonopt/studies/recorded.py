@@ -84,10 +84,7 @@ class Recorder:
             "error": error_of(solution) if point.kind == POINT else None,
             **numbers_of(solution),
         }
-        with np.errstate(all="ignore"):
-            for name, (formula, s) in self.formulas.items():
-                value = float(solution.sample(s, formula))
-                row[name] = value if np.isfinite(value) else None
+        row |= sampled(solution, self.formulas)
         row["switches"] = solution.switch_points.tolist()
         row["intervals"] = solution.dense.blocks.layout.element_count
         row["iterations"] = solution.iterations
@@ -102,6 +99,15 @@ def error_of(solution: Solution) -> float | None:
         return relative_error(solution)[0]
     except np.linalg.LinAlgError:
         return None
+
+
+def sampled(
+    solution: Solution, formulas: Mapping[str, tuple[str, float]]
+) -> dict[str, float | None]:
+    """Return the values of formulas at arclengths; None for what is not finite."""
+    with np.errstate(all="ignore"):
+        values = {name: float(solution.sample(s, text)) for name, (text, s) in formulas.items()}
+    return {name: value if np.isfinite(value) else None for name, value in values.items()}
 
 
 def numbers_of(solution: Solution) -> dict[str, float]:

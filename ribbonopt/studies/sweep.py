@@ -18,126 +18,29 @@ A study file names a scene (or several) and what is swept over it:
 from __future__ import annotations
 
 import glob
-import hashlib
 import itertools
 import json
-from collections.abc import Iterator, Sequence
-from dataclasses import dataclass
+import math
+from collections.abc import Mapping, Sequence
 from pathlib import Path
-from typing import Any, Literal
+from typing import Any
 
 from ribbonopt.errors import SceneError
-from ribbonopt.scene.yamlio import loads_scene, plain_yaml
+from ribbonopt.scene.problems import InvalidSceneError, Place, report, suggestion
+from ribbonopt.scene.problems import Path as Keys
+from ribbonopt.scene.yamlio import plain_yaml, read_yaml
 
-from .inputs import Inputs, inputs_of, text_of
+from .inputs import NOTHING, Inputs, fault, rows_of, text_of
+from .study import Source, Study, Sweep
 
 KEYS = ("name", "scene", "set", "sweep", "save", "time_limit")
 SAVE = ("all", "failed", "none")
 
 
-@dataclass(frozen=True)
-class Source:
-    """A scene as text, and where it was read."""
-
-    name: str
-    text: str
-
-
-@dataclass(frozen=True)
-class Sweep:
-    """A source with the inputs of its ribbons, and what holds for all of them."""
-
-    source: Source
-    common: Inputs
-    inputs: tuple[Inputs, ...]
-
-
-@dataclass(frozen=True)
-class Ribbon:
-    """One ribbon of a study: its number, its scene and its inputs."""
-
-    number: int
-    source: Source
-    common: Inputs
-    inputs: Inputs
-
-    @property
-    def overrides(self) -> list[str]:
-        """Overrides of the scene, as `load_scene` takes them."""
-        return [f"{key}={json.dumps(value)}" for key, value in (self.common | self.inputs).items()]
-
-
-@dataclass(frozen=True)
-class Study:
-    """All ribbons of a batch, in order.
-
-    Attributes
-    ----------
-    name : str
-        Name of the study.
-    sweeps : tuple of Sweep
-        Scenes and their inputs.
-    save : str
-        Which full solutions are kept: all, failed or none.
-    time_limit : float
-        Seconds that a ribbon may take.
-    """
-
-    name: str
-    sweeps: tuple[Sweep, ...]
-    save: Literal["all", "failed", "none"] = "failed"
-    time_limit: float = 300.0
-
-    @property
-    def count(self) -> int:
-        """Number of ribbons."""
-        return sum(len(sweep.inputs) for sweep in self.sweeps)
-
-    @property
-    def keys(self) -> tuple[str, ...]:
-        """Keys of all inputs, in order."""
-        found: dict[str, None] = {}
-        for sweep in self.sweeps:
-            for inputs in sweep.inputs:
-                found |= dict.fromkeys(inputs)
-        return tuple(found)
-
-    @property
-    def ribbons(self) -> Iterator[Ribbon]:
-        """The ribbons, numbered from 1."""
-        numbers = itertools.count(1)
-        for sweep in self.sweeps:
-            for inputs in sweep.inputs:
-                yield Ribbon(next(numbers), sweep.source, sweep.common, inputs)
-
-    def check(self) -> None:
-        """Refuse a study whose keys fit no scene: the first ribbon of every sweep is read.
-
-        Raises
-        ------
-        SceneError
-            If one of the keys swept is unknown, or its first value wrong. A scene that is bad by
-            itself only spoils its own rows.
-        """
-        for sweep in self.sweeps:
-            if not (sweep.inputs[0] or sweep.common):
-                continue
-            try:
-                loads_scene(sweep.source.text, sweep.source.name)
-            except SceneError:
-                continue
-            ribbon = Ribbon(1, sweep.source, sweep.common, sweep.inputs[0])
-            loads_scene(sweep.source.text, sweep.source.name, ribbon.overrides)
-
-    @property
-    def digest(self) -> str:
-        """What tells this study from others: everything that decides its rows."""
-        parts = [[sweep.source.text, sweep.common, list(sweep.inputs)] for sweep in self.sweeps]
-        return hashlib.sha256(json.dumps(parts).encode()).hexdigest()
-
-
 def load_study(paths: Sequence[str | Path], overrides: Sequence[str] = ()) -> Study:
     """Read study files, scenes, folders of them and patterns such as `scenes/*.yaml`.
+
+    No ribbon is made yet, however many there are.
 
     Raises
     ------
@@ -150,18 +53,18 @@ def load_study(paths: Sequence[str | Path], overrides: Sequence[str] = ()) -> St
     common = dict(_assignment(text) for text in overrides)
     for file in files:
         text = text_of(file)
-        data = plain_yaml(text, str(file))
-        if isinstance(data, dict) and ("sweep" in data or "scene" in data):
-            sweeps += _study(file, data, common)
-            settings |= {key: data[key] for key in ("save", "time_limit") if key in data}
-            settings.setdefault("name", str(data.get("name", file.stem)))
+        found = read_yaml(text, str(file))
+        if isinstance(found.data, dict) and ("sweep" in found.data or "scene" in found.data):
+            try:
+                sweeps += _study(file, text, found.data, found.places, common)
+            except InvalidSceneError as error:
+                raise SceneError(report(str(file), error.problems, found.places)) from None
+            settings |= {k: found.data[k] for k in ("save", "time_limit") if k in found.data}
+            settings.setdefault("name", found.data.get("name", file.stem))
         else:
-            sweeps.append(Sweep(Source(str(file), text), common, ({},)))
+            sweeps.append(Sweep(Source(str(file), text), common))
     name = settings.pop("name", None) or (files[0].stem if len(files) == 1 else "batch")
-    study = Study(name, tuple(sweeps), **settings)
-    if not study.count:
-        raise SceneError(f"{', '.join(map(str, paths))}: the sweep is empty; give it values")
-    return study
+    return Study(name, tuple(sweeps), **settings)
 
 
 def _files(path: str) -> list[Path]:
@@ -171,7 +74,7 @@ def _files(path: str) -> list[Path]:
         if not found:
             raise SceneError(f"{path}: holds no .yaml file; name a folder of scenes")
         return found
-    if any(character in path for character in "*?["):
+    if any(character in path for character in "*?[") and not Path(path).exists():
         matches = sorted(glob.glob(path, recursive=True))
         if not matches:
             raise SceneError(f"{path}: no file matches")
@@ -179,37 +82,62 @@ def _files(path: str) -> list[Path]:
     return [Path(path)]
 
 
-def _study(file: Path, data: dict[str, Any], common: Inputs) -> list[Sweep]:
-    def fail(key: str, message: str) -> SceneError:
-        return SceneError(f"{file}: {key}: {message}")
-
+def _study(
+    file: Path, text: str, data: dict[str, Any], places: Mapping[Keys, Place], common: Inputs
+) -> list[Sweep]:
     for key in data:
         if key not in KEYS:
-            raise fail(str(key), f"unknown key of a study; expected {', '.join(KEYS)}")
+            known = f"unknown key of a study{suggestion(str(key), KEYS)} (known: {', '.join(KEYS)})"
+            raise fault((key,), known)
+    name = data.get("name", "study")
+    if not isinstance(name, str) or not name.strip() or "/" in name:
+        raise fault(("name",), "expected a name for the study and its folder of results", name)
     if data.get("save", "none") not in SAVE:
-        raise fail("save", f"found {data['save']!r}, expected one of {', '.join(SAVE)}")
+        raise fault(("save",), f"expected one of {', '.join(SAVE)}", data["save"])
     limit = data.get("time_limit", 1.0)
-    if not isinstance(limit, int | float) or isinstance(limit, bool) or not limit > 0:
-        raise fail("time_limit", f"found {limit!r}, expected a number of seconds > 0")
-    given = data.get("set") or {}
+    number = isinstance(limit, int | float) and not isinstance(limit, bool)
+    if not number or not 0 < limit < math.inf:
+        raise fault(("time_limit",), "expected a number of seconds > 0", limit)
+    given = {} if data.get("set") is None else data["set"]
     if not isinstance(given, dict):
-        raise fail("set", f"found {given!r}, expected keys of the scene and their values")
-    sweep = data.get("sweep")
-    inputs = [{}] if sweep is None else list(inputs_of(file, sweep))
-    scenes = data.get("scene")
-    if scenes is None:
-        raise fail("scene", "missing; name a scene file, or several, or write a scene here")
-    sources = [_source(file, item) for item in (scenes if isinstance(scenes, list) else [scenes])]
-    return [Sweep(source, given | common, tuple(inputs)) for source in sources]
+        raise fault(("set",), "expected keys of the scene and their values", given)
+    given = {str(key): value for key, value in given.items()}
+    if data.get("scene") is None:
+        example = "missing; name a scene file, or several, or write a scene here"
+        raise fault(("scene",), example)
+    scenes = data["scene"] if isinstance(data["scene"], list) else [data["scene"]]
+    if not scenes:
+        raise fault(("scene",), "names no scene; give one or more", scenes)
+    try:
+        rows = rows_of(file.parent, data["sweep"]) if "sweep" in data else NOTHING
+    except InvalidSceneError as error:
+        problems = [p._replace(path=("sweep", *p.path)) for p in error.problems]
+        raise InvalidSceneError(problems) from None
+    where = {key: f"--set {key}" for key in common}
+    for path, place in places.items():
+        if path[:1] in (("set",), ("sweep",)):
+            where.setdefault(str(path[-1]), f"{file}, {place}, {'.'.join(map(str, path))}")
+    return [
+        Sweep(_source(file, text, item, places), given | common, rows, where) for item in scenes
+    ]
 
 
-def _source(file: Path, item: Any) -> Source:
-    if isinstance(item, dict):
-        return Source(f"{file}: scene", json.dumps(item))
-    if not isinstance(item, str):
-        raise SceneError(f"{file}: scene: found {item!r}, expected the name of a scene file")
-    path = file.parent / item
-    return Source(str(path), text_of(path))
+def _source(file: Path, text: str, item: Any, places: Mapping[Keys, Place]) -> Source:
+    if isinstance(item, str):
+        path = file.parent / item
+        return Source(str(path), text_of(path))
+    if not isinstance(item, dict):
+        raise fault(("scene",), "expected the name of a scene file, or a scene", item)
+    # The lines of the scene, where they stand in the study, so that messages name them.
+    line = places[("scene",)].line
+    lines = text.splitlines()[line:]
+    own = itertools.takewhile(lambda line: not line.strip() or line[0] in " #", lines)
+    part = "\n" * line + "\n".join(own)
+    try:
+        same = plain_yaml(part, str(file)) == item
+    except SceneError:  # it is not written on lines of its own
+        same = False
+    return Source(str(file), part if same else json.dumps(item))
 
 
 def _assignment(text: str) -> tuple[str, Any]:

@@ -9,6 +9,7 @@ from __future__ import annotations
 import json
 import os
 import sys
+import threading
 import time
 from collections.abc import Iterator
 from dataclasses import replace
@@ -19,7 +20,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 import numpy as np
 
-from ribbonopt.errors import RibbonoptError
+from ribbonopt.errors import ModelError, RibbonoptError
 from ribbonopt.pipeline import Prepared, prepare
 from ribbonopt.pipeline import solve as solve_once
 from ribbonopt.problem import structure_of
@@ -28,9 +29,10 @@ from ribbonopt.scene.units import in_special_units
 from ribbonopt.solution import Solution
 
 from .neighbour import Neighbour
-from .recorded import error_of, numbers_of
+from .recorded import error_of, numbers_of, sampled
 
 Row = dict[str, Any]
+WATCH = 2.0  # seconds between two looks whether the batch is still there
 
 
 class Worker:
@@ -52,7 +54,10 @@ class Worker:
             if neighbour is not None:
                 before, number = neighbour, ribbon["number"]
             if ribbon["number"] not in chunk["known"]:
-                _save(chunk, ribbon, row, found)
+                try:
+                    _save(chunk, ribbon, row, found)
+                except OSError as error:  # the row, which may still find room, says it
+                    row["message"] += f"{row['message'] and '; '}full solution not kept: {error}"
                 yield {"row": row}
 
     def _solved(
@@ -70,6 +75,7 @@ class Worker:
             else:
                 neighbour, found, start = self._one(scene, before, f"ribbon {number}")
             row |= _outcome(found, start)
+            row |= _recorded(found, row)
         except (RibbonoptError, np.linalg.LinAlgError) as error:
             status = getattr(error, "status", "bad_input")
             row |= {"status": status, "verified": False, "message": str(error)}
@@ -112,6 +118,19 @@ def _outcome(found: Solution, start: str) -> Row:
     return row | {"start": start, "iterations": found.iterations, "path": "; ".join(steps)}
 
 
+def _recorded(found: Solution, row: Row) -> Row:
+    """Return what the scene records besides."""
+    scene = found.scene
+    if not (scene.record and found.status.converged):
+        return {}
+    for name in scene.record:
+        if name in row:
+            raise ModelError(f"record.{name}: every row has that already; choose another name")
+    from ribbonopt.scene.continuation_checks import parse_record  # formulas, which few need
+
+    return sampled(found, {name: parse_record(text, scene) for name, text in scene.record.items()})
+
+
 def _save(chunk: dict[str, Any], ribbon: dict[str, Any], row: Row, found: Solution | None) -> None:
     """Keep the full solution where the study wants it."""
     wanted = chunk["save"] == "all" or (chunk["save"] == "failed" and not row["verified"])
@@ -126,7 +145,8 @@ def _save(chunk: dict[str, Any], ribbon: dict[str, Any], row: Row, found: Soluti
 
 
 def main() -> None:
-    """Serve until stdin ends."""
+    """Serve until stdin ends, or the batch does."""
+    threading.Thread(target=_watch, args=(os.getppid(),), daemon=True).start()
     answers = os.fdopen(os.dup(1), "w", encoding="utf-8")
     os.dup2(2, 1)  # what libraries print must not stand among the answers
     worker = Worker()
@@ -136,6 +156,13 @@ def main() -> None:
             answers.flush()
         answers.write('{"done": true}\n')
         answers.flush()
+
+
+def _watch(batch: int) -> None:
+    """End with the batch, even in the middle of a ribbon that hangs."""
+    while os.getppid() == batch:
+        time.sleep(WATCH)
+    os._exit(1)
 
 
 if __name__ == "__main__":

@@ -6,6 +6,7 @@ from pathlib import Path
 from typing import NamedTuple
 
 import pytest
+from batches import SCENE, STUDY
 
 from ribbonopt.cli import main
 
@@ -35,3 +36,11 @@ def run(
 
     yield call
     gc.enable()
+
+
+@pytest.fixture
+def study(tmp_path: Path) -> Path:
+    """Return a study file, its scene beside it."""
+    (tmp_path / "scene.yaml").write_text(SCENE)
+    (tmp_path / "study.yaml").write_text(STUDY)
+    return tmp_path / "study.yaml"

@@ -1,0 +1,197 @@
+"""Batches: workers that die or hang, runs that are killed or interrupted, disks that are full."""
+
+import csv
+import errno
+import json
+import os
+import signal
+import subprocess
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import pytest
+from batches import COMMAND, STUDY, lost, on_purpose, without_times, written
+
+from ribbonopt import results
+from ribbonopt.studies import batch_files
+from ribbonopt.studies.batch import run_batch
+from ribbonopt.studies.chunks import chunks_of
+from ribbonopt.studies.crew import Crew
+from ribbonopt.studies.sweep import load_study
+from ribbonopt.studies.worker import Worker
+
+Run = Callable[..., Any]
+
+
+def rows_there(folder: Path) -> int:
+    rows = folder / "rows.jsonl"
+    return rows.read_bytes().count(b"\n") if rows.exists() else 0
+
+
+def until(true: Callable[[], bool], process: subprocess.Popen[Any] | None = None) -> None:
+    for _ in range(6000):
+        if true():
+            return
+        assert process is None or process.poll() is None
+        time.sleep(0.005)
+    raise AssertionError("waited in vain")
+
+
+def test_a_worker_that_dies_takes_one_ribbon_with_it(study: Path) -> None:
+    rows = lost(study, "crash", "--jobs", "2")
+    assert [row["status"] for row in rows] == [*["converged"] * 3, "crashed", *["converged"] * 2]
+    assert "its process died" in rows[3]["message"]
+    assert rows[3]["name"] == "crash"
+
+
+@pytest.mark.slow
+def test_a_ribbon_that_hangs_is_given_up_and_not_tried_again(study: Path) -> None:
+    rows = lost(study, "hang", "--jobs", "2", time_limit=5)
+    assert [row["status"] for row in rows] == [*["converged"] * 3, "timed_out", *["converged"] * 2]
+    assert "took more than 5 s" in rows[3]["message"]
+    # The rows after it in its chunk are lost, and to be made again.
+    file = study.parent / "out" / "rows.jsonl"
+    lines = file.read_text().splitlines(keepends=True)
+    file.write_text("".join(line for line in lines if json.loads(line)["number"] < 5))
+    assert lost(study, "hang", "--jobs", "1", "--resume", time_limit=5) == rows
+    assert (study.parent / "hanging").read_text().count("\n") == 1
+
+
+def test_workers_end_with_a_batch_that_is_killed(study: Path) -> None:
+    environment = on_purpose(study, "hang")
+    out = str(study.parent / "out")
+    command = [*COMMAND, str(study), "--jobs", "1", "--out", out]
+    process = subprocess.Popen(command, env=environment, cwd=study.parent)
+    hanging = study.parent / "hanging"
+    until(lambda: hanging.exists() and bool(hanging.read_text()), process)
+    process.kill()
+    process.wait()
+    worker = int(hanging.read_text())
+
+    def gone() -> bool:
+        try:
+            os.kill(worker, 0)
+        except ProcessLookupError:
+            return True
+        # Where nobody collects the ended, they stay as zombies.
+        status = Path(f"/proc/{worker}/status")
+        return status.exists() and "State:\tZ" in status.read_text()
+
+    until(gone)
+
+
+def test_killed_and_resumed_is_the_same(run: Run, study: Path, tmp_path: Path) -> None:
+    whole, out = tmp_path / "whole", tmp_path / "out"
+    assert run("batch", study, "--out", whole, "--jobs", "2", "--quiet").status == 0
+    process = subprocess.Popen([*COMMAND, str(study), "--jobs", "2", "--out", str(out), "--quiet"])
+    until(lambda: rows_there(out) >= 7, process)
+    process.send_signal(signal.SIGKILL)
+    process.wait()
+    rows = out / "rows.jsonl"
+    rows.write_bytes(rows.read_bytes()[:-20])  # cut in a line
+    assert 0 < rows_there(out) < 30
+    status, _, err = run("batch", study, "--out", out, "--jobs", "1", "--quiet")
+    assert (status, "go on by --resume" in err) == (2, True)
+    assert run("batch", study, "--out", out, "--jobs", "1", "--resume", "--quiet").status == 0
+    assert written(out) == written(whole)
+    tables = [
+        [{k: v for k, v in row.items() if k != "seconds"} for row in csv.DictReader(file)]
+        for file in ((folder / "table.csv").open(newline="") for folder in (out, whole))
+    ]
+    assert tables[0] == tables[1]
+    assert [row["number"] for row in tables[0]] == [str(i) for i in range(1, 31)]
+    before = rows.read_bytes()
+    assert run("batch", study, "--out", out, "--resume", "--quiet").status == 0
+    assert rows.read_bytes() == before
+
+
+def test_interrupted_rows_are_kept(study: Path, tmp_path: Path) -> None:
+    out = tmp_path / "out"
+    study.write_text(STUDY.replace("count: 30", "count: 300"))
+    process = subprocess.Popen(
+        [*COMMAND, str(study), "--jobs", "1", "--out", str(out)], stderr=subprocess.PIPE, text=True
+    )
+    until(lambda: rows_there(out) >= 5, process)
+    process.send_signal(signal.SIGINT)
+    _, err = process.communicate()
+    assert process.returncode == 130
+    count = rows_there(out)
+    assert f"interrupted; {count} of 300 rows kept in {out}, --resume goes on" in err
+    assert len((out / "table.csv").read_text().splitlines()) == count + 1
+
+
+class Full:
+    """A file on a disk that is full after so many lines."""
+
+    def __init__(self, file: Any, lines: int) -> None:
+        self.file, self.left = file, lines
+
+    def __getattr__(self, name: str) -> Any:
+        return getattr(self.file, name)
+
+    def __enter__(self) -> "Full":
+        return self
+
+    def __exit__(self, *_: object) -> None:
+        self.file.close()
+
+    def write(self, text: str) -> int:
+        self.left -= 1
+        if self.left < 0:
+            self.file.write(text[: len(text) // 2])
+            self.file.flush()
+            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+        return int(self.file.write(text))
+
+
+@pytest.mark.parametrize("room", [{"rows.jsonl": 7}, {"table.csv.new": 3}], ids=["rows", "table"])
+def test_full_disk(
+    run: Run, study: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, room: dict[str, int]
+) -> None:
+    out = tmp_path / "out"
+
+    def opened(path: Path, mode: str = "r", **keywords: Any) -> Any:
+        file = open(path, mode, **keywords)
+        lines = room.get(Path(path).name)
+        return file if lines is None or "r" in mode else Full(file, lines)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(batch_files, "open", opened, raising=False)
+        status, text, err = run("batch", study, "--out", out, "--jobs", "2")
+    assert (status, text, err.count("\n")) == (2, "", 1)
+    kept = room.get("rows.jsonl", 30)
+    assert f"No space left on device); {kept} of 30 rows are kept, make room and go on" in err
+    assert rows_there(out) == kept
+    assert not (out / "table.csv.new").exists()
+    assert run("batch", study, "--out", out, "--jobs", "2", "--resume", "--quiet").status == 0
+    assert written(out) == without_times(list(run_batch(load_study([study]), jobs=2)))
+
+
+def test_full_solutions_that_find_no_room_are_told(
+    study: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """What a worker does, in this process."""
+
+    def refuse(*_: object) -> None:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    monkeypatch.setattr(results, "_write", refuse)
+    study.write_text(STUDY.replace("count: 30", "count: 2"))
+    sent: list[dict[str, Any]] = []
+
+    class Process:
+        stdin = type("Pipe", (), {"write": lambda _, text: sent.append(json.loads(text))})()
+
+    Process.stdin.flush = lambda: None
+    crew = Crew("all", str(tmp_path))
+    crew._process = Process()  # type: ignore[assignment]
+    (chunk, *_) = chunks_of(load_study([study]))
+    crew._send(chunk, [], set())
+    rows = [answer["row"] for answer in Worker().answers(sent[0]) if "row" in answer]
+    assert rows
+    for row in rows:
+        assert row["verified"]
+        assert "full solution not kept" in row["message"]
+        assert "No space left on device" in row["message"]
