@@ -25,11 +25,10 @@ import casadi as ca
 import numpy as np
 
 from ribbonopt.arrays import Array
-from ribbonopt.errors import ModelError
 from ribbonopt.mechanics.boundary import conditions_of
 from ribbonopt.mechanics.laws import LAWS
 from ribbonopt.problem import Ribbon, ribbon_of, theta_of
-from ribbonopt.problem.energy import _refuse, minimum
+from ribbonopt.problem.energy import minimum, refusal
 from ribbonopt.scene import Scene
 from ribbonopt.scene.units import in_special_units
 from ribbonopt.solution import Solution
@@ -93,11 +92,10 @@ def second_variation(solution: Solution) -> SecondVariation | str:
     theta, conditions = theta_of(scene), conditions_of(scene)
     kinds = tuple(type(condition) for condition in conditions)
     energy = _built(_Structure((scene.law.type, *theta, *kinds, *scene.boundary.also), scene))
-    try:
-        # With the conditions of this very scene: whether they are zero decides.
-        _refuse(replace(energy.ribbon, conditions=conditions), scene)
-    except ModelError as error:
-        return str(error).removeprefix("formulation energy: ").partition(";")[0]
+    # With the conditions of this very scene: whether they are zero decides.
+    refused = refusal(replace(energy.ribbon, conditions=conditions), scene)
+    if refused is not None:
+        return refused.reason
     found = energy.at(solution, np.array(list(theta.values())))
     if found.residual < STATIONARY:
         return found

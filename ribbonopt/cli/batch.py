@@ -28,6 +28,7 @@ OFTEN = 0.1  # seconds between two pictures of the bar
 def batch(options: argparse.Namespace) -> int:
     """Solve all ribbons of a study."""
     pairs = pairs_of("--plot", options.plot)
+    from ribbonopt.scene.problems import suggestion
     from ribbonopt.studies.batch import run_batch
     from ribbonopt.studies.batch_files import BatchFolder
     from ribbonopt.studies.sweep import load_study
@@ -38,6 +39,10 @@ def batch(options: argparse.Namespace) -> int:
     if study.count > HUGE and not options.yes:
         raise SceneError(f"{study.name}: {study.count} ribbons; say --yes if that is meant")
     study.check()
+    for name in (name for pair in pairs or [] for name in pair):
+        if name not in study.columns:
+            near = suggestion(name, study.columns)
+            raise SceneError(f"--plot: rows have no column {name!r}{near}")
     if options.scheduler:
         from ribbonopt.studies.cluster import check_cluster
 
@@ -52,10 +57,14 @@ def batch(options: argparse.Namespace) -> int:
     )
     bar = _Bar(study.count, folder)
     try:
-        with closing(rows), closing(bar):
-            for row in rows:
-                folder.append(row)
-                bar.show()
+        try:
+            with closing(rows), closing(bar):
+                for row in rows:
+                    folder.append(row)
+                    bar.show()
+        finally:
+            folder.close()
+        _draw(folder, pairs)
     except KeyboardInterrupt:
         print(
             f"ribbonopt: interrupted; {len(folder.rows)} of {study.count} rows kept in "
@@ -63,9 +72,6 @@ def batch(options: argparse.Namespace) -> int:
             file=sys.stderr,
         )
         return INTERRUPTED
-    finally:
-        folder.close()
-    _draw(folder, pairs)
     return _tell(options, folder)
 
 

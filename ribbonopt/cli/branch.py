@@ -40,6 +40,8 @@ def follow(options: argparse.Namespace) -> int:
         with closing(shown):  # takes the bar away before anything is said
             for _ in shown:
                 pass
+        if pairs is not None:
+            _draw(continuation, folder.lines, pairs, folder.folder)
     except KeyboardInterrupt:
         print(
             f"ribbonopt: interrupted; {len(folder.rows)} points kept in {folder.folder}, "
@@ -47,8 +49,6 @@ def follow(options: argparse.Namespace) -> int:
             file=sys.stderr,
         )
         return INTERRUPTED
-    if pairs is not None:
-        _draw(continuation, folder.lines, pairs, folder.folder)
     return _tell(options, folder, continuation)
 
 

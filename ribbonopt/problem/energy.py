@@ -16,6 +16,8 @@ force in the cost, the costate of r is n - F.
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import casadi as ca
 
 from ribbonopt.errors import ModelError
@@ -38,7 +40,9 @@ def energy(ribbon: Ribbon, scene: Scene) -> BoundaryValueProblem:
         If the law has no energy, loads are prescribed that are not natural, or the states are not
         reduced.
     """
-    _refuse(ribbon, scene)
+    refused = refusal(ribbon, scene)
+    if refused is not None:
+        raise ModelError(f"formulation energy: {refused.reason}; {refused.remedy}", refused.key)
     return minimum(ribbon)
 
 
@@ -120,7 +124,7 @@ def _is_dead_force(ribbon: Ribbon, condition: Component) -> bool:
 
 def _legendre(ribbon: Ribbon, z: ca.SX) -> ca.SX:
     value = ribbon.law.complementary_energy(z[0], z[1])
-    assert value is not None  # `_refuse` let only laws with an energy pass
+    assert value is not None  # `refusal` let only laws with an energy pass
     return value
 
 
@@ -132,26 +136,36 @@ def _loads(start: ca.SX, costate: ca.SX, dead: ca.SX, ribbon: Ribbon) -> list[ca
     return ca.vertsplit(ca.vertcat(n, m - ca.cross(n, start[:3] - ribbon.reference)))
 
 
-def _refuse(ribbon: Ribbon, scene: Scene) -> None:
+class Refusal(NamedTuple):
+    """Why a ribbon is no minimum of an energy, what to do, and the key of the scene to blame."""
+
+    reason: str
+    remedy: str
+    key: str
+
+
+def refusal(ribbon: Ribbon, scene: Scene) -> Refusal | None:
+    """Return why a scene's equilibrium cannot be stated as a minimum; None if it can."""
     if not ribbon.law.variational:
-        raise ModelError(
-            f"formulation energy: the law {scene.law.type} has no energy; use law variational "
-            "(smooth, with an energy) or another formulation",
+        return Refusal(
+            f"the law {scene.law.type} has no energy",
+            "use law variational (smooth, with an energy) or another formulation",
             "formulation",
         )
     if scene.states != "reduced":
-        raise ModelError(
-            "formulation energy: costates of nine director components are not unique; use "
-            "states: reduced",
+        return Refusal(
+            "costates of nine director components are not unique",
+            "use states: reduced",
             "formulation",
         )
     for condition in ribbon.conditions:
         if not isinstance(condition, Component) or condition.kinematic or not condition.value:
             continue
         if not _is_dead_force(ribbon, condition):
-            raise ModelError(
-                f"formulation energy: {condition.name}, other than zero, has no potential here "
-                "(only a dead force, in lab components, on an end free to follow it has); use "
-                "another formulation",
+            return Refusal(
+                f"{condition.name}, other than zero, has no potential here (only a dead force, in "
+                "lab components, on an end free to follow it has)",
+                "use another formulation",
                 condition.name,
             )
+    return None

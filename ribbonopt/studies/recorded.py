@@ -129,7 +129,8 @@ def stopped(row: Row, stage: Continuation) -> str:
         left, sign, right = parse_stop(text)
         if any(word not in values for word in (*words_of(left), *words_of(right))):
             continue  # not known here
-        a, b = (float(evaluate_formula(side, values)[0]) for side in (left, right))
+        with np.errstate(all="ignore"):  # what is not a number meets no condition
+            a, b = (float(evaluate_formula(side, values)[0]) for side in (left, right))
         if a > b if sign == ">" else a < b:
             return text
     return ""

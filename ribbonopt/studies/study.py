@@ -10,9 +10,17 @@ from dataclasses import dataclass, field
 from typing import Literal
 
 from ribbonopt.errors import SceneError
+from ribbonopt.scene import Scene
 from ribbonopt.scene.yamlio import loads_scene
 
 from .inputs import NOTHING, Inputs, Rows
+
+#: of every row; a ribbon that failed has some of them only
+COLUMNS = (
+    *("number", "scene", "status", "verified", "energy", "H0"),
+    *("n0x", "n0y", "n0z", "m0x", "m0y", "m0z", "u2", "u3", "error"),
+    *("start", "iterations", "path", "message", "seconds"),
+)
 
 
 @dataclass(frozen=True)
@@ -51,12 +59,23 @@ class Sweep:
         where = ", ".join(self.where.get(key, key) for key in culprits[:1] or first)
         raise SceneError(f"{where}: {said}")
 
+    @property
+    def recorded(self) -> tuple[str, ...]:
+        """Names of what the scene records; none of a bad scene."""
+        try:
+            return tuple(self._scene(self.common | self.inputs[0]).record)
+        except SceneError:
+            return ()
+
     def _fault(self, inputs: Inputs) -> str:
         try:
-            loads_scene(self.source.text, self.source.name, assignments(inputs))
+            self._scene(inputs)
         except SceneError as error:
             return str(error)
         return ""
+
+    def _scene(self, inputs: Inputs) -> Scene:
+        return loads_scene(self.source.text, self.source.name, assignments(inputs))
 
 
 @dataclass(frozen=True)
@@ -104,6 +123,12 @@ class Study:
     def keys(self) -> tuple[str, ...]:
         """Keys of all inputs, in order."""
         return tuple(dict.fromkeys(key for sweep in self.sweeps for key in sweep.inputs.keys))
+
+    @property
+    def columns(self) -> tuple[str, ...]:
+        """Names of all columns that rows may have."""
+        recorded = (name for sweep in self.sweeps for name in sweep.recorded)
+        return tuple(dict.fromkeys((*self.keys, *COLUMNS, *recorded)))
 
     @property
     def ribbons(self) -> Iterator[Ribbon]:
