@@ -8,7 +8,7 @@ import queue
 import subprocess
 import sys
 import threading
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from typing import Any
 
@@ -72,26 +72,11 @@ class Crew:
             self._process = None
 
     def _send(self, chunk: Chunk, skip: list[int], known: set[int]) -> None:
-        message = {
-            "ribbons": [
-                {
-                    "number": r.number,
-                    "source": r.source.name,
-                    "text": r.source.text,
-                    "set": r.overrides,
-                    "inputs": r.inputs,
-                }
-                for r in chunk.ribbons
-            ],
-            "skip": skip,
-            "known": sorted(known),
-            "save": self.save,
-            "folder": self.folder,
-        }
+        text = json.dumps(message(chunk, skip, sorted(known), self.save, self.folder))
         process = self._process or self._begin()
         assert process.stdin is not None
         try:
-            process.stdin.write(json.dumps(message) + "\n")
+            process.stdin.write(text + "\n")
             process.stdin.flush()
         except OSError:  # it died while it had nothing to do
             self.close()
@@ -123,6 +108,23 @@ class Crew:
             return "crashed"
         answer: dict[str, Any] = json.loads(line)
         return answer
+
+
+def message(
+    chunk: Chunk, skip: list[int], known: Sequence[int], save: str, folder: str
+) -> dict[str, Any]:
+    """Return what a worker is told of a chunk, as plain data."""
+    ribbons = [
+        {
+            "number": ribbon.number,
+            "source": ribbon.source.name,
+            "text": ribbon.source.text,
+            "set": ribbon.overrides,
+            "inputs": ribbon.inputs,
+        }
+        for ribbon in chunk.ribbons
+    ]
+    return {"ribbons": ribbons, "skip": skip, "known": known, "save": save, "folder": folder}
 
 
 def lost_row(ribbon: Ribbon, status: str, message: str) -> Row:

@@ -61,24 +61,24 @@ class Mapped:
 
     def __call__(self, *values: Array) -> list[Array]:
         """Evaluate at all stages: one flat array for each output."""
-        arguments = [np.ascontiguousarray(value, dtype=float).reshape(-1) for value in values]
+        arguments = [np.ascontiguousarray(value, dtype=float).ravel() for value in values]
         count = len(arguments[0]) // self._inputs[0]
-        results = [np.empty(count * size) for size in self._outputs]
         for i, size in enumerate(self._inputs):
             wanted = size if i in SHARED else count * size
             if len(arguments[i]) != wanted:  # CasADi would read beyond it
                 raise ValueError(f"argument {i} is expected to have {wanted} numbers")
-        at = 0
-        while at < count:
-            block = min(LARGEST, 1 << (count - at).bit_length() - 1)
+        results = [np.empty(count * size) for size in self._outputs]
+        varying = [i for i in range(len(arguments)) if i not in SHARED]
+        for at, block in _plan(count):
             buffer, evaluate = self._block(block)
-            for i, size in enumerate(self._inputs):
-                part = slice(None) if i in SHARED else slice(at * size, (at + block) * size)
-                buffer.set_arg(i, arguments[i][part].data)
+            for i in SHARED:
+                buffer.set_arg(i, arguments[i].data)
+            for i in varying:
+                size = self._inputs[i]
+                buffer.set_arg(i, arguments[i].data[at * size : (at + block) * size])
             for i, size in enumerate(self._outputs):
-                buffer.set_res(i, results[i][at * size : (at + block) * size].data)
+                buffer.set_res(i, results[i].data[at * size : (at + block) * size])
             evaluate()
-            at += block
         return results
 
     def _block(self, count: int) -> tuple[Any, Any]:
@@ -86,6 +86,20 @@ class Mapped:
         if count not in self._blocks:
             self._blocks[count] = shared_map(self._function, count).buffer()
         return self._blocks[count]
+
+
+@lru_cache(maxsize=1024)
+def _plan(count: int) -> tuple[tuple[int, int], ...]:
+    """First stage and size of every block; the last may do some stages once more."""
+    whole, rest = divmod(count, LARGEST)
+    plan = [(i * LARGEST, LARGEST) for i in range(whole)]
+    if rest:
+        block = 1 << (rest.bit_length() - 1)
+        plan.append((count - rest, block))
+        if left := rest - block:
+            block = 1 << (left - 1).bit_length()
+            plan.append((count - block, block))
+    return tuple(plan)
 
 
 @lru_cache(maxsize=64)

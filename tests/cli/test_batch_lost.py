@@ -18,7 +18,7 @@ from ribbonopt import results
 from ribbonopt.studies import batch_files
 from ribbonopt.studies.batch import run_batch
 from ribbonopt.studies.chunks import chunks_of
-from ribbonopt.studies.crew import Crew
+from ribbonopt.studies.crew import message
 from ribbonopt.studies.sweep import load_study
 from ribbonopt.studies.worker import Worker
 
@@ -179,17 +179,9 @@ def test_full_solutions_that_find_no_room_are_told(
 
     monkeypatch.setattr(results, "_write", refuse)
     study.write_text(STUDY.replace("count: 30", "count: 2"))
-    sent: list[dict[str, Any]] = []
-
-    class Process:
-        stdin = type("Pipe", (), {"write": lambda _, text: sent.append(json.loads(text))})()
-
-    Process.stdin.flush = lambda: None
-    crew = Crew("all", str(tmp_path))
-    crew._process = Process()  # type: ignore[assignment]
     (chunk, *_) = chunks_of(load_study([study]))
-    crew._send(chunk, [], set())
-    rows = [answer["row"] for answer in Worker().answers(sent[0]) if "row" in answer]
+    asked = message(chunk, [], (), "all", str(tmp_path))
+    rows = [answer["row"] for answer in Worker().answers(asked) if "row" in answer]
     assert rows
     for row in rows:
         assert row["verified"]
