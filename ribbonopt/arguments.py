@@ -100,7 +100,10 @@ def parser() -> argparse.ArgumentParser:
     )
     plot.add_argument("result", metavar="RESULT", help="folder written by solve, continue or batch")
     plot.add_argument(
-        "pairs", nargs="*", metavar="X:Y", help="columns of a branch or a batch, such as u2:energy"
+        "--plot",
+        nargs="*",
+        metavar="X:Y",
+        help="columns of a branch or a batch to draw, such as u2:energy",
     )
     plot.add_argument("--out", metavar="DIR", help="folder for the pictures (default: RESULT)")
     return result

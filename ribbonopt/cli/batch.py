@@ -7,6 +7,7 @@ import gc
 import sys
 import time
 from collections import Counter
+from collections.abc import Sequence
 from contextlib import closing
 from datetime import timedelta
 from typing import TYPE_CHECKING
@@ -28,7 +29,6 @@ OFTEN = 0.1  # seconds between two pictures of the bar
 def batch(options: argparse.Namespace) -> int:
     """Solve all ribbons of a study."""
     pairs = pairs_of("--plot", options.plot)
-    from ribbonopt.scene.problems import suggestion
     from ribbonopt.studies.batch import run_batch
     from ribbonopt.studies.batch_files import BatchFolder
     from ribbonopt.studies.sweep import load_study
@@ -39,10 +39,7 @@ def batch(options: argparse.Namespace) -> int:
     if study.count > HUGE and not options.yes:
         raise SceneError(f"{study.name}: {study.count} ribbons; say --yes if that is meant")
     study.check()
-    for name in (name for pair in pairs or [] for name in pair):
-        if name not in study.columns:
-            near = suggestion(name, study.columns)
-            raise SceneError(f"--plot: rows have no column {name!r}{near}")
+    _known(pairs or [], study.columns)
     if options.scheduler:
         from ribbonopt.studies.cluster import check_cluster
 
@@ -82,10 +79,21 @@ def draw(result: Path, out: Path, pairs: list[tuple[str, str]]) -> list[Path]:
     from ribbonopt.views.report import write_report
 
     said, rows = load_batch(result)
+    _known(pairs, list(dict.fromkeys(name for row in rows for name in row)))
     report = write_report(
         rows, tuple(said["inputs"]), out / "report.html", name=said["name"], count=said["ribbons"]
     )
     return [report, *save_batch_figures(rows, tuple(said["inputs"]), out, pairs)]
+
+
+def _known(pairs: list[tuple[str, str]], columns: Sequence[str]) -> None:
+    """Refuse columns that no row has."""
+    for name in (name for pair in pairs for name in pair):
+        if name not in columns:
+            from ribbonopt.scene.problems import suggestion
+
+            near = suggestion(name, columns)
+            raise SceneError(f"--plot: rows have no column {name!r}{near} (table.csv has them all)")
 
 
 def _draw(folder: BatchFolder, pairs: list[tuple[str, str]] | None) -> None:

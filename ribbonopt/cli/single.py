@@ -103,7 +103,7 @@ def plot(options: argparse.Namespace) -> int:
     from ribbonopt.staging import picture_folder
     from ribbonopt.views import save_figures
 
-    result, pairs = Path(options.result), pairs_of("plot", options.pairs) or []
+    result, pairs = Path(options.result), pairs_of("--plot", options.plot) or []
     if (result / "branch.jsonl").is_file():
         from .branch import draw as draw_branch
 
@@ -113,7 +113,9 @@ def plot(options: argparse.Namespace) -> int:
 
         paths = draw_batch(result, picture_folder(options.out or result), pairs)
     elif pairs:
-        raise SceneError(f"plot: {result} is no branch and no batch, which X:Y is drawn of")
+        raise SceneError(
+            f"--plot: {result} is no branch and no batch, whose columns could be drawn"
+        )
     else:
         solution = load_solution(result)
         paths = save_figures(solution, picture_folder(options.out or result))

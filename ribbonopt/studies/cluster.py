@@ -115,7 +115,7 @@ def reach(address: str) -> Client:
         raise SceneError(
             f"--scheduler {address}: has no workers; start some by dask worker {address}"
         ) from None
-    except ImportError as error:
+    except Exception as error:  # what a worker's error comes as is Dask's own business
         client.close()
         raise SceneError(
             f"--scheduler {address}: its workers cannot run ribbonopt ({error}); install it there"

@@ -155,11 +155,13 @@ def test_report_and_figures(run: Run, study: Path, tmp_path: Path) -> None:
     assert "report.html" in text
     assert (out / "scatter.png").read_bytes().startswith(b"\x89PNG")
     shutil.rmtree(tmp_path / "out" / "solutions", ignore_errors=True)
-    again = run("plot", out, "law.epsilon:u2", "--out", tmp_path / "again")
+    again = run("plot", out, "--out", tmp_path / "again", "--plot", "law.epsilon:u2")
     assert again.status == 0
     assert {"report.html", "scatter.png"} <= {p.name for p in (tmp_path / "again").iterdir()}
-    status, _, err = run("plot", out, "epsilon:u2")
-    assert (status, "epsilon" in err) == (2, True)
+    status, _, err = run("plot", out, "--plot", "law.epsilom:u2")
+    assert (status, "did you mean 'law.epsilon'" in err) == (2, True)
+    status, _, err = run("batch", study, "--out", tmp_path / "b", "--plot", "law.epsilom:u2")
+    assert (status, "did you mean 'law.epsilon'" in err) == (2, True)
     status, _, err = run("batch", study, "--out", tmp_path / "b", "--plot", "energy")
     assert (status, "expected X:Y" in err) == (2, True)
     assert not (tmp_path / "b").exists()

@@ -1,0 +1,384 @@
+"""Studies as they are read: the rows of every kind of sweep, the scenes, and their chunks."""
+
+import itertools
+import json
+import math
+import time
+from collections.abc import Callable
+from dataclasses import replace
+from pathlib import Path
+from statistics import NormalDist
+from typing import Any
+
+import numpy as np
+import pytest
+from hypothesis import given
+from hypothesis import strategies as st
+
+from ribbonopt.errors import SceneError
+from ribbonopt.scene import Scene, Variational, loads_scene
+from ribbonopt.scene.yamlio import plain_yaml
+from ribbonopt.studies.chunks import Chunk, chunks_of
+from ribbonopt.studies.inputs import Rows, rows_of
+from ribbonopt.studies.study import Ribbon, Source, Study, Sweep, assignments
+from ribbonopt.studies.sweep import load_study
+
+SCENE = """\
+name: half
+law: {type: regularized, epsilon: 0.1}
+interval: [0, 0.5]
+boundary:
+  start: {position: [0, 0, 0], directors: identity, force: {d1: 0}, moment: {d1: 0}}
+  end: {position: {y: 0, z: 0}, d1: {x: 0}, d3: {x: 0}}
+guess: {force: [0, 43, 42], moment: [0, 2, -9]}
+tolerance: 1e-7
+"""
+VARIATIONAL = SCENE.replace("regularized, epsilon", "variational, delta")
+BAD = SCENE.replace("boundary", "bondary")
+
+
+def rows(**sweep: Any) -> list[dict[str, Any]]:
+    return list(rows_of(Path(), sweep))
+
+
+def loaded(folder: Path, text: str, *overrides: str) -> Study:
+    """Return the study of a text, `scene.yaml` beside it."""
+    (folder / "scene.yaml").write_text(SCENE, encoding="utf-8")
+    (folder / "study.yaml").write_text(text, encoding="utf-8")
+    return load_study([folder / "study.yaml"], overrides)
+
+
+def swept(*, source: str = "scene.yaml", **sweep: Any) -> Study:
+    return Study("swept", (Sweep(Source(source, SCENE), {}, rows_of(Path(), sweep)),))
+
+
+def scene_of(ribbon: Ribbon) -> Scene:
+    return loads_scene(ribbon.source.text, ribbon.source.name, ribbon.overrides)
+
+
+def epsilons(study: Study) -> list[float]:
+    return [scene_of(ribbon).law.epsilon for ribbon in study.ribbons]  # type: ignore[union-attr]
+
+
+def numbers(chunks: list[Chunk]) -> list[list[int]]:
+    return [[ribbon.number for ribbon in chunk.ribbons] for chunk in chunks]
+
+
+@given(
+    st.dictionaries(
+        st.text("abc.", min_size=1), st.lists(st.integers(), min_size=1, max_size=4), min_size=1
+    )
+)
+def test_a_grid_is_the_product_in_the_order_of_the_file(axes: dict[str, list[int]]) -> None:
+    axes = dict(itertools.islice(axes.items(), 4))
+    found = rows(grid=axes)
+    assert found == [dict(zip(axes, row, strict=True)) for row in itertools.product(*axes.values())]
+    assert all(list(row) == list(axes) for row in found)
+
+
+def test_zip_and_list() -> None:
+    spaced = {"from": 0, "to": 1, "count": 3}
+    assert rows(zip={"b": [1, "x", None], "a": spaced}) == [
+        {"b": 1, "a": 0.0},
+        {"b": "x", "a": 0.5},
+        {"b": None, "a": 1.0},
+    ]
+    given = [{"a": 1}, {"b": [1, 2]}, {"b": True, "a": 0}]
+    assert rows(list=given) == given
+    assert rows_of(Path(), {"list": given}).keys == ("a", "b")
+
+
+def test_kinds_are_multiplied_in_the_order_of_the_file() -> None:
+    kinds = {"zip": {"a": [1, 2], "b": [3, 4]}, "list": [{"c": 5}, {"d": 6}], "grid": {"e": [7, 8]}}
+    for order in itertools.permutations(kinds):
+        parts = [rows(**{kind: kinds[kind]}) for kind in order]
+        expected = [{k: v for part in row for k, v in part.items()} for row in product(parts)]
+        found = rows_of(Path(), {kind: kinds[kind] for kind in order})
+        assert list(found) == expected
+        assert (found.size, len(found), found[:]) == (8, 8, expected)
+        assert set(found.keys) == set("abcde")
+    with pytest.raises(IndexError):
+        found[8]
+
+
+def product(parts: list[list[dict[str, Any]]]) -> Any:
+    return itertools.product(*parts)
+
+
+def test_csv_cells_are_yaml(tmp_path: Path) -> None:
+    (tmp_path / "rows.csv").write_text(
+        ' a ,b,"c"\n1,1e-3,"[1, 2]"\ntrue,"x, y",\n-0.5,"""7""","{type: sadowsky}"\n\n,,\n \n',
+        encoding="utf-8-sig",  # as spreadsheets write it
+    )
+    found = list(rows_of(tmp_path, {"csv": "rows.csv"}))
+    assert found == [
+        {"a": 1, "b": 1e-3, "c": [1, 2]},
+        {"a": True, "b": "x, y", "c": None},
+        {"a": -0.5, "b": "7", "c": {"type": "sadowsky"}},
+    ]
+    assert [type(row["a"]) for row in found] == [int, bool, float]
+
+
+SPACED = [(0.1, 0.7, 7), (0, 1, 11), (3, -2, 4), (0.83, 0.01, 13), (2.5, 9, 1), (-1, 1, 2)]
+POWERS = [(0.1, 1e-6, 6), (0.31, 0.43, 17), (1, 1000, 4), (7.0, 8, 1), (1e-300, 1e300, 5)]
+
+
+@pytest.mark.parametrize(("first", "last", "count"), SPACED)
+def test_numbers_are_evenly_spaced(first: float, last: float, count: int) -> None:
+    spaced = {"from": first, "to": last, "count": count}
+    for item in (spaced, spaced | {"scale": "linear"}):
+        found = [row["a"] for row in rows(grid={"a": item})]
+        assert found == pytest.approx(np.linspace(first, last, count).tolist(), abs=1e-15)
+        assert all(type(value) is float for value in found)
+
+
+@pytest.mark.parametrize(("first", "last", "count"), POWERS)
+def test_powers_are_evenly_spaced(first: float, last: float, count: int) -> None:
+    item = {"from": first, "to": last, "count": count, "scale": "log"}
+    found = [row["a"] for row in rows(grid={"a": item})]
+    assert found == pytest.approx(np.geomspace(first, last, count).tolist(), rel=1e-13, abs=0)
+
+
+@pytest.mark.parametrize("scale", ["linear", "log"])
+def test_the_ends_are_the_numbers_given(scale: str) -> None:
+    for first, last in itertools.permutations((0.01, 0.19, 0.31, 0.43, 0.83, 0.87), 2):
+        item = {"from": first, "to": last, "count": 17, "scale": scale}
+        found = [row["a"] for row in rows(grid={"a": item})]
+        assert (found[0], found[-1]) == (first, last)
+
+
+DISTRIBUTIONS: dict[str, tuple[list[float], Callable[[float], float]]] = {
+    "uniform": ([-1, 3], lambda x: (x + 1) / 4),
+    "log_uniform": ([1e-6, 10], lambda x: math.log10(x * 1e6) / 7),
+    "normal": ([2, 0.5], NormalDist(2, 0.5).cdf),
+}
+
+
+@pytest.mark.parametrize("kind", DISTRIBUTIONS)
+def test_draws_have_their_distribution(kind: str) -> None:
+    two, share = DISTRIBUTIONS[kind]
+    sizes = {"count": 2000, "seed": 3}
+    found = rows(random=sizes | {"over": {"other": {"uniform": [0, 1]}, "a": {kind: two}}})
+    shares = sorted(share(row["a"]) for row in found)
+    assert 0 <= shares[0] <= shares[-1] <= 1
+    # Kolmogorov and Smirnov: further off in one of a hundred seeds.
+    assert max(abs(i / 2000 - x) for i, x in enumerate(shares, 1)) < 1.63 / math.sqrt(2000)
+    # Neither the last draw nor the other key says anything of the next.
+    draws = np.array([[share(row["a"]), row["other"]] for row in found])
+    assert abs(np.corrcoef(draws[1:, 0], draws[:-1, 0])[0, 1]) < 0.07
+    assert abs(np.corrcoef(draws.T)[0, 1]) < 0.07
+
+
+def test_draws_depend_on_the_seed_and_their_own_key() -> None:
+    def drawn(seed: int, **over: Any) -> list[float]:
+        return [r["b"] for r in rows(random={"count": 9, "seed": seed, "over": over})]
+
+    one, two = {"uniform": [0, 1]}, {"normal": [5, 2]}
+    assert drawn(1, a=one, b=two) == drawn(1, a=two, b=two) == drawn(1, a=one, b=two, c=one)
+    assert len({*drawn(1, a=one, b=two), *drawn(2, a=one, b=two), *drawn(0, a=one, b=two)}) == 27
+    unseeded = rows(random={"count": 9, "over": {"a": one, "b": two}})
+    assert [row["b"] for row in unseeded] == drawn(0, a=one, b=two)
+
+
+@pytest.mark.parametrize("kind", ["uniform", "log_uniform"])
+@pytest.mark.parametrize("bounds", [(0.1, 0.1), (0.3, 0.3), (0.7, math.nextafter(0.7, 1))])
+def test_draws_keep_to_narrow_bounds(kind: str, bounds: tuple[float, float]) -> None:
+    drawn = rows(random={"count": 50, "over": {"a": {kind: list(bounds)}}})
+    assert all(bounds[0] <= row["a"] <= bounds[1] for row in drawn)
+
+
+def test_a_huge_study_costs_nothing_before_its_rows_are_made(tmp_path: Path) -> None:
+    axis = {"from": 0.1, "to": 1, "count": 10**5}
+    sweep = {"grid": {"law.epsilon": axis, "interval.1": axis}}
+    begun = time.perf_counter()
+    study = loaded(tmp_path, json.dumps({"scene": "scene.yaml", "sweep": sweep}))
+    assert study.count == 10**10
+    assert time.perf_counter() - begun < 0.5
+    assert study.sweeps[0].inputs[10**10 - 1] == {"law.epsilon": 1.0, "interval.1": 1.0}
+    huge = {"count": 10**12, "over": {"law.epsilon": {"uniform": [0, 1]}}}
+    assert rows_of(Path(), {"random": huge, "zip": {"a": [1, 2]}}).size == 2 * 10**12
+
+
+def test_scenes_folders_and_patterns(tmp_path: Path) -> None:
+    (tmp_path / "odd[1].yaml").write_text(SCENE)
+    (tmp_path / "more").mkdir()
+    for name in ("b.yaml", "a.yml", "notes.txt", "c.yaml"):
+        (tmp_path / "more" / name).write_text(SCENE)
+    sweep = "{list: [{law.epsilon: 0.2}, {law.epsilon: 0.3}]}"
+    study = loaded(tmp_path, f"scene: [scene.yaml, 'odd[1].yaml']\nsweep: {sweep}\n")
+    assert (study.name, study.count, study.keys) == ("study", 4, ("law.epsilon",))
+    assert [(r.number, Path(r.source.name).name) for r in study.ribbons] == list(
+        zip(range(1, 5), ["scene.yaml"] * 2 + ["odd[1].yaml"] * 2, strict=True)
+    )
+    assert epsilons(study) == [0.2, 0.3, 0.2, 0.3]
+
+    def names(*paths: str) -> list[str]:
+        found = load_study([tmp_path / path for path in paths])
+        return [Path(sweep.source.name).name for sweep in found.sweeps]
+
+    assert names("more") == ["a.yml", "b.yaml", "c.yaml"]
+    assert names("more/*.yaml", "odd[1].yaml") == ["b.yaml", "c.yaml", "odd[1].yaml"]
+    assert names("**/[bc].yaml") == ["b.yaml", "c.yaml"]
+    assert load_study([tmp_path / "more"]).name == "batch"
+    assert load_study([tmp_path / "odd[1].yaml"]).name == "odd[1]"
+
+
+def test_settings_of_a_study(tmp_path: Path) -> None:
+    plain = loaded(tmp_path, "scene: scene.yaml\n")
+    assert (plain.count, plain.save, plain.time_limit) == (1, "failed", 300.0)
+    study = loaded(tmp_path, "{name: mine, scene: scene.yaml, save: all, time_limit: 2.5}")
+    assert (study.name, study.save, study.time_limit) == ("mine", "all", 2.5)
+
+
+def test_the_command_line_wins_over_set(tmp_path: Path) -> None:
+    text = "scene: scene.yaml\nset: {law: {type: variational, delta: 0.2}, tolerance: 1e-5}\n"
+    (ribbon,) = loaded(tmp_path, text, "tolerance=1e-6", "law.delta = 0.3").ribbons
+    scene = scene_of(ribbon)
+    assert (scene.tolerance, scene.law) == (1e-6, Variational(0.3))
+    (ribbon,) = loaded(tmp_path, text).ribbons
+    assert (scene_of(ribbon).tolerance, scene_of(ribbon).law) == (1e-5, Variational(0.2))
+    alone = load_study([tmp_path / "scene.yaml"], ["law.epsilon=0.4"])
+    assert epsilons(alone) == [0.4]
+
+
+def test_the_command_line_is_not_passed_over_where_its_key_is_swept(tmp_path: Path) -> None:
+    """`--set` is an override for all ribbons: it is obeyed, or refused."""
+    text = "scene: scene.yaml\nsweep: {grid: {law.epsilon: [0.1, 0.2]}}\n"
+    try:
+        found = epsilons(loaded(tmp_path, text, "law.epsilon=0.7"))
+    except SceneError as error:
+        assert "law.epsilon" in str(error)
+    else:
+        assert set(found) == {0.7}
+
+
+@given(
+    st.recursive(
+        st.none()
+        | st.booleans()
+        | st.integers(-(10**30), 10**30)
+        | st.floats(allow_nan=False, allow_infinity=False)
+        | st.text(st.characters(exclude_categories=["C"]), max_size=5),
+        lambda inner: st.lists(inner, max_size=2) | st.dictionaries(st.text("ab"), inner),
+        max_leaves=3,
+    )
+)
+def test_values_come_to_the_scene_as_they_are(value: Any) -> None:
+    (text,) = assignments({"a.b": value})
+    assert text.startswith("a.b=")
+    found = plain_yaml(text.removeprefix("a.b="), "")
+    assert found == value and type(found) is type(value)
+
+
+def test_the_digest_tells_all_that_decides_rows(tmp_path: Path) -> None:
+    text = (
+        "name: one\nscene: scene.yaml\nset: {tolerance: 1e-5}\nsweep: {grid: {law.epsilon: [1, 2]}}"
+    )
+    study = loaded(tmp_path, text)
+    digests = [study.digest]
+    for old, new in (("1e-5", "1e-6"), ("[1, 2]", "[1, 3]"), ("[1, 2]", "[2, 1]"), ("1, 2", "1")):
+        digests.append(loaded(tmp_path, text.replace(old, new)).digest)
+    digests.append(loaded(tmp_path, text, "tolerance=1e-4").digest)
+    digests.append(loaded(tmp_path, text.replace("scene.yaml", "[scene.yaml, scene.yaml]")).digest)
+    (tmp_path / "other.yaml").write_text(SCENE.replace("43", "44"))
+    digests.append(loaded(tmp_path, text.replace("scene.yaml", "other.yaml")).digest)
+    assert len(set(digests)) == len(digests) == 8
+    assert loaded(tmp_path, text.replace("one", "two")).digest == study.digest
+    assert replace(study, save="all", time_limit=1.0).digest == study.digest
+
+
+VALUES = st.sampled_from([0, 1, 2.5, -1e3, True, "x", "y", None])
+
+
+@given(
+    st.fixed_dictionaries(
+        {},
+        optional={
+            "grid": st.dictionaries(
+                st.sampled_from("abc"), st.lists(VALUES, min_size=1, max_size=5), min_size=1
+            ),
+            "list": st.lists(st.dictionaries(st.sampled_from("de"), VALUES), min_size=1),
+        },
+    ).filter(bool)
+)
+def test_chunks_divide_a_study(sweep: dict[str, Any]) -> None:
+    study = swept(**sweep)
+    chunks = chunks_of(study)
+    assert sorted(itertools.chain(*numbers(chunks))) == list(range(1, study.count + 1))
+    assert numbers(chunks_of(swept(**sweep))) == numbers(chunks)
+    for chunk in chunks:
+        assert 1 <= len(chunk.ribbons) <= math.isqrt(study.count - 1) + 1
+        assert len({kept(ribbon) for ribbon in chunk.ribbons}) == 1
+
+
+def kept(ribbon: Ribbon) -> str:
+    """All of a ribbon that is no number among its inputs."""
+    inputs = {k: "number" if type(v) in (int, float) else v for k, v in ribbon.inputs.items()}
+    return repr((ribbon.source, ribbon.common, inputs))
+
+
+@pytest.mark.parametrize("both", ["scenes", "settings"])
+def test_scenes_that_differ_are_not_chunked_together(tmp_path: Path, both: str) -> None:
+    """Two scenes in one file, and one scene under two laws."""
+    sweep = "sweep: {grid: {tolerance: [1e-5, 1e-6, 1e-7]}}\n"
+    laws = "{type: sadowsky}", "{type: variational, delta: 0.1}"
+    if both == "scenes":
+        inline = ", ".join(f"{{name: a, law: {law}, boundary: {{}}}}" for law in laws)
+        study = loaded(tmp_path, f"scene: [{inline}]\n{sweep}")
+    else:
+        for name, law in zip("ab", laws, strict=True):
+            loaded(tmp_path, f"scene: scene.yaml\nset: {{law: {law}}}\n{sweep}")
+            (tmp_path / "study.yaml").rename(tmp_path / f"{name}.yaml")
+        study = load_study([tmp_path / "a.yaml", tmp_path / "b.yaml"])
+    for chunk in chunks_of(study):
+        assert len({kept(ribbon) for ribbon in chunk.ribbons}) == 1
+
+
+@pytest.mark.parametrize("count", [1, 2, 3, 10, 100, 101, 2500, 25_000])
+def test_chunks_are_about_as_long_as_they_are_many(count: int) -> None:
+    spaced = {"from": 0, "to": 1, "count": count}
+    lengths = [len(chunk.ribbons) for chunk in chunks_of(swept(grid={"a": spaced}))]
+    longest = min(math.ceil(math.sqrt(count)), 100)
+    assert lengths == [longest] * (count // longest) + [count % longest] * (count % longest > 0)
+
+
+@pytest.mark.parametrize("count", [2, 3, 40, 150])
+def test_each_ribbon_is_the_nearest_of_those_left(count: int) -> None:
+    over = {
+        "a": {"log_uniform": [1e-6, 1e-4]},
+        "b": {"uniform": [-1e3, 1e3]},
+        "c": {"normal": [0, 1]},
+    }
+    inputs = rows_of(Path(), {"random": {"count": count, "seed": 4, "over": over}})
+    study = Study("s", (Sweep(Source("s", SCENE), {}, with_constant(inputs)),))
+    spans = {k: max(r[k] for r in inputs) - min(r[k] for r in inputs) for k in over}
+
+    def gap(one: Ribbon, two: Ribbon) -> float:
+        return sum(abs(one.inputs[k] - two.inputs[k]) / spans[k] for k in over)
+
+    walk = [ribbon for chunk in chunks_of(study) for ribbon in chunk.ribbons]
+    assert len(walk) == count
+    for i in range(count - 1):
+        nearest = min(gap(walk[i], other) for other in walk[i + 1 :])
+        assert gap(walk[i], walk[i + 1]) == pytest.approx(nearest, abs=1e-12)
+
+
+def with_constant(inputs: Rows) -> Rows:
+    """Add a key that has no range."""
+    return replace(inputs, keys=(*inputs.keys, "d"), at=lambda i: inputs.at(i) | {"d": 7})
+
+
+def test_plain_scenes_are_chunked_by_what_they_share(tmp_path: Path) -> None:
+    for name, epsilon in zip("abcde", (0.1, 0.01, 0.05, 0.2, 0.02), strict=True):
+        (tmp_path / f"{name}.yaml").write_text(SCENE.replace("0.1", str(epsilon)))
+    (tmp_path / "f.yaml").write_text(BAD)
+    (tmp_path / "g.yaml").write_text(VARIATIONAL)
+    (tmp_path / "h.yaml").write_text(VARIATIONAL.replace("0.1", "0.2").replace("43", "40"))
+    (tmp_path / "i.yaml").write_text(BAD)
+    study = load_study([tmp_path])
+    names = [[Path(r.source.name).stem for r in c.ribbons] for c in chunks_of(study)]
+    # By epsilon: 0.01, 0.02, 0.05, 0.1, 0.2, in chunks of three at most.
+    assert names == [["b", "e", "c"], ["a", "d"], ["f"], ["g", "h"], ["i"]]
+    # What is set for all may make them the same.
+    common = load_study([tmp_path / "a.yaml", tmp_path / "g.yaml"], ["law={type: sadowsky}"])
+    assert numbers(chunks_of(common)) == [[1, 2]]
