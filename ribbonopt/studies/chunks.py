@@ -51,8 +51,8 @@ def chunks_of(study: Study) -> list[Chunk]:
 def _swept(ribbon: Ribbon) -> tuple[Group, Point]:
     """Group by the scene and all inputs but numbers; these are the place in it."""
     numbers = {k: v for k, v in ribbon.inputs.items() if _is_number(v)}
-    other = {k: v for k, v in ribbon.inputs.items() if k not in numbers}
-    group = ribbon.source.name, tuple(ribbon.inputs), repr(sorted(other.items()))
+    other = ribbon.common | {k: v for k, v in ribbon.inputs.items() if k not in numbers}
+    group = ribbon.source, tuple(ribbon.inputs), repr(sorted(other.items()))
     return group, tuple(float(number) for number in numbers.values())
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -16,7 +17,9 @@ Two = tuple[float, float]
 #: two numbers each: bounds, or mean and standard deviation
 DISTRIBUTIONS: dict[str, Callable[[np.random.Generator, float, float], float]] = {
     "uniform": lambda rng, a, b: float(rng.uniform(a, b)),
-    "log_uniform": lambda rng, a, b: float(np.exp(rng.uniform(np.log(a), np.log(b)))),
+    "log_uniform": lambda rng, a, b: float(
+        np.clip(np.exp(rng.uniform(np.log(a), np.log(b))), a, b)
+    ),
     "normal": lambda rng, a, b: float(rng.normal(a, b)),
 }
 EXAMPLE = "expected {count: 100, seed: 1, over: {parameters.a: {uniform: [0, 1]}}}"
@@ -57,13 +60,15 @@ def _distribution(key: Any, item: Any) -> tuple[str, Two]:
     if not isinstance(item, dict) or len(item) != 1:
         raise _fault(path, f"expected {kinds}", item)
     ((kind, two),) = item.items()
-    numbers = isinstance(two, list) and len(two) == 2 and all(_is_number(n) for n in two)
+    numbers = isinstance(two, list) and len(two) == 2 and all(map(is_number, two))
     if kind not in DISTRIBUTIONS or not numbers:
         raise _fault(path, f"expected {kinds}", item)
     if kind == "log_uniform" and min(two) <= 0:
         raise _fault(path, "log_uniform needs bounds > 0", item)
     if kind == "normal" and two[1] < 0:
         raise _fault(path, "expected {normal: [mean, standard deviation >= 0]}", item)
+    if kind != "normal" and two[0] > two[1]:
+        raise _fault(path, f"expected {{{kind}: [lower, upper]}}", item)
     return str(kind), (float(two[0]), float(two[1]))
 
 
@@ -77,5 +82,6 @@ def _fault(path: tuple[str, ...], message: str, found: Any) -> InvalidSceneError
     return InvalidSceneError([Problem(("random", *path), message, shown(found))])
 
 
-def _is_number(value: Any) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool)
+def is_number(value: Any) -> bool:
+    """Whether plain data are a finite number."""
+    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)

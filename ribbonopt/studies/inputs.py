@@ -10,16 +10,16 @@ import io
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
-from functools import cached_property
 from pathlib import Path
 from typing import Any, overload
 
 from ribbonopt.errors import SceneError
 from ribbonopt.scene.problems import InvalidSceneError, Problem, shown, suggestion
 from ribbonopt.scene.problems import Path as Keys
-from ribbonopt.scene.yamlio import plain_yaml
+from ribbonopt.scene.yamltext import YamlTextError, read
 
 from .draws import Draws
+from .spaced import Spaced
 
 Inputs = dict[str, Any]
 
@@ -150,16 +150,26 @@ def _csv(folder: Path, value: Any) -> Rows:
     rows = [(lines.line_num, row) for row in lines if any(cell.strip() for cell in row)]
     if not rows:
         raise SceneError(f"{path}: is empty; expected a line of keys and a line for each ribbon")
-    (_, keys), *rest = rows
+    (first, names), *rest = rows
+    keys = [name.strip() for name in names]
+    if not all(keys) or len(set(keys)) < len(keys):
+        raise SceneError(f"{path}, line {first}: found {names}, expected keys, each of them once")
     for line, row in rest:
         if len(row) != len(keys):
             raise SceneError(f"{path}, line {line}: found {len(row)} values, expected {len(keys)}")
     return _table(
         [
-            {key.strip(): plain_yaml(text, f"{path}, line {line}") for key, text in pairs}
-            for line, pairs in ((line, zip(keys, row, strict=True)) for line, row in rest)
+            {key: _cell(text, f"{path}, line {line}") for key, text in zip(keys, row, strict=True)}
+            for line, row in rest
         ]
     )
+
+
+def _cell(text: str, where: str) -> Any:
+    try:
+        return read(text).data
+    except YamlTextError as error:
+        raise SceneError(f"{where}: found {text!r}, which is {error}") from None
 
 
 def _table(rows: list[Inputs]) -> Rows:
@@ -189,46 +199,6 @@ def _values(path: Keys, item: Any) -> Sequence[Any]:
             return spaced
     example = "expected a list, or {from: 0, to: 1, count: 11} (scale: log for powers)"
     raise fault(path, example, item)
-
-
-@dataclass(frozen=True)
-class Spaced(Sequence[float]):
-    """Numbers evenly spaced between two, or between two powers."""
-
-    first: Any
-    last: Any
-    size: Any
-    scale: Any
-
-    @property
-    def sound(self) -> bool:
-        """Whether they can be made."""
-        ends = (self.first, self.last)
-        numbers = all(isinstance(n, int | float) and not isinstance(n, bool) for n in ends)
-        counts = isinstance(self.size, int) and not isinstance(self.size, bool)
-        log = self.scale == "log" and numbers and min(ends) > 0
-        return numbers and counts and self.size >= 1 and (self.scale == "linear" or log)
-
-    @cached_property
-    def values(self) -> list[float]:
-        """The numbers."""
-        a, b = self.first, self.last
-        shares = [i / max(self.size - 1, 1) for i in range(self.size)]
-        if self.scale == "log":
-            return [float(a * (b / a) ** share) for share in shares]
-        return [float(a + (b - a) * share) for share in shares]
-
-    def __len__(self) -> int:
-        """Return how many there are."""
-        return int(self.size)
-
-    @overload
-    def __getitem__(self, index: int) -> float: ...
-    @overload
-    def __getitem__(self, index: slice) -> list[float]: ...
-    def __getitem__(self, index: int | slice) -> float | list[float]:
-        """Return one of them."""
-        return self.values[index]
 
 
 KINDS: Mapping[str, Callable[[Path, Any], Rows]] = {

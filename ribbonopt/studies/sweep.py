@@ -19,19 +19,18 @@ from __future__ import annotations
 
 import glob
 import itertools
-import json
 import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from ribbonopt.errors import SceneError
-from ribbonopt.scene.problems import InvalidSceneError, Place, report, suggestion
+from ribbonopt.scene.problems import InvalidSceneError, Place, dotted, report, suggestion
 from ribbonopt.scene.problems import Path as Keys
 from ribbonopt.scene.yamlio import plain_yaml, read_yaml
 
 from .inputs import NOTHING, Inputs, fault, rows_of, text_of
-from .study import Source, Study, Sweep
+from .study import Source, Study, Sweep, as_yaml
 
 KEYS = ("name", "scene", "set", "sweep", "save", "time_limit")
 SAVE = ("all", "failed", "none")
@@ -90,7 +89,7 @@ def _study(
             known = f"unknown key of a study{suggestion(str(key), KEYS)} (known: {', '.join(KEYS)})"
             raise fault((key,), known)
     name = data.get("name", "study")
-    if not isinstance(name, str) or not name.strip() or "/" in name:
+    if not isinstance(name, str) or not name.strip(" .") or set(name) & set("/\\"):
         raise fault(("name",), "expected a name for the study and its folder of results", name)
     if data.get("save", "none") not in SAVE:
         raise fault(("save",), f"expected one of {', '.join(SAVE)}", data["save"])
@@ -113,10 +112,15 @@ def _study(
     except InvalidSceneError as error:
         problems = [p._replace(path=("sweep", *p.path)) for p in error.problems]
         raise InvalidSceneError(problems) from None
-    where = {key: f"--set {key}" for key in common}
-    for path, place in places.items():
-        if path[:1] in (("set",), ("sweep",)):
-            where.setdefault(str(path[-1]), f"{file}, {place}, {'.'.join(map(str, path))}")
+    where: dict[str, str] = {}
+    for part in ("set", "sweep"):
+        for path, place in places.items():
+            if path[:1] == (part,):
+                where[str(path[-1])] = f"{file}, {place}, {dotted(path)}"
+    for key in common:
+        if key in rows.keys:
+            raise SceneError(f"--set {key}: is swept, {where.get(key, file)}; change it there")
+        where[key] = f"--set {key}"
     return [
         Sweep(_source(file, text, item, places), given | common, rows, where) for item in scenes
     ]
@@ -137,7 +141,7 @@ def _source(file: Path, text: str, item: Any, places: Mapping[Keys, Place]) -> S
         same = plain_yaml(part, str(file)) == item
     except SceneError:  # it is not written on lines of its own
         same = False
-    return Source(str(file), part if same else json.dumps(item))
+    return Source(str(file), part if same else as_yaml(item))
 
 
 def _assignment(text: str) -> tuple[str, Any]:
