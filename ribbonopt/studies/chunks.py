@@ -17,6 +17,7 @@ from ribbonopt.errors import RibbonoptError
 from ribbonopt.scene.units import in_special_units
 from ribbonopt.scene.yamlio import loads_scene
 
+from .draws import is_number
 from .study import Ribbon, Study
 
 Group = tuple[object, ...]
@@ -50,7 +51,7 @@ def chunks_of(study: Study) -> list[Chunk]:
 
 def _swept(ribbon: Ribbon) -> tuple[Group, Point]:
     """Group by the scene and all inputs but numbers; these are the place in it."""
-    numbers = {k: v for k, v in ribbon.inputs.items() if _is_number(v)}
+    numbers = {k: v for k, v in ribbon.inputs.items() if is_number(v)}
     other = ribbon.common | {k: v for k, v in ribbon.inputs.items() if k not in numbers}
     group = ribbon.source, tuple(ribbon.inputs), repr(sorted(other.items()))
     return group, tuple(float(number) for number in numbers.values())
@@ -93,7 +94,3 @@ def _parts(ribbons: list[Ribbon]) -> Iterator[list[Ribbon]]:
     size = min(math.isqrt(len(ribbons) - 1) + 1, LARGEST)
     for start in range(0, len(ribbons), size):
         yield ribbons[start : start + size]
-
-
-def _is_number(value: object) -> bool:
-    return isinstance(value, int | float) and not isinstance(value, bool)

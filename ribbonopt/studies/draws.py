@@ -84,4 +84,9 @@ def _fault(path: tuple[str, ...], message: str, found: Any) -> InvalidSceneError
 
 def is_number(value: Any) -> bool:
     """Whether plain data are a finite number."""
-    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
+    if isinstance(value, bool) or not isinstance(value, int | float):
+        return False
+    try:
+        return math.isfinite(value)
+    except OverflowError:  # a whole number that no float can hold
+        return False

@@ -70,7 +70,8 @@ def rows_of(folder: Path, sweep: Any) -> Rows:
             raise fault((kind,), known + suggestion(str(kind), KINDS))
         parts[kind] = KINDS[kind](folder, value)
         if not parts[kind].size:
-            raise fault((kind,), "the sweep is empty; give it values")
+            empty = [key for key, values in value.items() if values == []] if kind == "grid" else []
+            raise fault((kind, *empty[:1]), "the sweep is empty; give it values")
         for other in list(parts)[:-1]:
             if twice := set(parts[kind].keys) & set(parts[other].keys):
                 raise fault((kind, min(twice)), f"is swept by {other} already; keep one of them")
@@ -88,7 +89,7 @@ def text_of(path: Path) -> str:
         return path.read_text(encoding="utf-8-sig")
     except FileNotFoundError:
         raise SceneError(f"{path}: no such file") from None
-    except (OSError, UnicodeDecodeError) as error:
+    except (OSError, ValueError) as error:
         raise SceneError(f"{path}: cannot be read: {error}") from None
 
 
@@ -146,8 +147,11 @@ def _csv(folder: Path, value: Any) -> Rows:
         raise fault(("csv",), "expected the name of a CSV file", value)
     path = folder / value
     lines = csv.reader(io.StringIO(text_of(path)))
-    # Lines of a spreadsheet's end may hold nothing but separators.
-    rows = [(lines.line_num, row) for row in lines if any(cell.strip() for cell in row)]
+    try:
+        # Lines of a spreadsheet's end may hold nothing but separators.
+        rows = [(lines.line_num, row) for row in lines if any(cell.strip() for cell in row)]
+    except csv.Error as error:
+        raise SceneError(f"{path}, line {lines.line_num}: cannot be read: {error}") from None
     if not rows:
         raise SceneError(f"{path}: is empty; expected a line of keys and a line for each ribbon")
     (first, names), *rest = rows

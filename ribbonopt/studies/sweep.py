@@ -52,7 +52,13 @@ def load_study(paths: Sequence[str | Path], overrides: Sequence[str] = ()) -> St
     common = dict(_assignment(text) for text in overrides)
     for file in files:
         text = text_of(file)
-        found = read_yaml(text, str(file))
+        try:
+            found = read_yaml(text, str(file))
+        except SceneError:
+            if len(files) == 1:
+                raise
+            sweeps.append(Sweep(Source(str(file), text), common))  # spoils its own row
+            continue
         if isinstance(found.data, dict) and ("sweep" in found.data or "scene" in found.data):
             try:
                 sweeps += _study(file, text, found.data, found.places, common)
@@ -112,7 +118,7 @@ def _study(
     except InvalidSceneError as error:
         problems = [p._replace(path=("sweep", *p.path)) for p in error.problems]
         raise InvalidSceneError(problems) from None
-    where: dict[str, str] = {}
+    where = dict.fromkeys(rows.keys, f"{file}: sweep")
     for part in ("set", "sweep"):
         for path, place in places.items():
             if path[:1] == (part,):

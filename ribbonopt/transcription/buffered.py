@@ -57,15 +57,17 @@ class Mapped:
         self._function = function
         self._inputs = [function.numel_in(i) for i in range(function.n_in())]
         self._outputs = [function.numel_out(i) for i in range(function.n_out())]
+        if self._outputs != [function.nnz_out(i) for i in range(function.n_out())]:
+            raise ValueError(f"{function.name()} is expected to have dense outputs")
         self._blocks: dict[int, tuple[Any, Any]] = {}
 
     def __call__(self, *values: Array) -> list[Array]:
         """Evaluate at all stages: one flat array for each output."""
         arguments = [np.ascontiguousarray(value, dtype=float).ravel() for value in values]
         count = len(arguments[0]) // self._inputs[0]
-        for i, size in enumerate(self._inputs):
+        for i, (argument, size) in enumerate(zip(arguments, self._inputs, strict=True)):
             wanted = size if i in SHARED else count * size
-            if len(arguments[i]) != wanted:  # CasADi would read beyond it
+            if len(argument) != wanted:  # CasADi would read beyond it
                 raise ValueError(f"argument {i} is expected to have {wanted} numbers")
         results = [np.empty(count * size) for size in self._outputs]
         varying = [i for i in range(len(arguments)) if i not in SHARED]

@@ -283,3 +283,18 @@ def test_a_scene_in_a_study_may_be_written_in_any_style(folder: Path, text: str)
     assert (scene.name, scene.law.type, scene.boundary.end.position) == ("a", "sadowsky", (0, 0, 1))
     message = refusal_of_check(text.replace("position", "positoin"))
     assert "study.yaml" in message and "did you mean 'position'" in message
+
+
+def test_what_no_float_can_hold_and_broken_files(tmp_path: Path) -> None:
+    (tmp_path / "a.yaml").write_text("name: a\n")
+    (tmp_path / "b.yaml").write_text("name: [b\n")
+    found = load_study([tmp_path])
+    assert found.count == 2
+    numbers = [r.number for chunk in chunks_of(found) for r in chunk.ribbons]
+    assert sorted(numbers) == [1, 2]
+    path = tmp_path / "study.yaml"
+    path.write_text(f"scene: a.yaml\nsweep: {{grid: {{x: [.inf, 1, 2, {10**400}, .nan]}}}}\n")
+    assert sum(len(chunk.ribbons) for chunk in chunks_of(load_study([path]))) == 5
+    path.write_text("scene: a.yaml\nsweep:\n  grid:\n    x: [1]\n    y: []\n")
+    with pytest.raises(SceneError, match=r"line 5, sweep\.grid\.y: the sweep is empty"):
+        load_study([path])
