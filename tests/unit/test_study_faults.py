@@ -73,7 +73,7 @@ def refusal_of_check(text: str, *overrides: str) -> str:
         ("scene: scene.yaml\ntime_limit: .inf", "line 2, time_limit", "expected a number of"),
         ("scene: scene.yaml\nset: [1]", "line 2, set", "found [1], expected keys of the scene"),
         (f"{EPSILON}0.1", "line 4, sweep.grid.law.epsilon", "found 0.1, expected a list"),
-        (f"{EPSILON}[]", "line 3, sweep.grid", "empty"),
+        (f"{EPSILON}[]", "line 4, sweep.grid.law.epsilon", "empty"),
         ("scene: scene.yaml\nsweep: {list: []}", "line 2, sweep.list", "empty"),
         ("scene: scene.yaml\nsweep: {list: [1]}", "line 2, sweep.list", "a list of mappings"),
         ("scene: scene.yaml\nsweep: {zip: [1]}", "line 2, sweep.zip", "keys and their values"),
