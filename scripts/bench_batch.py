@@ -183,7 +183,9 @@ def draw(result: dict[str, Any], path: Path) -> None:
     for i, (name, found) in enumerate(result.items()):
         for jobs, colour in ((1, BENDING), (2, TWIST)):
             rate, at = found["per_second"][jobs], i + 0.2 * (2 * jobs - 3)
-            left.bar(at, rate, 0.36, color=colour, label="_" if i else f"{jobs} workers")
+            left.bar(
+                at, rate, 0.36, color=colour, label="_" if i else f"{jobs} worker{'s' * (jobs > 1)}"
+            )
             left.text(at, rate, f"{rate:.0f}", ha="center", va="bottom", fontsize=8)
             ribbons = [50 * (k + 1) for k in range(len(found["memory_mb"][jobs]))]
             style = "-" if i == 0 else "--"

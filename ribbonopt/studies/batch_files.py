@@ -11,7 +11,7 @@ import csv
 import json
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
+from typing import IO, Any
 
 from ribbonopt.errors import OutputError
 from ribbonopt.staging import unwritable
@@ -68,6 +68,7 @@ class BatchFolder:
         for row in self.rows:
             names |= dict.fromkeys(row)
         try:
+            self._lock.close()
             self._file.close()
             with open(self.folder / f"{TABLE}.new", "w", newline="", encoding="utf-8") as file:
                 writer = csv.DictWriter(file, sorted_columns(list(names), self.study.keys))
@@ -105,26 +106,41 @@ class BatchFolder:
             "inputs": self.study.keys,
             "digest": self.study.digest,
         }
-        if STUDY in found:
-            known = _said(self.folder)
-            if known["digest"] != said["digest"]:
+        self._lock = _locked(self.folder / STUDY)
+        try:
+            if (self.folder / STUDY).stat().st_size:
+                self._go_on(str(said["digest"]), resume)
+            elif ROWS in found and (self.folder / ROWS).stat().st_size:
                 raise OutputError(
-                    f"{self.folder}: holds rows of another study ({known['name']}); choose "
+                    f"{self.folder}: holds rows without {STUDY}, which said of what study; choose "
                     "another folder"
                 )
-            if not resume:
-                raise OutputError(
-                    f"{self.folder}: holds rows of this study already; go on by --resume, or "
-                    "choose another folder"
-                )
-            for row in _read(self.folder / ROWS):
-                self._count(row)
-        text = "".join(json.dumps(row) + "\n" for row in self.rows)
-        (self.folder / STUDY).write_text(json.dumps(said, indent=2) + "\n", encoding="utf-8")
-        beside = self.folder / f"{ROWS}.new"
-        beside.write_text(text, encoding="utf-8")
-        beside.replace(self.folder / ROWS)
-        self._file = open(self.folder / ROWS, "a", encoding="utf-8")
+            else:
+                self._lock.write((json.dumps(said, indent=2) + "\n").encode())
+                self._lock.flush()
+            text = "".join(json.dumps(row) + "\n" for row in self.rows)
+            beside = self.folder / f"{ROWS}.new"
+            beside.write_text(text, encoding="utf-8")
+            beside.replace(self.folder / ROWS)
+            self._file = open(self.folder / ROWS, "a", encoding="utf-8")
+        except BaseException:
+            self._lock.close()
+            raise
+
+    def _go_on(self, digest: str, resume: bool) -> None:
+        known = _said(self.folder)
+        if known["digest"] != digest:
+            raise OutputError(
+                f"{self.folder}: holds rows of another study ({known['name']}); choose another "
+                "folder"
+            )
+        if not resume:
+            raise OutputError(
+                f"{self.folder}: holds rows of this study already; go on by --resume, or choose "
+                "another folder"
+            )
+        for row in _read(self.folder / ROWS):
+            self._count(row)
 
 
 def sorted_columns(names: list[str], inputs: Sequence[str]) -> list[str]:
@@ -150,6 +166,25 @@ def load_batch(folder: str | Path) -> tuple[dict[str, Any], list[Row]]:
         raise OutputError(
             f"{folder}: no batch; expected a folder written by ribbonopt batch"
         ) from None
+
+
+def _locked(path: Path) -> IO[bytes]:
+    """Open a file so that no other batch can; the system forgets it with this process."""
+    file = open(path, "ab")
+    try:
+        import fcntl  # where there is none, nothing is locked
+    except ImportError:
+        return file
+    try:
+        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except BlockingIOError:
+        file.close()
+        raise OutputError(
+            f"{path.parent}: is being written by another batch; wait for its end, or stop it"
+        ) from None
+    except OSError:  # a file system without locks
+        pass
+    return file
 
 
 def _said(folder: Path) -> dict[str, Any]:

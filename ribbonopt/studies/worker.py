@@ -7,6 +7,7 @@ takes nothing with it. What is built for a structure is kept for the ribbons to 
 from __future__ import annotations
 
 import json
+import math
 import os
 import sys
 import threading
@@ -80,7 +81,7 @@ class Worker:
             status = getattr(error, "status", "bad_input")
             row |= {"status": status, "verified": False, "message": str(error)}
         row["seconds"] = time.perf_counter() - started
-        return row, found, neighbour
+        return {name: _finite(value) for name, value in row.items()}, found, neighbour
 
     def _one(
         self, scene: Scene, before: Neighbour | None, name: str
@@ -104,6 +105,11 @@ class Worker:
         if structure not in self._built:
             self._built[structure] = prepare(replace(scene, continuation=None))
         return self._built[structure]
+
+
+def _finite(value: Any) -> Any:
+    """Return a value that JSON has: gaps in place of what is no number."""
+    return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
 def _outcome(found: Solution, start: str) -> Row:

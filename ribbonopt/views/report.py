@@ -35,7 +35,7 @@ from .columns import (
 NUMERIC = re.compile(r"[-+]?\d+(\.\d*)?(e[-+]?\d+)?", re.IGNORECASE)
 GOOD, BAD, NONE = "#1f5fa8", ("#c2410c", "#e69f00", "#cc79a7", "#8a5a44", "#777777"), "#c9c9c9"
 LONG = ("message", "path")  # columns of text, for the table of rows that failed alone
-LISTED, NUMBERED, BINS, LONGEST = 200, 20, 24, 60
+LISTED, NUMBERED, BINS, LONGEST = 200, 20, 30, 60
 
 
 def write_report(

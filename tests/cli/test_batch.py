@@ -1,5 +1,6 @@
 """Batches: the same rows for any number of workers, what is written, and bad studies."""
 
+import io
 import json
 import shutil
 from collections.abc import Callable
@@ -9,6 +10,7 @@ from typing import Any
 import pytest
 from batches import SCENE, STUDY, without_times, written
 
+from ribbonopt.cli import batch
 from ribbonopt.pipeline import solve
 from ribbonopt.scene import load_scene
 from ribbonopt.studies.batch import run_batch
@@ -174,3 +176,23 @@ def test_a_batch_that_hangs_together(study: Path) -> None:
     rows.close()  # ends the workers
     assert first["verified"]
     assert json.dumps(first)
+
+
+def test_progress_is_shown_on_terminals_only(
+    run: Run, study: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    study.write_text(STUDY.replace("count: 30", "count: 8"))
+    assert run("batch", study, "--out", tmp_path / "a").err == ""
+    monkeypatch.setattr(batch.sys, "stderr", terminal := Terminal())
+    assert run("batch", study, "--out", tmp_path / "b").status == 0
+    shown = terminal.getvalue().split("\r")
+    assert any(part.startswith("8/8 done, 0 failed, ") and "left" in part for part in shown)
+    assert shown[-1] == ""  # taken away
+    assert shown[-2].strip() == ""
+
+
+class Terminal(io.StringIO):
+    """Where progress is shown."""
+
+    def isatty(self) -> bool:
+        return True

@@ -2,8 +2,10 @@
 
 import csv
 import errno
+import itertools
 import json
 import os
+import random
 import signal
 import subprocess
 import time
@@ -80,6 +82,39 @@ def test_workers_end_with_a_batch_that_is_killed(study: Path) -> None:
         return status.exists() and "State:\tZ" in status.read_text()
 
     until(gone)
+
+
+def test_a_folder_is_written_by_one_batch_at_a_time(run: Run, study: Path) -> None:
+    environment, out = on_purpose(study, "hang"), study.parent / "out"
+    command = [*COMMAND, str(study), "--jobs", "1", "--out", str(out)]
+    process = subprocess.Popen(command, env=environment, cwd=study.parent)
+    until(lambda: (study.parent / "hanging").exists(), process)
+    before = (out / "rows.jsonl").read_bytes()
+    status, _, err = run("batch", study, "--out", out, "--resume")
+    assert (status, "is being written by another batch" in err) == (2, True)
+    assert (out / "rows.jsonl").read_bytes() == before
+    process.kill()
+    process.wait()
+
+
+@pytest.mark.slow
+def test_killed_at_random_again_and_again(run: Run, study: Path, tmp_path: Path) -> None:
+    study.write_text(STUDY.replace("count: 30", "count: 300"))
+    whole, out = tmp_path / "whole", tmp_path / "out"
+    assert run("batch", study, "--out", whole, "--quiet").status == 0
+    rng, kills = random.Random(1), 0
+    for jobs in itertools.cycle("213"):
+        command = [*COMMAND, str(study), "--jobs", jobs, "--out", str(out), "--quiet"]
+        process = subprocess.Popen([*command, *(["--resume"] if out.exists() else [])])
+        try:
+            assert process.wait(rng.uniform(0.2, 0.9) + 0.1 * kills) == 0
+            break
+        except subprocess.TimeoutExpired:
+            process.kill()
+            process.wait()
+            kills += 1
+    assert kills >= 2
+    assert written(out) == written(whole)
 
 
 def test_killed_and_resumed_is_the_same(run: Run, study: Path, tmp_path: Path) -> None:
