@@ -103,3 +103,5 @@ def _on_this_machine(
         wanted.clear()
         for crew in crews:
             crew.close()
+        for thread in threads:
+            thread.join()

@@ -28,6 +28,7 @@ class Crew:
         """Begin without a process."""
         self.save, self.folder, self.time_limit = save, folder, time_limit
         self._process: subprocess.Popen[str] | None = None
+        self._lock, self._ended = threading.Lock(), False
         self._answers: queue.Queue[str] = queue.Queue()
 
     def rows(self, chunk: Chunk, known: Mapping[int, str]) -> Iterator[Row]:
@@ -54,6 +55,8 @@ class Crew:
                     return
                 done.add(answer["row"]["number"])
                 yield answer["row"]
+            if self._ended:
+                return
             culprit = next(ribbon for ribbon in chunk.ribbons if ribbon.number == at)
             skip.append(at)
             if at not in done:
@@ -62,49 +65,64 @@ class Crew:
                 return
 
     def close(self) -> None:
-        """End the process."""
-        if self._process is not None:
-            self._process.kill()
-            self._process.wait()
-            for stream in (self._process.stdin, self._process.stdout):
+        """End the process for good, whoever waits for its answers."""
+        with self._lock:
+            self._ended = True
+        self._lose()
+
+    def _lose(self) -> None:
+        """End the process; the next chunk begins another."""
+        process, self._process = self._process, None
+        if process is not None:
+            process.kill()
+            process.wait()
+            for stream in (process.stdin, process.stdout):
                 if stream is not None:
-                    stream.close()
-            self._process = None
+                    with suppress(OSError):  # what it was told and never read
+                        stream.close()
 
     def _send(self, chunk: Chunk, skip: list[int], known: set[int]) -> None:
         text = json.dumps(message(chunk, skip, sorted(known), self.save, self.folder))
-        process = self._process or self._begin()
-        assert process.stdin is not None
-        try:
-            process.stdin.write(text + "\n")
-            process.stdin.flush()
-        except OSError:  # it died while it had nothing to do
-            self.close()
-            self._send(chunk, skip, known)
+        for _ in range(2):
+            process = self._process or self._begin()
+            if process is None or process.stdin is None:
+                return
+            try:
+                process.stdin.write(text + "\n")
+                process.stdin.flush()
+                return
+            except (OSError, ValueError):  # it died while it had nothing to do, or was ended
+                self._lose()
 
-    def _begin(self) -> subprocess.Popen[str]:
+    def _begin(self) -> subprocess.Popen[str] | None:
+        """Begin a process; None once the crew has ended."""
         command = [sys.executable, "-m", "ribbonopt.studies.worker"]
-        process = subprocess.Popen(
-            command,
-            stdin=subprocess.PIPE,
-            stdout=subprocess.PIPE,
-            text=True,
-            env=os.environ | ONE_THREAD,
-            start_new_session=True,  # what interrupts the batch is told to it alone
-        )
-        self._process, self._answers = process, queue.Queue()
+        with self._lock:
+            if self._ended:
+                return None
+            process = subprocess.Popen(
+                command,
+                stdin=subprocess.PIPE,
+                stdout=subprocess.PIPE,
+                text=True,
+                env=os.environ | ONE_THREAD,
+                start_new_session=True,  # what interrupts the batch is told to it alone
+            )
+            self._process, self._answers = process, queue.Queue()
         threading.Thread(target=_read, args=(process, self._answers), daemon=True).start()
         return process
 
     def _answer(self, seconds: float) -> dict[str, Any] | str:
         """Return the next answer, or how the process was lost."""
+        if self._process is None:  # ended, or it could not be told anything twice
+            return "crashed"
         try:
             line = self._answers.get(timeout=seconds)
         except queue.Empty:
-            self.close()
+            self._lose()
             return "timed_out"
         if not line:
-            self.close()
+            self._lose()
             return "crashed"
         answer: dict[str, Any] = json.loads(line)
         return answer

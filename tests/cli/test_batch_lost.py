@@ -88,7 +88,7 @@ def test_a_folder_is_written_by_one_batch_at_a_time(run: Run, study: Path) -> No
     environment, out = on_purpose(study, "hang"), study.parent / "out"
     command = [*COMMAND, str(study), "--jobs", "1", "--out", str(out)]
     process = subprocess.Popen(command, env=environment, cwd=study.parent)
-    until(lambda: (study.parent / "hanging").exists(), process)
+    until(lambda: (study.parent / "hanging").exists() and rows_there(out) == 3, process)
     before = (out / "rows.jsonl").read_bytes()
     status, _, err = run("batch", study, "--out", out, "--resume")
     assert (status, "is being written by another batch" in err) == (2, True)
