@@ -11,7 +11,9 @@ import numpy as np
 
 from ribbonopt.errors import OutputError
 
-from .columns import Rows, is_logarithmic, is_number, is_numeric, numbers, varied
+from .branch import COLOURS
+from .columns import Rows, is_logarithmic, is_number, is_numeric, numbers, said, varied, words
+from .histogram import histogram_of
 from .style import BENDING, FAINT, INK, TWIST, blank, tidy
 
 if TYPE_CHECKING:
@@ -21,6 +23,8 @@ if TYPE_CHECKING:
 Pair = tuple[str, str]
 OUTCOMES = ("energy", "error", "seconds", "H0", "u2")  # those that vary, three of them
 MOST = 4  # panels of a figure
+PALETTE = tuple(colour for colour in COLOURS if colour != TWIST)  # which tells what failed
+LETTERS = 40  # of a text in a figure
 
 
 def save_batch_figures(
@@ -64,29 +68,33 @@ def usual_pairs(rows: Rows, inputs: Sequence[str]) -> list[Pair]:
     """Return what is worth seeing: the inputs against the energy, and against each other."""
     swept = [key for key in inputs if is_numeric(rows, key)]
     if not swept:
-        return [("number", "energy")]
+        return [(next((key for key in inputs if words(rows, key)[1:]), "number"), "energy")]
     return [*((key, "energy") for key in swept[:2]), *([(swept[0], swept[1])] if swept[1:] else [])]
 
 
 def plot_outcomes(rows: Rows) -> Figure:
-    """Draw how many ribbons ended how, and distributions of what varies."""
-    counts = Counter(str(row["status"]) for row in rows).most_common()
-    names = [name for name in OUTCOMES if varied(rows, name)][: MOST - 1]
-    figure = blank(3.2 * (len(names) + 1), 3.2)
-    axes, *others = np.atleast_1d(figure.subplots(1, len(names) + 1))
-    words = [status for status, _ in counts]
-    colours = [BENDING if status == "converged" else TWIST for status in words]
-    axes.barh(words, [count for _, count in counts], color=colours)
-    for i, (_, count) in enumerate(counts):
-        axes.text(count, i, f" {count}", va="center", fontsize=9, color=INK)
+    """Draw how many ribbons ended how, and distributions of what varies; failed ones in orange."""
+    from matplotlib.ticker import MaxNLocator
+
+    counts = Counter((bool(row["verified"]), str(row["status"])) for row in rows)
+    drawn = [found for name in OUTCOMES if (found := histogram_of(rows, name))][: MOST - 1]
+    figure = blank(3.2 * (len(drawn) + 1), 3.2)
+    axes, *others = np.atleast_1d(figure.subplots(1, len(drawn) + 1))
+    # What is verified, and then what is frequent, at the top.
+    for (verified, status), count in sorted(counts.items(), key=lambda item: (item[0][0], item[1])):
+        bar = axes.barh(_plain(status), count, color=BENDING if verified else TWIST)
+        axes.bar_label(bar, padding=3, fontsize=9, color=INK)
     axes.margins(x=0.2)
     axes.set_xlabel("ribbons")
-    for other, name in zip(others, names, strict=True):
-        values = numbers(rows, name)
-        log = is_logarithmic(values)
-        edges = np.geomspace(min(values), max(values), 25) if log else 24
-        other.hist(values, edges, color=BENDING)
-        other.set(xlabel=name, xscale="log" if log else "linear")
+    axes.xaxis.set_major_locator(MaxNLocator(4, integer=True))
+    for other, histogram in zip(others, drawn, strict=True):
+        edges = np.array([histogram.edges(bar) for bar in histogram.bars]).reshape(-1, 2)
+        good, bad = np.array([(bar.verified, bar.failed) for bar in histogram.bars]).T
+        style = {"align": "edge", "edgecolor": "white", "lw": 0.5}
+        other.bar(edges[:, 0], good, np.diff(edges)[:, 0], color=BENDING, **style)
+        other.bar(edges[:, 0], bad, np.diff(edges)[:, 0], good, color=TWIST, **style)
+        other.set(xlabel=histogram.name, xscale="log" if histogram.log else "linear")
+        other.yaxis.set_major_locator(MaxNLocator(5, integer=True))
     for each in (axes, *others):
         tidy(each)
     return figure
@@ -98,79 +106,113 @@ def plot_scatter(rows: Rows, pairs: Sequence[Pair], inputs: Sequence[str] = ()) 
     Where x is an input, colour tells another input; where x and y are both, the energy.
     """
     pairs = pairs[:MOST]
-    width = 1 if len(pairs) == 1 else 2
+    width = len(pairs) if len(pairs) < MOST else 2
     height = -(-len(pairs) // width)
-    figure = blank(5.6 * width, 4.2 * height)
+    figure = blank((5.6 if width < 3 else 4.7) * width, 4.2 * height)
     for i, pair in enumerate(pairs):
-        _panel(
-            figure, figure.add_subplot(height, width, i + 1), rows, pair, _shade(rows, pair, inputs)
-        )
+        axes = figure.add_subplot(height, width, i + 1)
+        _panel(figure, axes, rows, pair, _shade(rows, pair, inputs))
     return figure
 
 
 def _shade(rows: Rows, pair: Pair, inputs: Sequence[str]) -> str:
     """Return the column that colours a panel; "" for none."""
-    others = [key for key in inputs if key not in pair and varied(rows, key)]
+    numeric = [key for key in inputs if varied(rows, key)]
+    few = [key for key in inputs if 1 < len(words(rows, key)) <= len(PALETTE)]
+    others = [key for key in dict.fromkeys((*numeric, *few)) if key not in pair]
     chosen = (*others, "energy") if not set(pair) <= set(inputs) else ("energy", *others)
-    return next((name for name in chosen if name not in pair and varied(rows, name)), "")
+    good = [row for row in rows if row["verified"]]
+    return next((name for name in chosen if name not in pair and words(good, name)[1:]), "")
 
 
 def _panel(figure: Figure, axes: Axes, rows: Rows, pair: Pair, shade: str) -> None:
     good = [row for row in rows if row["verified"]]
     bad = [row for row in rows if not row["verified"]]
     scales = [_scale(rows, name) for name in pair]
-    points = _points(good, pair, scales)
-    style: dict[str, Any] = {"s": 9 if len(points) > 500 else 18, "lw": 0}
-    if shade:
-        values = np.array([row.get(shade) for row in good], dtype=float)
-        style |= {"c": values, "cmap": "viridis", "plotnonfinite": True}
-        drawn = axes.scatter(points[:, 0], points[:, 1], **style)
-        figure.colorbar(drawn, ax=axes, label=shade)
-    else:
-        axes.scatter(points[:, 0], points[:, 1], color=BENDING, **style)
+    _draw(figure, axes, good, _points(good, pair, scales), shade)
     crosses = _points(bad, pair, scales)
-    inside = crosses[np.isfinite(crosses).all(axis=1)]
-    below = crosses[np.isfinite(crosses[:, 0]) & ~np.isfinite(crosses[:, 1])]
-    marks: dict[str, Any] = {"marker": "x", "color": TWIST, "s": 22, "lw": 1.2}
-    axes.scatter(inside[:, 0], inside[:, 1], **marks)
-    if len(below):  # they have inputs, and no answer: on the axis
-        foot = axes.get_xaxis_transform()
-        axes.scatter(below[:, 0], np.zeros(len(below)), transform=foot, clip_on=False, **marks)
-        anywhere = points[np.isfinite(points).all(axis=1), 1]
-        level = np.full(len(below), anywhere[0] if len(anywhere) else 0.0)
-        axes.update_datalim(np.column_stack([below[:, 0], level]))  # which that has not done
-        axes.autoscale_view()
-    if len(inside) + len(below):
-        axes.set_title(f"{len(inside) + len(below)} failed", fontsize=9, color=TWIST, loc="right")
+    known = np.isfinite(crosses)
+    marks: dict[str, Any] = {"marker": "x", "color": TWIST, "s": 22, "lw": 1.2, "zorder": 3}
+    axes.scatter(*crosses[known.all(axis=1)].T, **marks)
+    # Those that have no answer are on the axis, which autoscaling knows nothing of.
+    places = (axes.get_xaxis_transform(), axes.get_yaxis_transform())
+    for k, transform in enumerate(places):
+        alone = crosses[known[:, k] & ~known[:, 1 - k], k]
+        if len(alone):
+            ends = np.zeros((2, len(alone)))
+            ends[k] = alone
+            axes.scatter(*ends, transform=transform, clip_on=False, **marks)
+            axes.update_datalim(np.column_stack([alone, alone]), updatex=k == 0, updatey=k == 1)
+    axes.autoscale_view()
+    if known.any():
+        said = f"{int(known.any(axis=1).sum())} failed"
+        axes.set_title(said, fontsize=9, color=TWIST, loc="right")
     for axis, name, scale in zip("xy", pair, scales, strict=True):
-        axes.set(**{f"{axis}label": name})
+        axes.set(**{f"{axis}label": _plain(name)})
         if isinstance(scale, list):
-            axes.set(**{f"{axis}ticks": range(len(scale)), f"{axis}ticklabels": scale})
+            labels = [_plain(word) for word in scale]
+            axes.set(**{f"{axis}ticks": range(len(scale)), f"{axis}ticklabels": labels})
         else:
             axes.set(**{f"{axis}scale": scale})
     axes.grid(True, which="major", color=FAINT, alpha=0.2)
     tidy(axes)
 
 
+def _draw(figure: Figure, axes: Axes, rows: Rows, points: np.ndarray, shade: str) -> None:
+    """Draw the verified ribbons, coloured by a column of numbers or of a few words."""
+    from matplotlib.colors import LogNorm
+    from matplotlib.ticker import FuncFormatter, LogLocator
+
+    style: dict[str, Any] = {"s": 9 if len(points) > 500 else 18, "lw": 0}
+    if shade and is_numeric(rows, shade):
+        values = np.array([_place(row.get(shade), "") for row in rows])
+        norm = LogNorm() if is_logarithmic(numbers(rows, shade)) else None
+        style |= {"c": values, "cmap": "viridis", "norm": norm, "plotnonfinite": True}
+        drawn = axes.scatter(*points.T, **style)
+        bar = figure.colorbar(drawn, ax=axes, label=_plain(shade), aspect=30, pad=0.02)
+        if norm is not None:
+            few = max(values[np.isfinite(values)]) < 1e3 * min(values[np.isfinite(values)])
+            bar.ax.yaxis.set_major_locator(LogLocator(subs=(1, 2, 5) if few else (1,)))
+            bar.ax.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+            bar.minorticks_off()
+        bar.outline.set_visible(False)
+        bar.ax.tick_params(labelsize=9)
+    elif shade:
+        known = words(rows, shade)
+        which = np.array([said(row.get(shade)) for row in rows])
+        for word, colour in zip(known, PALETTE, strict=False):
+            axes.scatter(*points[which == word].T, color=colour, label=_plain(word), **style)
+        axes.scatter(*points[which == ""].T, color=FAINT, **style)
+        axes.legend(fontsize=8, frameon=False, title=_plain(shade), title_fontsize=8)
+    else:
+        axes.scatter(*points.T, color=BENDING, **style)
+
+
+def _plain(text: str) -> str:
+    """Return text that matplotlib draws as it is, cut where it is too long for a figure."""
+    text = text if len(text) <= LETTERS else text[: LETTERS - 1] + "…"
+    return text.replace("$", r"\$")
+
+
 def _scale(rows: Rows, name: str) -> str | list[str]:
     """Return the scale of an axis, or the words along it."""
-    if is_numeric(rows, name) or not any(row.get(name) is not None for row in rows):
-        return "log" if is_logarithmic(numbers(rows, name)) else "linear"
-    return list(dict.fromkeys(str(row[name]) for row in rows if row.get(name) is not None))
+    if is_numeric(rows, name) or not words(rows, name):
+        wide = name != "number" and is_logarithmic(numbers(rows, name))
+        return "log" if wide else "linear"
+    return words(rows, name)
 
 
 def _points(rows: Rows, pair: Pair, scales: Sequence[str | list[str]]) -> np.ndarray:
     """Places (k, 2) of rows, NaN where there are none."""
-    return np.array(
-        [
-            [_place(row.get(n), scale) for n, scale in zip(pair, scales, strict=True)]
-            for row in rows
-        ],
-        dtype=float,
-    ).reshape(-1, 2)
+    places = [
+        {word: i for i, word in enumerate(scale)} if isinstance(scale, list) else scale
+        for scale in scales
+    ]
+    found = [[_place(row.get(n), p) for n, p in zip(pair, places, strict=True)] for row in rows]
+    return np.array(found, dtype=float).reshape(-1, 2)
 
 
-def _place(value: Any, scale: str | list[str]) -> float:
-    if isinstance(scale, list):
-        return np.nan if value is None else float(scale.index(str(value)))
+def _place(value: Any, places: str | dict[str, int]) -> float:
+    if isinstance(places, dict):
+        return places.get(said(value), np.nan)
     return float(value) if is_number(value) else np.nan

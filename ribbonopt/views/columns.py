@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import json
 import math
 from collections.abc import Mapping, Sequence
 from typing import Any
@@ -11,11 +10,18 @@ Row = Mapping[str, Any]
 Rows = Sequence[Row]
 
 WIDE = 50.0  # largest over smallest value, from which axes are logarithmic
+NOISE = 1e-9  # relative differences below this are rounding
+VECTORS = (("n0x", "n0y", "n0z"), ("m0x", "m0y", "m0z"), ("u2", "u3"))
+ANSWERS = ("energy", "H0", *(part for vector in VECTORS for part in vector), "error")
+COSTS = ("start", "iterations", "path", "seconds", "message")
 
 
-def columns(rows: Rows) -> list[str]:
-    """Return the names of all columns, in the order in which they first appear."""
-    return list(dict.fromkeys(name for row in rows for name in row))
+def columns(rows: Rows, inputs: Sequence[str] = ()) -> list[str]:
+    """Return the names of all columns: inputs, how it ended, what came out, what it cost."""
+    found = list(dict.fromkeys(name for row in rows for name in row))
+    first = ("number", "scene", *inputs, "status", "verified", *ANSWERS)
+    others = [name for name in found if name not in (*first, *COSTS)]
+    return [name for name in dict.fromkeys((*first, *others, *COSTS)) if name in found]
 
 
 def numbers(rows: Rows, name: str) -> list[float]:
@@ -24,11 +30,20 @@ def numbers(rows: Rows, name: str) -> list[float]:
 
 
 def varied(rows: Rows, name: str) -> list[float]:
-    """Return the numbers of a column, none if they are all the same but for rounding."""
+    """Return the numbers of a column, none if they are all the same but for rounding.
+
+    A component of a vector is measured by the vector: what symmetry makes zero is no column.
+    """
     values = numbers(rows, name)
-    if not values or max(values) - min(values) <= 1e-9 * max(abs(value) for value in values):
-        return []
-    return values
+    vector = next((vector for vector in VECTORS if name in vector), (name,))
+    largest = max((abs(value) for part in vector for value in numbers(rows, part)), default=0.0)
+    return values if values and max(values) - min(values) > NOISE * largest else []
+
+
+def words(rows: Rows, name: str) -> list[str]:
+    """Return the words of a column, each once, in the order in which they come."""
+    found = (said(row.get(name)) for row in rows if not is_missing(row.get(name)))
+    return list(dict.fromkeys(found))
 
 
 def is_numeric(rows: Rows, name: str) -> bool:
@@ -39,7 +54,12 @@ def is_numeric(rows: Rows, name: str) -> bool:
 
 def is_number(value: Any) -> bool:
     """Whether a value is a finite number."""
-    return isinstance(value, int | float) and not isinstance(value, bool) and math.isfinite(value)
+    if not isinstance(value, int | float) or isinstance(value, bool):
+        return False
+    try:
+        return math.isfinite(value)
+    except OverflowError:  # an integer beyond all floats
+        return False
 
 
 def is_missing(value: Any) -> bool:
@@ -53,9 +73,15 @@ def is_logarithmic(values: Sequence[float]) -> bool:
 
 
 def said(value: Any) -> str:
-    """Return a value in words, nothing for a gap."""
+    """Return a value in words, as a scene would say it; nothing for a gap."""
     if is_missing(value):
         return ""
+    if isinstance(value, bool):
+        return str(value).lower()
     if isinstance(value, float):
         return f"{value:.6g}"
-    return value if isinstance(value, str) else json.dumps(value)
+    if isinstance(value, Mapping):
+        return ", ".join(f"{key}: {said(item)}" for key, item in value.items())
+    if isinstance(value, list | tuple):
+        return f"[{', '.join(map(said, value))}]"
+    return str(value)

@@ -7,7 +7,6 @@ that no plotting library is loaded. Works from a file, without a network.
 from __future__ import annotations
 
 import json
-import math
 import re
 from collections import Counter
 from collections.abc import Sequence
@@ -20,6 +19,7 @@ from typing import Any
 from ribbonopt.errors import OutputError
 
 from .columns import (
+    VECTORS,
     Row,
     Rows,
     columns,
@@ -30,12 +30,18 @@ from .columns import (
     numbers,
     said,
     varied,
+    words,
 )
+from .failures import failures_html
+from .histogram import distributions_html
 
-NUMERIC = re.compile(r"[-+]?\d+(\.\d*)?(e[-+]?\d+)?", re.IGNORECASE)
-GOOD, BAD, NONE = "#1f5fa8", ("#c2410c", "#e69f00", "#cc79a7", "#8a5a44", "#777777"), "#c9c9c9"
-LONG = ("message", "path")  # columns of text, for the table of rows that failed alone
-LISTED, NUMBERED, BINS, LONGEST = 200, 20, 30, 60
+GOOD, BAD = "#1f5fa8", ("#c2410c", "#e69f00", "#cc79a7", "#8a5a44", "#777777")
+NONE = "#c9c9c9"  # ribbons that are missing
+LONG = ("message", "path", "verified")  # not for axes
+MINOR = ("H0", *(part for vector in VECTORS for part in vector), "start", "message")
+LISTED, FAILED, LONGEST = 200, 1000, 60  # rows of the table, more that failed, letters of a cell
+FILES = ("table.csv", "rows.jsonl")
+SOLUTIONS = "solutions"  # folder beside the report; what is saved of ribbon 7 is in solutions/7
 
 
 def write_report(
@@ -61,10 +67,11 @@ def write_report(
     """
     path = Path(path)
     rows = sorted(rows, key=lambda row: int(row["number"]))
-    text = _page(rows, tuple(inputs), name, count)
+    text = _page(rows, tuple(inputs), name, count, path.parent)
     beside = path.with_name(f".{path.name}.new")
     try:
-        beside.write_text(text, encoding="utf-8")
+        # Half a character, which JSON can say and UTF-8 cannot, is no reason to fail.
+        beside.write_text(text, encoding="utf-8", errors="xmlcharrefreplace")
         beside.replace(path)
     except OSError as error:
         beside.unlink(missing_ok=True)
@@ -72,166 +79,132 @@ def write_report(
     return path
 
 
-def _page(rows: Rows, inputs: tuple[str, ...], name: str, count: int) -> str:
-    here = files("ribbonopt.views")
+def _page(rows: Rows, inputs: tuple[str, ...], name: str, count: int, here: Path) -> str:
+    own = files("ribbonopt.views")
+    counts = Counter(str(row["status"]) for row in rows)
+    # A status is good if all its rows are verified.
+    failed = {str(row["status"]) for row in rows if not row["verified"]}
+    statuses = sorted(counts, key=lambda status: (status in failed, -counts[status]))
+    bad = [status for status in statuses if status in failed]
+    colours = {status: BAD[i % len(BAD)] for i, status in enumerate(bad)}
+    colours = {status: colours.get(status, GOOD) for status in statuses}
     parts = {
         "title": escape(name),
-        "body": _summary(rows, name, count) + _failures(rows, inputs) + _distributions(rows),
-        "table": _table(rows),
-        "data": _data(rows, inputs),
-        "script": (here / "report.js").read_text(encoding="utf-8"),
+        "head": _summary(rows, name, count, {s: (counts[s], c) for s, c in colours.items()}),
+        "failures": failures_html(rows, inputs, colours),
+        "distributions": distributions_html(rows, inputs),
+        "table": _table(rows, inputs, here),
+        "data": _data(rows, inputs, colours),
+        "script": (own / "report.js").read_text(encoding="utf-8"),
     }
-    page = (here / "report.html").read_text(encoding="utf-8")
+    page = (own / "report.html").read_text(encoding="utf-8")
     # In one pass: what a row says may look like the name of a part.
     return re.sub(r"@(\w+)@", lambda found: parts.get(found[1], found[0]), page)
 
 
-def _summary(rows: Rows, name: str, count: int) -> str:
-    statuses = Counter(str(row["status"]) for row in rows)
-    good = sum(bool(row["verified"]) for row in rows)
-    seconds, errors = sorted(numbers(rows, "seconds")), numbers(rows, "error")
-    tiles = [(f"{good}", "verified", "good")]
-    tiles += [(f"{len(rows) - good}", "failed", "bad")] if len(rows) > good else []
-    tiles += [(f"{count - len(rows)}", "missing: go on by --resume", "bad")] * (count > len(rows))
+def _summary(rows: Rows, name: str, count: int, statuses: dict[str, tuple[int, str]]) -> str:
+    good = [row for row in rows if row["verified"]]
+    seconds, errors = sorted(numbers(rows, "seconds")), numbers(good, "error")
+    missing, failed = max(count - len(rows), 0), len(rows) - len(good)
+    tiles = [(str(len(good)), "verified", "good")]
+    tiles += [(str(failed), "failed", "bad")] if failed else []
+    tiles += [(str(missing), "missing: go on by --resume", "bad")] if missing else []
     if seconds:
         late = seconds[min(int(0.95 * len(seconds)), len(seconds) - 1)]
-        spent = f"{sum(seconds):.3g} s"
-        each = f"{1e3 * median(seconds):.3g} ms"
-        tiles += [(spent, "of solving", ""), (each, f"median; 95 % below {1e3 * late:.3g} ms", "")]
+        tiles.append((_time(sum(seconds)), "of solving", ""))
+        tiles.append((_time(median(seconds)), f"median; 95 % below {_time(late)}", ""))
     if errors:
-        label = f"largest relative error; median {median(errors):.0e}"
-        tiles.append((f"{max(errors):.0e}", label, ""))
+        tiles.append((f"{max(errors):.0e}", f"largest error; median {median(errors):.0e}", ""))
     shown = "".join(
-        f'<div><b class="{kind}">{escape(value)}</b><span>{escape(label)}</span></div>'
+        f'<div><b class="{kind}">{value}</b><span>{label}</span></div>'
         for value, label, kind in tiles
     )
-    parts = [(status, n, _colour(i, status)) for i, (status, n) in enumerate(_ordered(statuses))]
-    parts += [("missing", count - len(rows), NONE)] if count > len(rows) else []
+    parts = [(status, *statuses[status]) for status in statuses]
+    parts += [("missing", missing, NONE)] if missing else []
     bar = "".join(f'<div style="flex:{n} 0 0;background:{colour}"></div>' for _, n, colour in parts)
     legend = "".join(
         f'<span><i style="background:{colour}"></i>{escape(status)} {n}</span>'
         for status, n, colour in parts
     )
     return (
-        f"<h1>{escape(name)}</h1><p>{count} ribbons</p>"
+        f"<h1>{escape(name)}</h1><p>{count} ribbon{'s' * (count != 1)}</p>"
         f'<div class="tiles">{shown}</div><div class="bar">{bar}</div>'
         f'<div class="legend">{legend}</div>'
     )
 
 
-def _ordered(statuses: Counter[str]) -> list[tuple[str, int]]:
-    return sorted(statuses.items(), key=lambda item: (item[0] != "converged", -item[1]))
+def _time(seconds: float) -> str:
+    units = ((3600.0, "h"), (60.0, "min"), (1.0, "s"))
+    size, unit = next((pair for pair in units if seconds >= pair[0]), (1e-3, "ms"))
+    value = seconds / size
+    return f"{value:.0f} {unit}" if value >= 100 else f"{value:.3g} {unit}"
 
 
-def _colour(place: int, status: str) -> str:
-    return GOOD if status == "converged" else BAD[place % len(BAD)]
-
-
-def _failures(rows: Rows, inputs: tuple[str, ...]) -> str:
-    """Rows that failed for the same reason, messages being the same but for their numbers."""
-    groups: dict[tuple[str, str], list[Row]] = {}
-    for row in rows:
-        if not row["verified"]:
-            kind = NUMERIC.sub("#", str(row.get("message", "")))
-            groups.setdefault((str(row["status"]), kind), []).append(row)
-    if not groups:
-        return "<h2>What failed</h2><p>Nothing: every ribbon is solved and verified.</p>"
-    lines = []
-    for (status, _), group in sorted(groups.items(), key=lambda item: -len(item[1])):
-        some = ", ".join(str(row["number"]) for row in group[:NUMBERED])
-        some += ", ..." if len(group) > NUMBERED else ""
-        ranges = "; ".join(text for key in inputs if (text := _range(group, key)))
-        cells = (len(group), status, str(group[0].get("message", "")), some, ranges)
-        lines.append(_cells(cells, "message", ("n", "", "m", "", "")))
-    head = "".join(
-        f"<th>{title}</th>"
-        for title in ("ribbons", "status", "why (the first)", "numbers", "where")
+def _table(rows: Rows, inputs: tuple[str, ...], here: Path) -> str:
+    """Table of the first rows and of those that failed; numbers of what is saved are links."""
+    failed = [row for row in rows[LISTED:] if not row["verified"]]
+    chosen = [*rows[:LISTED], *failed[:FAILED]]
+    hidden = {"path", "verified"} | ({"scene"} if len(words(rows, "scene")) < 2 else set())
+    names = [name for name in columns(rows, inputs) if name not in hidden]
+    saved = here / SOLUTIONS
+    folders = {item.name for item in saved.iterdir()} if saved.is_dir() else set()
+    whole = " and ".join(  # links where the report lies beside the rows
+        f'<a href="{file}">{file}</a>' if (here / file).is_file() else file for file in FILES
     )
+    head = "".join(f'<th class="{_kind(name)}">{escape(name)}</th>' for name in names)
+    body = "".join(f"<tr>{_cells(row, names, folders)}</tr>" for row in chosen)
+    which = f"the first {LISTED}" + (" and those that failed" if failed else "")
+    which += f" ({FAILED} of {len(failed)} more)" if len(failed) > FAILED else ""
+    few = f"{len(chosen)} of {len(rows)}, {which}; " if len(chosen) < len(rows) else ""
     return (
-        f'<h2>What failed, and why</h2><div class="scroll"><table><tr>{head}</tr>'
-        f"{''.join(lines)}</table></div>"
-    )
-
-
-def _range(rows: Rows, key: str) -> str:
-    values = numbers(rows, key)
-    if values:
-        low, high = min(values), max(values)
-        return f"{key} = {low:.4g}" + (f" to {high:.4g}" if high > low else "")
-    words = list(dict.fromkeys(said(row[key]) for row in rows if row.get(key) is not None))
-    return f"{key}: {', '.join(words[:4])}{', ...' if len(words) > 4 else ''}" if words else ""
-
-
-def _distributions(rows: Rows) -> str:
-    names = [name for name in columns(rows) if name != "number"]
-    drawn = [_histogram(name, values) for name in names if (values := varied(rows, name))]
-    if not drawn:
-        return ""
-    return f'<h2>Distributions</h2><div class="hists">{"".join(drawn)}</div>'
-
-
-def _histogram(name: str, values: Sequence[float]) -> str:
-    log = is_logarithmic(values)
-    places = [math.log10(value) for value in values] if log else values
-    low, high = min(places), max(places)
-    bins = min(len(set(values)), BINS)
-    counts = [0] * bins
-    for place in places:
-        counts[min(int(bins * (place - low) / (high - low)), bins - 1)] += 1
-    bars = "".join(
-        f'<rect x="{10 * i + 1}" y="{70 - 68 * n / max(counts):.1f}" width="8" '
-        f'height="{68 * n / max(counts):.1f}"/>'
-        for i, n in enumerate(counts)
-    )
-    scale = " (log)" if log else ""
-    return (
-        f"<figure><figcaption>{escape(name)}{scale}</figcaption>"
-        f'<svg viewBox="0 0 {10 * bins} 70" preserveAspectRatio="none" fill="{GOOD}">{bars}</svg>'
-        f"<small><span>{min(values):.4g}</span><span>{max(values):.4g}</span></small></figure>"
-    )
-
-
-def _table(rows: Rows) -> str:
-    names = [name for name in columns(rows) if name not in LONG]
-    failed = [row for row in rows if not row["verified"]][:LISTED]
-    chosen = failed + [row for row in rows if row["verified"]][: LISTED - len(failed)]
-    chosen.sort(key=lambda row: int(row["number"]))
-    head = "".join(f"<th>{escape(name)}</th>" for name in names)
-    body = "".join(_cells([row.get(name) for name in names]) for row in chosen)
-    few = "" if len(chosen) == len(rows) else f"{len(chosen)} of {len(rows)}, failed ones first; "
-    return (
-        f'<h2>Rows</h2><p>{few}all of them are in <a href="table.csv">table.csv</a> and '
-        f'<a href="rows.jsonl">rows.jsonl</a>.</p><div class="scroll"><table><tr>{head}</tr>{body}'
+        f"<h2>Rows</h2><p>{few}all of them are in {whole}.</p>"
+        f'<div class="scroll"><table><tr>{head}</tr>{body}'
         "</table></div>"
     )
 
 
-def _cells(values: Sequence[Any], whole: str = "", kinds: Sequence[str] = ()) -> str:
+def _cells(row: Row, names: Sequence[str], folders: set[str]) -> str:
     cells = []
-    for i, value in enumerate(values):
-        kind = kinds[i] if kinds else ("n" if is_number(value) else "")
-        text = said(value)
-        if not whole and len(text) > LONGEST:
-            text = text[: LONGEST - 3] + "..."
-        cells.append(f'<td class="{kind}">{escape(text)}</td>')
-    return f"<tr>{''.join(cells)}</tr>"
+    for name in names:
+        value = row.get(name)
+        text, title, kind = said(value), "", _kind(name)
+        if len(text) > LONGEST:
+            text, title = text[: LONGEST - 1] + "…", f' title="{escape(text)}"'
+        text = escape(text)
+        if name == "number" and text in folders:
+            text = f'<a href="{SOLUTIONS}/{text}/">{text}</a>'
+        if name == "status" and not row["verified"]:
+            kind = "bad"
+        kind += " n" if is_number(value) else ""
+        cells.append(f'<td class="{kind.strip()}"{title}>{text}</td>')
+    return "".join(cells)
 
 
-def _data(rows: Rows, inputs: tuple[str, ...]) -> str:
+def _kind(name: str) -> str:
+    """Class of a column: paper has no room for those that are minor."""
+    return "minor" if name in MINOR else ""
+
+
+def _data(rows: Rows, inputs: tuple[str, ...], colours: dict[str, str]) -> str:
     """Columns for the scatter plot as JSON that no row can end before its time."""
-    names = [name for name in columns(rows) if name not in LONG]
+    names = [name for name in columns(rows, inputs) if name not in LONG]
     kinds = {name: is_numeric(rows, name) for name in names}
-    first = [key for key in inputs if kinds.get(key)] or list(inputs[:1]) or ["number"]
-    y = "energy" if "energy" in names else first[-1]
-    chosen: dict[str, Any] = {"x": first[0], "y": y, "c": first[1] if first[1:] else "status"}
-    chosen |= {f"l{axis}": is_logarithmic(numbers(rows, chosen[axis])) for axis in "xy"}
-    table = [[_plain(row.get(name), kinds[name]) for name in names] for row in rows]
+    logs = [
+        kinds[name] and name != "number" and is_logarithmic(numbers(rows, name)) for name in names
+    ]
+    swept = [key for key in inputs if kinds.get(key) and varied(rows, key)]
+    given = [key for key in inputs if len(words(rows, key)) > 1]
+    x, *others = [*swept, *(key for key in given if key not in swept)] or ["number"]
+    y = "energy" if kinds.get("energy") else (others or ["status"])[0]
+    shades = [key for key in others if key != y] or ["status"]
     data = {
         "names": names,
         "numeric": list(kinds.values()),
-        "rows": table,
+        "log": logs,
+        "rows": [[_plain(row.get(name), kinds[name]) for name in names] for row in rows],
         "status": [bool(row["verified"]) for row in rows],
-        "defaults": chosen | {"inputs": list(inputs)},
+        "colours": colours,
+        "defaults": {"x": x, "y": y, "c": shades[0], "inputs": list(inputs)},
     }
     text = json.dumps(data, allow_nan=False, separators=(",", ":"))
     return text.replace("&", "\\u0026").replace("<", "\\u003c").replace(">", "\\u003e")

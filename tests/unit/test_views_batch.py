@@ -1,6 +1,7 @@
 """Report and figures of batches: every row is there, whatever it says does no harm."""
 
 import json
+import re
 import subprocess
 import sys
 from html.parser import HTMLParser
@@ -11,8 +12,11 @@ import numpy as np
 import pytest
 
 from ribbonopt.errors import OutputError
+from ribbonopt.views import report
 from ribbonopt.views.batch import plot_outcomes, plot_scatter, save_batch_figures, usual_pairs
+from ribbonopt.views.histogram import histogram_of
 from ribbonopt.views.report import write_report
+from ribbonopt.views.style import BENDING, FAINT, INK, TWIST
 
 Row = dict[str, Any]
 HOSTILE = "</script><script>alert(1)</script> <b>&amp; @data@ \u2028 \\ ' \" ]]>"
@@ -87,9 +91,7 @@ def test_the_data_are_the_rows(tmp_path: Path) -> None:
     for found, row in zip(data["rows"], ROWS, strict=True):
         for name, value in zip(names, found, strict=True):
             wanted = row.get(name)
-            if name in ("verified",):
-                wanted = json.dumps(wanted)
-            elif wanted is not None and wanted != wanted:
+            if wanted is not None and wanted != wanted:
                 wanted = None
             assert value == wanted, name
     assert data["status"] == [True, False, True, True, False, True]
@@ -101,17 +103,36 @@ def test_the_data_are_the_rows(tmp_path: Path) -> None:
 
 
 def test_what_failed_and_why(tmp_path: Path) -> None:
-    text = page(ROWS, tmp_path, count=8).text
+    found = page(ROWS, tmp_path, count=8)
+    text, reasons = found.text, found.text.split("Distributions")[0]
     # Messages that differ in numbers only are one reason.
-    assert text.count("died after") == 1
-    assert "died after 2.5 s" in text
-    assert "2, 5" in text
-    assert "a = 0.2 to 0.5" in text
+    assert found.tags.count("section") == 1
+    assert "2 crasheddied after 2.5 sribbons 2, 5" in reasons
+    assert "died after 5.5 s" not in reasons
+    assert "a0.2 to 0.5" in reasons
+    assert "b2" in reasons
     assert "4verified" in text
     assert "2failed" in text
     assert "2missing: go on by --resume" in text
     assert "crashed 2" in text
-    assert "every ribbon is solved" in page([good(1), good(2)], tmp_path).text
+    assert "largest error; median 1e-03" in text  # of those that are verified
+    assert "all verified" in page([good(1), good(2)], tmp_path).text
+    many = [bad(i, message=f"reason {'x' * i}") for i in range(1, 61)]
+    found = page(many, tmp_path)
+    assert (found.tags.count("section"), "10 more failed in 10 other ways" in found.text) == (50, 1)
+
+
+def test_bars_show_where_among_the_inputs(tmp_path: Path) -> None:
+    page(ROWS, tmp_path)  # 0.2 to 0.5 of 0.1 to 0.6
+    assert "left:20.0%;right:20.0%" in (tmp_path / "report.html").read_text(encoding="utf-8")
+    rows = [good(1, a=1.0), bad(2, a=10.0), good(3, a=100.0)]  # by powers
+    page(rows, tmp_path, ("a",))
+    assert "left:50.0%;right:50.0%" in (tmp_path / "report.html").read_text(encoding="utf-8")
+
+
+def test_errors_of_what_failed_are_not_those_of_answers(tmp_path: Path) -> None:
+    missed = bad(2, status="tolerance_missed", error=0.5, energy=3.0)
+    assert "largest error; median 1e-01" in page([good(1), missed], tmp_path).text
 
 
 def test_hostile_texts_do_no_harm(tmp_path: Path) -> None:
@@ -121,6 +142,9 @@ def test_hostile_texts_do_no_harm(tmp_path: Path) -> None:
     assert found.tags.count("b") == 5  # the numbers at the head
     assert HOSTILE in found.text
     assert found.data["rows"][1][found.data["names"].index("word")] == HOSTILE
+    text = (tmp_path / "report.html").read_text(encoding="utf-8")
+    (data,) = re.findall(r'id="data">(.*?)</script>', text, re.DOTALL)
+    assert not set("<>&\u2028\u2029") & set(data)
 
 
 @pytest.mark.parametrize(
@@ -145,11 +169,75 @@ def test_any_rows(rows: list[Row], tmp_path: Path) -> None:
     assert len(save_batch_figures(rows, ("a", "b"), tmp_path, pairs)) == 2
 
 
+def test_texts_that_are_no_text_and_numbers_that_are_no_numbers(tmp_path: Path) -> None:
+    rows = [bad(1, message="half \ud800"), good(2, a=10**400, energy=float("inf"))]
+    found = page(rows, tmp_path)
+    assert "half" in found.text
+    assert [row[found.data["names"].index("energy")] for row in found.data["rows"]] == [None, None]
+
+
+def test_what_is_beside_the_report_is_a_link(tmp_path: Path) -> None:
+    assert "solutions/2/" not in page_text(tmp_path)
+    (tmp_path / "solutions" / "2").mkdir(parents=True)
+    assert '<a href="solutions/2/">2</a>' in page_text(tmp_path)
+    assert "solutions/3/" not in page_text(tmp_path)
+    assert '<a href="table.csv">' not in page_text(tmp_path)
+    (tmp_path / "table.csv").touch()
+    assert '<a href="table.csv">' in page_text(tmp_path)
+
+
+def page_text(tmp_path: Path) -> str:
+    path = write_report(ROWS, ("a", "b"), tmp_path / "report.html", name="n", count=6)
+    return path.read_text(encoding="utf-8")
+
+
+def test_a_page_needs_nothing_from_elsewhere_and_has_the_colours_of_figures(tmp_path: Path) -> None:
+    text = page_text(tmp_path)
+    assert "default-src 'none'" in text
+    assert "http:" not in text and "https:" not in text
+    assert not re.search(r"@(title|head|failures|distributions|table|data|script)@", text)
+    for name, colour in {"good": BENDING, "bad": TWIST, "ink": INK, "faint": FAINT}.items():
+        assert f"--{name}: {colour};" in text
+    assert report.GOOD == BENDING
+    assert report.BAD[0] == TWIST
+
+
+def test_histograms_count_every_ribbon_once() -> None:
+    rows = [good(i, a=0.1 * (i % 5), energy=1.0 * i) for i in range(1, 51)]
+    rows += [bad(i, a=0.4) for i in range(51, 54)]
+    steps = histogram_of(rows, "a")  # values recur: a bar around each
+    assert steps is not None
+    assert [(bar.verified, bar.failed) for bar in steps.bars] == [(10, 0)] * 4 + [(10, 3)]
+    for bar, value in zip(steps.bars, (0, 0.1, 0.2, 0.3, 0.4), strict=True):
+        assert bar.left < value < bar.right
+    bins = histogram_of(rows, "energy")
+    assert bins is not None
+    assert (sum(bar.verified for bar in bins.bars), bins.ends) == (50, (1.0, 50.0))
+    powers = histogram_of([good(i, a=10.0**i) for i in range(1, 7)], "a")
+    assert powers is not None
+    assert powers.log
+    assert [powers.edges(bar)[0] < 1e6 for bar in powers.bars] == [True] * 6
+
+
+def test_words_have_bars_and_rounding_has_none() -> None:
+    rows = [good(1, a="left"), good(2, a={"type": "x"}), bad(3, a="left")]
+    found = histogram_of(rows, "a")
+    assert found is not None
+    assert found.words == ("left", "type: x")
+    assert [(bar.verified, bar.failed) for bar in found.bars] == [(1, 1), (1, 0)]
+    assert histogram_of([good(i, a=1.0 + 1e-15 * i) for i in range(1, 9)], "a") is None
+    planar = [good(i, n0x=1e-14 * i, n0y=5.0 * i) for i in range(1, 9)]
+    assert histogram_of(planar, "n0x") is None  # of a load in the plane
+    assert histogram_of(planar, "n0y") is not None
+
+
 def test_ten_thousand_rows(tmp_path: Path) -> None:
     rows = [good(i, error=1e-9) if i % 50 else bad(i) for i in range(1, 10_001)]
     found = page(rows, tmp_path)
     assert len(found.data["rows"]) == 10_000
-    assert found.tags.count("tr") == 1 + 1 + 1 + 200  # heads, one reason, rows
+    # Of the 200 that failed, 4 are among the first 200 rows.
+    assert found.tags.count("tr") == 1 + 200 + 196
+    assert "396 of 10000, the first 200 and those that failed" in found.text
 
 
 def test_it_loads_no_plotting_library(tmp_path: Path) -> None:
@@ -186,6 +274,13 @@ def test_scatter_has_every_row_with_both_numbers() -> None:
     assert (
         len(plot_scatter(ROWS, [("a", "energy")] * 7, ("a", "b")).axes) == 8
     )  # four panels, their colours
+    # Words have places too; the third panel is the outcome over both inputs.
+    words = [{**row, "law": "rod" if row["number"] % 2 else "strip"} for row in ROWS]
+    assert sum(points(plot_scatter(words, [("law", "energy")], ("law",)))) == 3 + 2
+    shaded = plot_scatter(words, [("a", "energy")], ("a", "law"))
+    legend = shaded.axes[0].get_legend()
+    assert legend is not None
+    assert [text.get_text() for text in legend.get_texts()] == ["rod", "strip"]
     axes = plot_scatter([*ROWS, bad(40)], [("a", "energy")]).axes[0]
     assert axes.get_xlim()[1] > 4  # where the last has failed
 
