@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from functools import lru_cache
 from typing import Any
 
@@ -11,7 +12,8 @@ import numpy as np
 from ribbonopt.arrays import Array
 
 SHARED = (1, 2)  # inputs of a stage function that all stages have in common
-LARGEST = 64  # stages of a block
+SIZES = (1, 2, *range(4, 65, 4))  # stages of blocks
+LARGEST = SIZES[-1]
 
 
 class Buffered:
@@ -24,7 +26,7 @@ class Buffered:
         self.arguments = [np.zeros(function.numel_in(i)) for i in range(function.n_in())]
         self.results = [np.zeros(function.numel_out(i)) for i in range(function.n_out())]
         # The buffer must outlive every evaluation.
-        self._buffer, self._evaluate = function.buffer()
+        self._buffer, self.evaluate = function.buffer()
         # The stubs describe the C++ signature, pointer and size, not the Python one.
         set_argument: Any = self._buffer.set_arg
         set_result: Any = self._buffer.set_res
@@ -37,7 +39,7 @@ class Buffered:
         """Evaluate: one flat array for each output."""
         for array, value in zip(self.arguments, values, strict=True):
             array[:] = value.ravel()
-        self._evaluate()
+        self.evaluate()
         return [result.copy() for result in self.results]
 
 
@@ -49,8 +51,8 @@ def shared_map(function: ca.Function, count: int) -> ca.Function:
 class Mapped:
     """A stage function over any number of stages that share constants and parameters.
 
-    Called in blocks of 1, 2, 4 ... stages, straight on the arrays given: what is built serves every
-    mesh, so that neither memory nor time to build grows with the number of meshes.
+    Called in blocks of few sizes, the last one filled up with stages of no meaning: what is built
+    serves every mesh, so that neither memory nor time to build grows with the number of meshes.
     """
 
     def __init__(self, function: ca.Function) -> None:
@@ -59,49 +61,37 @@ class Mapped:
         self._outputs = [function.numel_out(i) for i in range(function.n_out())]
         if self._outputs != [function.nnz_out(i) for i in range(function.n_out())]:
             raise ValueError(f"{function.name()} is expected to have dense outputs")
-        self._blocks: dict[int, tuple[Any, Any]] = {}
+        self._varying = [i for i in range(function.n_in()) if i not in SHARED]
+        self._blocks: dict[int, Buffered] = {}
 
     def __call__(self, *values: Array) -> list[Array]:
         """Evaluate at all stages: one flat array for each output."""
-        arguments = [np.ascontiguousarray(value, dtype=float).ravel() for value in values]
+        arguments = [value.ravel() for value in values]
         count = len(arguments[0]) // self._inputs[0]
         for i, (argument, size) in enumerate(zip(arguments, self._inputs, strict=True)):
             wanted = size if i in SHARED else count * size
-            if len(argument) != wanted:  # CasADi would read beyond it
+            if len(argument) != wanted:
                 raise ValueError(f"argument {i} is expected to have {wanted} numbers")
         results = [np.empty(count * size) for size in self._outputs]
-        varying = [i for i in range(len(arguments)) if i not in SHARED]
-        for at, block in _plan(count):
-            buffer, evaluate = self._block(block)
+        for at in range(0, count, LARGEST):
+            end = min(at + LARGEST, count)
+            block = self._block(end - at)
             for i in SHARED:
-                buffer.set_arg(i, arguments[i].data)
-            for i in varying:
+                block.arguments[i][:] = arguments[i]
+            for i in self._varying:
                 size = self._inputs[i]
-                buffer.set_arg(i, arguments[i].data[at * size : (at + block) * size])
-            for i, size in enumerate(self._outputs):
-                buffer.set_res(i, results[i].data[at * size : (at + block) * size])
-            evaluate()
+                block.arguments[i][: (end - at) * size] = arguments[i][at * size : end * size]
+            block.evaluate()
+            for result, found, size in zip(results, block.results, self._outputs, strict=True):
+                result[at * size : end * size] = found[: (end - at) * size]
         return results
 
-    def _block(self, count: int) -> tuple[Any, Any]:
-        """Buffer and evaluation of a block of stages, built once."""
-        if count not in self._blocks:
-            self._blocks[count] = shared_map(self._function, count).buffer()
-        return self._blocks[count]
-
-
-@lru_cache(maxsize=1024)
-def _plan(count: int) -> tuple[tuple[int, int], ...]:
-    """First stage and size of every block; the last may do some stages once more."""
-    whole, rest = divmod(count, LARGEST)
-    plan = [(i * LARGEST, LARGEST) for i in range(whole)]
-    if rest:
-        block = 1 << (rest.bit_length() - 1)
-        plan.append((count - rest, block))
-        if left := rest - block:
-            block = 1 << (left - 1).bit_length()
-            plan.append((count - block, block))
-    return tuple(plan)
+    def _block(self, count: int) -> Buffered:
+        """Return the smallest block that holds a number of stages, built once."""
+        size = SIZES[bisect_left(SIZES, count)]
+        if size not in self._blocks:
+            self._blocks[size] = Buffered(shared_map(self._function, size))
+        return self._blocks[size]
 
 
 @lru_cache(maxsize=64)
