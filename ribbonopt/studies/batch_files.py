@@ -177,13 +177,13 @@ def _locked(path: Path) -> IO[bytes]:
         return file
     try:
         fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except BlockingIOError:
+    except OSError as error:
+        if not isinstance(error, BlockingIOError):
+            return file  # on a file system without locks
         file.close()
         raise OutputError(
             f"{path.parent}: is being written by another batch; wait for its end, or stop it"
         ) from None
-    except OSError:  # a file system without locks
-        pass
     return file
 
 

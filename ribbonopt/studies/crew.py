@@ -28,7 +28,7 @@ class Crew:
         """Begin without a process."""
         self.save, self.folder, self.time_limit = save, folder, time_limit
         self._process: subprocess.Popen[str] | None = None
-        self._lock, self._ended = threading.Lock(), False
+        self._lock, self._ended, self._code = threading.Lock(), False, 0
         self._answers: queue.Queue[str] = queue.Queue()
 
     def rows(self, chunk: Chunk, known: Mapping[int, str]) -> Iterator[Row]:
@@ -60,7 +60,7 @@ class Crew:
             culprit = next(ribbon for ribbon in chunk.ribbons if ribbon.number == at)
             skip.append(at)
             if at not in done:
-                yield lost_row(culprit, lost, _said(lost, self.time_limit))
+                yield lost_row(culprit, lost, self._said(lost))
             if all(r.number in done or r.number in skip for r in chunk.ribbons):
                 return
 
@@ -75,11 +75,18 @@ class Crew:
         process, self._process = self._process, None
         if process is not None:
             process.kill()
-            process.wait()
+            self._code = process.wait()
             for stream in (process.stdin, process.stdout):
                 if stream is not None:
                     with suppress(OSError):  # what it was told and never read
                         stream.close()
+
+    def _said(self, lost: str) -> str:
+        if lost == "timed_out":
+            limit = f"{self.time_limit:g} s"
+            return f"took more than {limit}: raise time_limit, or start from an easier ribbon"
+        how = f"signal {-self._code}" if self._code < 0 else f"exit status {self._code}"
+        return f"its process died ({how}): run it alone by ribbonopt solve to see why"
 
     def _send(self, chunk: Chunk, skip: list[int], known: set[int]) -> None:
         text = json.dumps(message(chunk, skip, sorted(known), self.save, self.folder))
@@ -157,9 +164,3 @@ def _read(process: subprocess.Popen[str], answers: queue.Queue[str]) -> None:
         for line in process.stdout:
             answers.put(line)
     answers.put("")
-
-
-def _said(lost: str, limit: float) -> str:
-    if lost == "timed_out":
-        return f"took more than {limit:g} s: raise time_limit, or start from an easier ribbon"
-    return "its process died: run it alone by ribbonopt solve to see why"

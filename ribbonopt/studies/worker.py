@@ -19,8 +19,6 @@ from typing import Any
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
-import numpy as np
-
 from ribbonopt.errors import ModelError, RibbonoptError
 from ribbonopt.pipeline import Prepared, prepare
 from ribbonopt.pipeline import solve as solve_once
@@ -77,9 +75,12 @@ class Worker:
                 neighbour, found, start = self._one(scene, before, f"ribbon {number}")
             row |= _outcome(found, start)
             row |= _recorded(found, row)
-        except (RibbonoptError, np.linalg.LinAlgError) as error:
+        except RibbonoptError as error:
             status = getattr(error, "status", "bad_input")
             row |= {"status": status, "verified": False, "message": str(error)}
+        except Exception as error:  # whatever it is, the other ribbons go on
+            message = f"{type(error).__name__}: {error}"
+            row |= {"status": "error", "verified": False, "message": message}
         row["seconds"] = time.perf_counter() - started
         return {name: _finite(value) for name, value in row.items()}, found, neighbour
 

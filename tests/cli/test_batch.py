@@ -110,10 +110,6 @@ def test_bad_studies_are_refused(run: Run, study: Path, tmp_path: Path, case: st
 
 
 def test_other_bad_input_is_refused(run: Run, study: Path, tmp_path: Path) -> None:
-    status, _, err = run(
-        "batch", study, "--out", tmp_path / "a", "--scheduler", "tcp://127.0.0.1:1"
-    )
-    assert status == 2 and "cannot be reached" in err
     study.write_text(STUDY.replace("count: 30", "count: 2"))
     assert run("batch", study, "--out", tmp_path / "b", "--quiet").status == 0
     study.write_text(STUDY.replace("count: 30", "count: 3"))

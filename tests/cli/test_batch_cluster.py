@@ -101,3 +101,13 @@ def test_workers_without_ribbonopt_are_refused(run: Run, study: Path, tmp_path: 
     assert found.status == 2
     assert "its workers cannot run ribbonopt" in found.err
     assert not (tmp_path / "out").exists()
+
+
+def test_a_scheduler_that_is_not_there_is_refused(run: Run, study: Path, tmp_path: Path) -> None:
+    for address, said in (("tcp://127.0.0.1:1", "cannot be reached"), ("nonsense", "")):
+        found = run("batch", study, "--scheduler", address, "--out", tmp_path / "out")
+        assert found.status == 2
+        assert f"--scheduler {address}" in found.err
+        assert said in found.err
+        assert found.err.count("\n") == 1
+        assert not (tmp_path / "out").exists()

@@ -17,12 +17,11 @@ import pytest
 from batches import COMMAND, STUDY, lost, on_purpose, without_times, written
 
 from ribbonopt import results
-from ribbonopt.studies import batch_files
+from ribbonopt.studies import batch_files, worker
 from ribbonopt.studies.batch import run_batch
 from ribbonopt.studies.chunks import chunks_of
 from ribbonopt.studies.crew import message
 from ribbonopt.studies.sweep import load_study
-from ribbonopt.studies.worker import Worker
 
 Run = Callable[..., Any]
 
@@ -44,7 +43,7 @@ def until(true: Callable[[], bool], process: subprocess.Popen[Any] | None = None
 def test_a_worker_that_dies_takes_one_ribbon_with_it(study: Path) -> None:
     rows = lost(study, "crash", "--jobs", "2")
     assert [row["status"] for row in rows] == [*["converged"] * 3, "crashed", *["converged"] * 2]
-    assert "its process died" in rows[3]["message"]
+    assert "its process died (exit status 9)" in rows[3]["message"]
     assert rows[3]["name"] == "crash"
 
 
@@ -70,15 +69,15 @@ def test_workers_end_with_a_batch_that_is_killed(study: Path) -> None:
     until(lambda: hanging.exists() and bool(hanging.read_text()), process)
     process.kill()
     process.wait()
-    worker = int(hanging.read_text())
+    orphan = int(hanging.read_text())
 
     def gone() -> bool:
         try:
-            os.kill(worker, 0)
+            os.kill(orphan, 0)
         except ProcessLookupError:
             return True
         # Where nobody collects the ended, they stay as zombies.
-        status = Path(f"/proc/{worker}/status")
+        status = Path(f"/proc/{orphan}/status")
         return status.exists() and "State:\tZ" in status.read_text()
 
     until(gone)
@@ -216,9 +215,34 @@ def test_full_solutions_that_find_no_room_are_told(
     study.write_text(STUDY.replace("count: 30", "count: 2"))
     (chunk, *_) = chunks_of(load_study([study]))
     asked = message(chunk, [], (), "all", str(tmp_path))
-    rows = [answer["row"] for answer in Worker().answers(asked) if "row" in answer]
+    rows = [answer["row"] for answer in worker.Worker().answers(asked) if "row" in answer]
     assert rows
     for row in rows:
         assert row["verified"]
         assert "full solution not kept" in row["message"]
         assert "No space left on device" in row["message"]
+
+
+def test_errors_of_any_kind_spoil_their_own_row(
+    study: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    whole = worker.loads_scene
+
+    def loads_scene(text: str, source: str, overrides: list[str]) -> Any:
+        if any("0.05" in override for override in overrides):
+            raise ZeroDivisionError("on purpose")
+        return whole(text, source, overrides)
+
+    monkeypatch.setattr(worker, "loads_scene", loads_scene)
+    values = "{law.epsilon: [0.06, 0.05, 0.04]}"
+    study.write_text(f"scene: scene.yaml\nsweep: {{grid: {values}}}\n")
+    hand = worker.Worker()
+    rows = [
+        answer["row"]
+        for chunk in chunks_of(load_study([study]))
+        for answer in hand.answers(message(chunk, [], (), "none", ""))
+        if "row" in answer
+    ]
+    rows.sort(key=lambda row: int(row["number"]))
+    assert [row["status"] for row in rows] == ["converged", "error", "converged"]
+    assert rows[1]["message"] == "ZeroDivisionError: on purpose"
