@@ -9,12 +9,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ribbonopt.errors import OutputError
-
 from .branch import COLOURS
 from .columns import Rows, is_logarithmic, is_number, is_numeric, numbers, said, varied, words
 from .histogram import histogram_of
-from .style import BENDING, FAINT, INK, TWIST, blank, tidy
+from .style import BENDING, FAINT, INK, TWIST, blank, save_all, tidy
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -53,15 +51,7 @@ def save_batch_figures(
         "outcomes.png": plot_outcomes(rows),
         "scatter.png": plot_scatter(rows, chosen, inputs),
     }
-    paths = []
-    for name, figure in figures.items():
-        path = Path(folder) / name
-        try:
-            figure.savefig(path)
-        except OSError as error:
-            raise OutputError(f"{path}: cannot be written ({error.strerror})") from error
-        paths.append(path)
-    return paths
+    return save_all(figures, Path(folder))
 
 
 def usual_pairs(rows: Rows, inputs: Sequence[str]) -> list[Pair]:

@@ -16,14 +16,13 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ribbonopt.errors import OutputError
 from ribbonopt.solution import Solution
 
 from .camera import place_camera
 from .facets import SEAM, draw_surface
 from .pieces import Array
 from .ribbon import paint, scale_bar
-from .style import BENDING, FAINT, INK, TWIST, blank, tidy
+from .style import BENDING, FAINT, INK, TWIST, blank, save_all, tidy
 from .subject import subject_of
 from .surface import sweep
 
@@ -105,15 +104,10 @@ def save_branch_figures(
     log: Log = False,
 ) -> list[Path]:
     """Write branch.png, a panel for each of the first four pairs (x, y), and ribbons.png if any."""
-    figures = {Path(folder) / "branch.png": _plot(rows, pairs[:4], log)}
+    figures = {"branch.png": _plot(rows, pairs[:4], log)}
     if ribbons:
-        figures[Path(folder) / "ribbons.png"] = plot_strip(ribbons, captions)
-    for path, figure in figures.items():
-        try:
-            figure.savefig(path)
-        except OSError as error:
-            raise OutputError(f"{path}: cannot be written ({error.strerror})") from error
-    return list(figures)
+        figures["ribbons.png"] = plot_strip(ribbons, captions)
+    return save_all(figures, Path(folder))
 
 
 def _plot(rows: Rows, pairs: Sequence[Pair], log: Log, title: str = "") -> Figure:

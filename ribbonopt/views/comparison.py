@@ -10,9 +10,7 @@ from itertools import cycle
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ribbonopt.errors import OutputError
-
-from .style import FAINT, INK, blank, tidy
+from .style import FAINT, INK, blank, save_all, tidy
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -55,11 +53,8 @@ def _benchmark(study: Mapping[str, Any]) -> Figure:
 
 def save_figure(study: Mapping[str, Any], path: str | Path) -> None:
     """Write the figure of a study; OutputError if it cannot be written."""
-    figure = plot_study(study)
-    try:
-        figure.savefig(path)
-    except OSError as error:
-        raise OutputError(f"{path}: cannot be written ({error.strerror})") from error
+    path = Path(path)
+    save_all({path.name: plot_study(study)}, path.parent)
 
 
 def _work_precision(axes: Axes, rows: Sequence[PlainRow], peers: Sequence[PlainRow]) -> None:

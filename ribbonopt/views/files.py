@@ -11,6 +11,7 @@ from ribbonopt.solution import Solution
 from .plane import draw_plane
 from .ribbon import draw_ribbon
 from .strains import draw_strains
+from .style import save_all
 from .subject import Subject, subject_of
 
 
@@ -62,12 +63,4 @@ def _save(subject: Subject, folder: Path, half_width: float | None) -> list[Path
         "plane.png": draw_plane(subject),
         "ribbon.png": draw_ribbon(subject, half_width),
     }
-    paths = []
-    for file, figure in figures.items():
-        path = folder / file
-        try:
-            figure.savefig(path)
-        except OSError as error:
-            raise OutputError(f"{path}: cannot be written ({error.strerror})") from error
-        paths.append(path)
-    return paths
+    return save_all(figures, folder)

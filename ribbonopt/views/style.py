@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from pathlib import Path
 from typing import TYPE_CHECKING
 
+from ribbonopt.errors import OutputError
 from ribbonopt.scene.units import Units
 
 if TYPE_CHECKING:
@@ -32,6 +35,17 @@ def blank(width: float, height: float) -> Figure:
     figure = Figure(figsize=(width, height), dpi=DPI, facecolor="white", layout=layout)
     FigureCanvasAgg(figure)
     return figure
+
+
+def save_all(figures: Mapping[str, Figure], folder: Path) -> list[Path]:
+    """Write figures by the names of their files; OutputError if one cannot be written."""
+    paths = [folder / name for name in figures]
+    for path, figure in zip(paths, figures.values(), strict=True):
+        try:
+            figure.savefig(path)
+        except OSError as error:
+            raise OutputError(f"{path}: cannot be written ({error.strerror})") from error
+    return paths
 
 
 def head(axes: Axes, name: str, units: Units, pad: float = 6) -> None:

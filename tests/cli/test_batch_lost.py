@@ -15,6 +15,7 @@ from typing import Any
 
 import pytest
 from batches import COMMAND, STUDY, lost, on_purpose, without_times, written
+from disks import Full
 
 from ribbonopt import results
 from ribbonopt.studies import batch_files, worker
@@ -154,30 +155,6 @@ def test_interrupted_rows_are_kept(study: Path, tmp_path: Path) -> None:
     count = rows_there(out)
     assert f"interrupted; {count} of 300 rows kept in {out}, --resume goes on" in err
     assert len((out / "table.csv").read_text().splitlines()) == count + 1
-
-
-class Full:
-    """A file on a disk that is full after so many lines."""
-
-    def __init__(self, file: Any, lines: int) -> None:
-        self.file, self.left = file, lines
-
-    def __getattr__(self, name: str) -> Any:
-        return getattr(self.file, name)
-
-    def __enter__(self) -> "Full":
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.file.close()
-
-    def write(self, text: str) -> int:
-        self.left -= 1
-        if self.left < 0:
-            self.file.write(text[: len(text) // 2])
-            self.file.flush()
-            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
-        return int(self.file.write(text))
 
 
 @pytest.mark.parametrize("room", [{"rows.jsonl": 7}, {"table.csv.new": 3}], ids=["rows", "table"])

@@ -1,7 +1,6 @@
 """`ribbonopt continue`: what it writes and says, goes on after any break, and refuses."""
 
 import csv
-import errno
 import json
 import math
 import os
@@ -17,6 +16,7 @@ from pathlib import Path
 from typing import Any, NamedTuple
 
 import pytest
+from disks import Full
 
 from ribbonopt.studies import branch_files
 
@@ -537,30 +537,6 @@ def test_killed_while_the_folder_is_opened(
 
 
 # a full disk
-
-
-class Full:
-    """A file on a disk that is full after so many lines."""
-
-    def __init__(self, file: Any, lines: int) -> None:
-        self.file, self.left = file, lines
-
-    def __getattr__(self, name: str) -> Any:
-        return getattr(self.file, name)
-
-    def __enter__(self) -> "Full":
-        return self
-
-    def __exit__(self, *_: object) -> None:
-        self.file.close()
-
-    def write(self, text: str) -> int:
-        self.left -= 1
-        if self.left < 0:
-            self.file.write(text[: len(text) // 2])
-            self.file.flush()
-            raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
-        return int(self.file.write(text))
 
 
 @pytest.mark.parametrize("table", [True, False], ids=["all files", "branch alone"])
