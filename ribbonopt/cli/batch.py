@@ -37,7 +37,7 @@ def batch(options: argparse.Namespace) -> int:
     jobs = None if options.jobs is None else count("--jobs", options.jobs)
     study = load_study(options.study, options.set)
     if study.count > HUGE and not options.yes:
-        raise SceneError(f"{study.name}: {study.count} ribbons; say --yes if that is meant")
+        raise SceneError(f"{study.name}: {study.count:,} ribbons; say --yes if that is meant")
     study.check()
     _known(pairs or [], study.columns)
     if options.scheduler:

@@ -83,14 +83,15 @@ def fault(path: Keys, message: str, *found: Any) -> InvalidSceneError:
     return InvalidSceneError([Problem(path, message, *(shown(value) for value in found))])
 
 
-def text_of(path: Path) -> str:
-    """Return the text of a file; SceneError if it cannot be read."""
+def text_of(path: Path, key: Keys = ()) -> str:
+    """Return the text of a file, that a key of the study names; SceneError if it cannot be read."""
     try:
         return path.read_text(encoding="utf-8-sig")
     except FileNotFoundError:
-        raise SceneError(f"{path}: no such file") from None
+        said = f"{path}: no such file"
     except (OSError, ValueError) as error:
-        raise SceneError(f"{path}: cannot be read: {error}") from None
+        said = f"{path}: cannot be read: {error}"
+    raise fault(key, said) if key else SceneError(said)
 
 
 def _product(parts: Sequence[Rows]) -> Rows:
@@ -146,7 +147,7 @@ def _csv(folder: Path, value: Any) -> Rows:
     if not isinstance(value, str):
         raise fault(("csv",), "expected the name of a CSV file", value)
     path = folder / value
-    lines = csv.reader(io.StringIO(text_of(path)))
+    lines = csv.reader(io.StringIO(text_of(path, ("csv",))))
     try:
         # Lines of a spreadsheet's end may hold nothing but separators.
         rows = [(lines.line_num, row) for row in lines if any(cell.strip() for cell in row)]

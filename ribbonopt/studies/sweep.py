@@ -135,7 +135,7 @@ def _study(
 def _source(file: Path, text: str, item: Any, places: Mapping[Keys, Place]) -> Source:
     if isinstance(item, str):
         path = file.parent / item
-        return Source(str(path), text_of(path))
+        return Source(str(path), text_of(path, ("scene",)))
     if not isinstance(item, dict):
         raise fault(("scene",), "expected the name of a scene file, or a scene", item)
     # The lines of the scene, where they stand in the study, so that messages name them.

@@ -94,7 +94,7 @@ BAD = {
     "no file": ("csv: none.csv", ("none.csv", "no such file")),
     "huge": (
         "random: {count: 200000, over: {law.epsilon: {uniform: [0, 1]}}}",
-        ("200000", "--yes"),
+        ("study: 200,000 ribbons", "--yes"),
     ),
 }
 

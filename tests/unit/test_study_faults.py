@@ -148,7 +148,7 @@ def test_numbers_of_draws(folder: Path, count: str) -> None:
 @pytest.mark.parametrize(
     ("cells", "place"),
     [
-        (None, "rows.csv: no such file"),
+        (None, "study.yaml, line 3, sweep.csv: rows.csv: no such file"),
         ("", "rows.csv: is empty"),
         (" \n,,\n", "rows.csv: is empty"),
         ("law.epsilon,tolerance\n", "study.yaml, line 3, sweep.csv: the sweep is empty"),
@@ -170,7 +170,8 @@ def test_bad_tables_are_refused(folder: Path, cells: str | None, place: str) -> 
 def test_what_is_no_yaml_is_refused(folder: Path) -> None:
     assert refusal("scene: scene.yaml\nsweep:\n\tgrid: 1\n").startswith("study.yaml, line 3: not")
     assert refusal("scene: a\nscene: b\n").startswith("study.yaml, line 1, scene: given again")
-    assert refusal(GRID + "scene: none.yaml\n") == "none.yaml: no such file"
+    where = "study.yaml, line 2, scene: "
+    assert refusal(GRID + "scene: none.yaml\n") == where + "none.yaml: no such file"
     assert refusal(GRID + "scene: scene.yaml\n", "law.epsilon").startswith("--set law.epsilon: exp")
     for path, words in (("none.yaml", "no such file"), ("*.yml", "no file matches")):
         with pytest.raises(SceneError, match=f"^{re.escape(path)}: {words}"):
