@@ -95,10 +95,10 @@ class Prepared:
         self._try_all(search, guess, fallback, quick)
         return self._told(search, time.perf_counter() - started)
 
-    def polish(self, guess: Guess) -> Solution:
-        """Solve the prepared scene from one guess that is thought to be near."""
+    def polish(self, guess: Guess, scene: Scene | None = None) -> Solution:
+        """Solve a scene (default: the prepared one) from one guess that is thought to be near."""
         started = time.perf_counter()
-        search = self.search(self.scene)
+        search = self.search(scene or self.scene)
         _ = search.run_smooth(guess) if isinstance(guess, Solution) else search.run(guess)
         return self._told(search, time.perf_counter() - started)
 

@@ -70,22 +70,24 @@ def _plain(ribbon: Ribbon) -> tuple[Group, Point]:
 
 
 def _order(points: Array) -> list[int]:
-    """Order points (k, d) so that each is the nearest of those left to the one before."""
+    """Order points (k, d) so that each is the nearest of those left to the one before.
+
+    In whatever order they are given, the result is the same.
+    """
     count = len(points)
-    if not points.size or count < 3:
+    if not points.size:
         return list(range(count))
     spans = np.ptp(points, axis=0)
     points = (points - points.min(axis=0)) / np.where(spans > 0, spans, 1.0)
     sorted_ = np.lexsort(points.T[::-1])
     if count > MANY:
         return [int(i) for i in sorted_]
-    left = np.ones(count, dtype=bool)
-    order = [int(sorted_[0])]
-    left[order[0]] = False
-    for _ in range(count - 1):
-        gaps = np.where(left, np.abs(points - points[order[-1]]).sum(axis=1), np.inf)
-        order.append(int(gaps.argmin()))
-        left[order[-1]] = False
+    points, left = points[sorted_], np.ones(count, dtype=bool)
+    order, at = [], 0
+    for _ in range(count):
+        left[at] = False
+        order.append(int(sorted_[at]))
+        at = int(np.where(left, np.abs(points - points[at]).sum(axis=1), np.inf).argmin())
     return order
 
 

@@ -63,11 +63,12 @@ class Sweep:
 
     @property
     def recorded(self) -> tuple[str, ...]:
-        """Names of what the scene records; none of a bad scene."""
+        """Names of what rows hold for this scene alone; none of a bad scene."""
         try:
-            return tuple(self._scene(self.common | self.inputs[0]).record)
+            scene = self._scene(self.common | self.inputs[0])
         except SceneError:
             return ()
+        return (*scene.record, *(("equilibria",) if scene.starts > 1 else ()))
 
     def _fault(self, inputs: Inputs) -> str:
         try:

@@ -21,13 +21,12 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 from ribbonopt.errors import ModelError, RibbonoptError
 from ribbonopt.pipeline import Prepared, prepare
-from ribbonopt.pipeline import solve as solve_once
 from ribbonopt.problem import structure_of
 from ribbonopt.scene import Scene, loads_scene
 from ribbonopt.scene.units import in_special_units
 from ribbonopt.solution import Solution
 
-from .neighbour import Neighbour
+from .family import Family, solve_beside
 from .recorded import error_of, numbers_of, sampled
 
 Row = dict[str, Any]
@@ -43,15 +42,13 @@ class Worker:
 
     def answers(self, chunk: dict[str, Any]) -> Iterator[dict[str, Any]]:
         """Yield for every ribbon that it begins, and its row; those of `skip` are passed over."""
-        before: Neighbour | None = None
-        number = 0
+        before: Family | None = None
         for ribbon in chunk["ribbons"]:
             if ribbon["number"] in chunk["skip"]:
                 continue
             yield {"at": ribbon["number"]}
-            row, found, neighbour = self._solved(ribbon, before, number)
-            if neighbour is not None:
-                before, number = neighbour, ribbon["number"]
+            row, found, family = self._solved(ribbon, before)
+            before = family or before
             if ribbon["number"] not in chunk["known"]:
                 try:
                     _save(chunk, ribbon, row, found)
@@ -60,19 +57,18 @@ class Worker:
                 yield {"row": row}
 
     def _solved(
-        self, ribbon: dict[str, Any], before: Neighbour | None, number: int
-    ) -> tuple[Row, Solution | None, Neighbour | None]:
+        self, ribbon: dict[str, Any], before: Family | None
+    ) -> tuple[Row, Solution | None, Family | None]:
         """Return row and solution of a ribbon, and what the next one may start from."""
         started = time.perf_counter()
         row: Row = {"number": ribbon["number"], "scene": ribbon["source"], **ribbon["inputs"]}
-        found, neighbour = None, None
+        found, family = None, None
         try:
             scene = loads_scene(ribbon["text"], ribbon["source"], ribbon["set"])
             row["scene"] = scene.name
-            if scene.starts > 1:
-                found, start = solve_once(scene), "own"
-            else:
-                neighbour, found, start = self._one(scene, before, f"ribbon {number}")
+            found, start, family = solve_beside(
+                self._prepared(scene), scene, ribbon["number"], before
+            )
             row |= _outcome(found, start)
             row |= _recorded(found, row)
         except RibbonoptError as error:
@@ -82,23 +78,7 @@ class Worker:
             message = f"{type(error).__name__}: {error}"
             row |= {"status": "error", "verified": False, "message": message}
         row["seconds"] = time.perf_counter() - started
-        return {name: _finite(value) for name, value in row.items()}, found, neighbour
-
-    def _one(
-        self, scene: Scene, before: Neighbour | None, name: str
-    ) -> tuple[Neighbour | None, Solution, str]:
-        """Solve from the ribbon before, if that is near, else from nothing."""
-        prepared = self._prepared(scene)
-        if before is not None and before.prepared is not prepared:
-            before = None
-        beside = before and before.solve(scene)
-        if beside is not None:
-            return beside, beside.solution, name
-        found, start = prepared.solve(scene), "own"
-        if before is not None and not found.verified:
-            other = before.solve_at_any_cost(scene)
-            found, start = (other, name) if other.verified else (found, start)
-        return (Neighbour(prepared, found) if found.verified else None), found, start
+        return {name: _finite(value) for name, value in row.items()}, found, family
 
     def _prepared(self, scene: Scene) -> Prepared:
         """Return the structure of a scene, built once."""
@@ -121,6 +101,8 @@ def _outcome(found: Solution, start: str) -> Row:
     }
     if found.status.converged:
         row |= numbers_of(found) | {"error": error_of(found)}
+        if found.scene.starts > 1:
+            row["equilibria"] = 1 + len(found.others)
     steps = [step["step"] for step in found.path]
     return row | {"start": start, "iterations": found.iterations, "path": "; ".join(steps)}
 

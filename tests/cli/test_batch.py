@@ -29,6 +29,19 @@ def test_rows_do_not_depend_on_the_number_of_workers(study: Path) -> None:
     assert sum(row["start"] != "own" for row in one) == 25  # five chunks of six
 
 
+def test_rows_do_not_depend_on_the_order_in_which_they_are_listed(study: Path) -> None:
+    epsilons = [0.1 * 0.8**i for i in (4, 0, 7, 2, 5, 1, 3, 6)]
+    found = []
+    for listed in (epsilons, sorted(epsilons)):
+        sweep = {"list": [{"law.epsilon": epsilon} for epsilon in listed]}
+        study.write_text(json.dumps({"scene": "scene.yaml", "sweep": sweep}))
+        rows = without_times(list(run_batch(load_study([study]), jobs=1)))
+        by_epsilon = sorted(rows, key=lambda row: row["law.epsilon"])
+        numbers = ("number", "start")  # the latter names the number of another
+        found.append([{k: v for k, v in r.items() if k not in numbers} for r in by_epsilon])
+    assert found[0] == found[1]
+
+
 def test_rows_are_those_of_single_solves(study: Path) -> None:
     rows = without_times(list(run_batch(load_study([study]), jobs=1)))
     for row in (rows[0], rows[17], rows[-1]):
