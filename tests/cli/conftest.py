@@ -2,11 +2,13 @@
 
 import gc
 from collections.abc import Callable, Iterator
+from functools import cache
 from pathlib import Path
 from typing import NamedTuple
 
 import pytest
 from batches import SCENE, STUDY
+from branches import LONG, Whole, finished, points, written
 
 from ribbonopt.cli import main
 
@@ -44,3 +46,23 @@ def study(tmp_path: Path) -> Path:
     (tmp_path / "scene.yaml").write_text(SCENE)
     (tmp_path / "study.yaml").write_text(STUDY)
     return tmp_path / "study.yaml"
+
+
+@pytest.fixture(scope="session")
+def whole(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str], Whole]:
+    """Return the cached maker of uninterrupted branches, each by a process of its own."""
+
+    @cache
+    def made(name: str) -> Whole:
+        text, expected, meshes = LONG[name]
+        folder = tmp_path_factory.mktemp("whole")
+        scene = written(folder, text)
+        status, out, err = finished(scene, "--out", folder / "branch", "--quiet")
+        assert (status, out) == (expected, b"")
+        assert (err == b"") == (expected == 0)
+        result = Whole(scene, folder / "branch")
+        rows = points(result.folder)
+        assert len({row["intervals"] for row in rows}) >= meshes
+        return result
+
+    return made
