@@ -20,6 +20,7 @@ from ribbonopt.solution import Solution
 
 from .neighbour import Neighbour
 
+MOST = 2  # times as many equilibria as starts are followed, the lowest
 NEAR = 1.0  # times the least energy, that others may be above it to be followed at any cost
 
 
@@ -89,7 +90,7 @@ def _least(
         return prepared.solve(scene), "own", None
     solutions = [member.solution for member in known]
     kinds = distinct(solutions)
-    firsts = [image[0] for kind in kinds for image in kind]
+    firsts = [image[0] for kind in kinds for image in kind][: MOST * scene.starts]
     family = Family(tuple(known[i] for i in firsts), number, turn)
     start = f"ribbon {before.number}" if before and firsts[0] < count else "own"
     return least(solutions, kinds), start, family
