@@ -9,7 +9,6 @@ number of workers.
 
 from __future__ import annotations
 
-import os
 import queue
 import threading
 from collections.abc import Generator, Mapping
@@ -17,6 +16,7 @@ from typing import Any
 
 from .chunks import Chunk, chunks_of
 from .crew import Crew
+from .machine import cores
 from .study import Study
 
 Row = dict[str, Any]
@@ -37,7 +37,7 @@ def run_batch(
     study
         What to solve.
     jobs
-        Worker processes; by default one for each core.
+        Worker processes; by default one for each core that this process may use.
     scheduler
         Address of a Dask scheduler, whose workers are used instead.
     known
@@ -61,7 +61,7 @@ def run_batch(
 
         yield from rows_of_cluster(study, chunks, scheduler, done, folder)
         return
-    count = min(jobs or os.cpu_count() or 1, len(chunks))
+    count = min(jobs or cores(), len(chunks))
     yield from _on_this_machine(study, chunks, count, done, folder)
 
 

@@ -11,6 +11,13 @@ def machine() -> dict[str, Any]:
     """Processor, number of processors and system."""
     return {
         "processor": platform.processor() or platform.machine(),
-        "cpus": os.cpu_count(),
+        "cpus": cores(),
         "system": platform.system(),
     }
+
+
+def cores() -> int:
+    """Processors that this process may use: queues and `taskset` give away less than there are."""
+    if hasattr(os, "sched_getaffinity"):
+        return len(os.sched_getaffinity(0))
+    return os.cpu_count() or 1  # macOS and Windows do not tell

@@ -2,7 +2,10 @@
 
 import io
 import json
+import os
 import shutil
+import subprocess
+import sys
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -27,6 +30,16 @@ def test_rows_do_not_depend_on_the_number_of_workers(study: Path) -> None:
     assert [row["number"] for row in one] == list(range(1, 31))
     assert all(row["verified"] and row["error"] <= 1e-7 for row in one)
     assert sum(row["start"] != "own" for row in one) == 25  # five chunks of six
+
+
+@pytest.mark.skipif(not hasattr(os, "sched_setaffinity"), reason="the system pins no processes")
+def test_only_cores_that_were_given_count() -> None:
+    one = (
+        "import os; from ribbonopt.studies.machine import cores; "
+        "os.sched_setaffinity(0, list(os.sched_getaffinity(0))[:1]); print(cores())"
+    )
+    done = subprocess.run([sys.executable, "-c", one], capture_output=True, text=True, check=True)
+    assert done.stdout == "1\n"
 
 
 def test_rows_do_not_depend_on_the_order_in_which_they_are_listed(study: Path) -> None:
