@@ -74,12 +74,13 @@ class Prepared:
         *,
         fallback: bool = True,
         quick: bool = False,
+        finer: bool = False,
     ) -> Solution:
         """Solve a scene of this structure (default: the prepared one).
 
         `guess` is where to start, instead of the scene's own guess; `fallback` whether to go on
         from the automatic start where that leads nowhere; `quick` whether to leave it at Newton's
-        method from the guess, where that can be.
+        method from the guess, where that can be; `finer` whether its mesh was made finer already.
 
         Raises
         ------
@@ -93,7 +94,12 @@ class Prepared:
         refuse_unreachable(scene)
         search = self.search(scene)
         self._try_all(search, guess, fallback, quick)
-        return self._told(search, time.perf_counter() - started)
+        found = self._told(search, time.perf_counter() - started)
+        if found.status is Status.TOLERANCE_MISSED and guess is None and not finer:
+            from ribbonopt.refinement import on_finer_mesh  # after a failure only
+
+            return on_finer_mesh(found, lambda scene: prepare(scene).solve(finer=True))
+        return found
 
     def polish(self, guess: Guess, scene: Scene | None = None) -> Solution:
         """Solve a scene (default: the prepared one) from one guess that is thought to be near."""
@@ -181,17 +187,9 @@ class Prepared:
         best = self._finished(search)
         if best is None:
             raise ConvergenceError(Status.NO_START.value, Status.NO_START.name.lower())
-        evaluate, linear = search.seconds
-        timings = {
-            "build": self.seconds,
-            "evaluate": evaluate,
-            "linear": linear,
-            "rest": seconds - evaluate - linear,
-            "total": seconds + self.seconds,
-        }
         return replace(
             best,
-            timings=timings,
+            timings=search.timings(self.seconds, seconds),
             iterations=search.iterations,
             skipped=skipped(search.scene, self.problem, search.solvers, best.sheets),
         )

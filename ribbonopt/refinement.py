@@ -32,6 +32,7 @@ from ribbonopt.transcription import Mesh
 if TYPE_CHECKING:
     from ribbonopt.attempts import Attempts
     from ribbonopt.problem import Ribbon
+    from ribbonopt.scene import Scene
 
 ROUNDS = 20
 SAFE = 0.5  # share of the tolerance that the estimate, itself in error, must meet
@@ -95,6 +96,23 @@ def refine(
             break
     solution = verified(replace(solution, path=tuple(path)), ribbon)
     return _missed(solution, tolerance) if solution.verified else solution
+
+
+def on_finer_mesh(missed: Solution, solve: Callable[[Scene], Solution]) -> Solution:
+    """Solve a scene anew on twice as many elements, if no finer mesh led on from its own.
+
+    A coarse mesh has solutions of its own, near which there is none of the ribbon's equations.
+    """
+    scene, count = missed.scene, missed.scene.transcription.intervals
+    if sum(missed.mesh.elements) > count:
+        return missed
+    finer = replace(scene.transcription, intervals=2 * count)
+    found = solve(replace(scene, transcription=finer))
+    if not found.verified:
+        return missed
+    path, iterations = (*missed.path, *found.path), missed.iterations + found.iterations
+    spent = {name: missed.timings[name] + seconds for name, seconds in found.timings.items()}
+    return replace(found, scene=scene, path=path, iterations=iterations, timings=spent)
 
 
 def _better_mesh(solution: Solution, reduction: float, surprised: bool) -> tuple[Mesh, bool]:

@@ -123,11 +123,13 @@ class Search:
         named = tuple(name for attempts in self._all for name in attempts.solvers)
         return (*named, "ipopt") if any("ipopt" in step["step"] for step in self.path) else named
 
-    @property
-    def seconds(self) -> tuple[float, float]:
-        """Seconds of function evaluation and of linear algebra."""
+    def timings(self, build: float, seconds: float) -> dict[str, float]:
+        """Seconds to build, of functions, of linear algebra, the rest of the search, and in all."""
         each = [attempts.seconds for attempts in self._all]
-        return sum(evaluate for evaluate, _ in each), sum(linear for _, linear in each)
+        evaluate, linear = (sum(times[i] for times in each) for i in range(2))
+        rest = seconds - evaluate - linear
+        spent = {"build": build, "evaluate": evaluate, "linear": linear, "rest": rest}
+        return spent | {"total": seconds + build}
 
     @property
     def phases_help(self) -> bool:

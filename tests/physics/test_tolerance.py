@@ -15,6 +15,7 @@ from test_mixture import clamp, draw
 from ribbonopt.accuracy.estimate import relative_error
 from ribbonopt.cli import main
 from ribbonopt.pipeline import prepare, solve
+from ribbonopt.refinement import on_finer_mesh
 from ribbonopt.results import load_solution
 from ribbonopt.scene import Collocation, Scene, load_scene
 from ribbonopt.solution import Solution
@@ -163,6 +164,43 @@ def test_what_cannot_be_met_is_refused_with_its_place(
     found = load_solution(left)
     assert found.status is Status.TOLERANCE_MISSED
     assert 1e-12 < np.abs(found.n0 - HALF_MOEBIUS["n0"]).max() < 1e-2
+
+
+def test_solutions_of_a_coarse_mesh_alone_are_left(configs: Path) -> None:
+    # Just beyond a fold: on 20 intervals there is still a solution, on finer meshes there is none.
+    overrides = ["boundary.end.position.2=0.6954545454545454", "tolerance=1e-6"]
+    law = "law={type: variational, delta: 0.17394980052355669}"
+    arch = load_scene(configs / "clamped_arch.yaml", [*overrides, law])
+    found = solve(arch)
+    assert found.verified, found.message
+    assert relative_error(found)[0] <= 1e-6
+    assert found.scene == arch
+    better = solve(replace(arch, transcription=Collocation(degree=8, intervals=60)))
+    np.testing.assert_allclose(found.n0, better.n0, rtol=1e-6)
+
+
+def test_a_finer_mesh_is_tried_once_where_refinement_led_nowhere(configs: Path) -> None:
+    scene = load_scene(configs / "moebius_half.yaml")
+    found = solve(scene)
+    missed = replace(found, status=Status.TOLERANCE_MISSED)
+    asked: list[Scene] = []
+
+    def tried(answer: Solution) -> Solution:
+        def solved(finer: Scene) -> Solution:
+            asked.append(finer)
+            return answer
+
+        return on_finer_mesh(missed, solved)
+
+    again = tried(found)
+    assert [finer.transcription.intervals for finer in asked] == [20]
+    assert again.verified and again.scene == scene
+    assert again.iterations == 2 * found.iterations
+    assert again.timings["total"] == pytest.approx(2 * found.timings["total"])
+    assert tried(replace(found, status=Status.STALLED)) is missed
+    asked.clear()
+    missed = replace(missed, scene=replace(scene, transcription=Collocation(intervals=5)))
+    assert tried(found) is missed and not asked  # refinement did lead somewhere
 
 
 def test_energy_formulation_takes_no_tolerance(
