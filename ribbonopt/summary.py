@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 import platform
 from dataclasses import fields
 from typing import Any
@@ -12,6 +11,7 @@ import numpy as np
 
 from ribbonopt.accuracy.estimate import estimate_error
 from ribbonopt.accuracy.topology import count_half_twists
+from ribbonopt.plain import finite
 from ribbonopt.problem import formulation_name
 from ribbonopt.solution import Solution
 from ribbonopt.version import VERSION
@@ -66,8 +66,8 @@ def summarize(solution: Solution) -> dict[str, Any]:
         "units": solution.units.name,
         "warnings": _warnings(solution),
     }
-    finite: dict[str, Any] = _finite(summary)
-    return finite
+    said: dict[str, Any] = finite(summary)
+    return said
 
 
 def _warnings(solution: Solution) -> list[str]:
@@ -107,14 +107,3 @@ def versions() -> dict[str, str]:
         "numpy": np.__version__,
         "python": platform.python_version(),
     }
-
-
-def _finite(value: Any) -> Any:
-    """Copy with None for every number that JSON cannot say."""
-    if isinstance(value, dict):
-        return {key: _finite(item) for key, item in value.items()}
-    if isinstance(value, list | tuple):
-        return [_finite(item) for item in value]
-    if isinstance(value, float) and not math.isfinite(value):
-        return None
-    return value

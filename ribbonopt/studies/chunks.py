@@ -14,10 +14,10 @@ import numpy as np
 
 from ribbonopt.arrays import Array
 from ribbonopt.errors import RibbonoptError
+from ribbonopt.plain import is_number
 from ribbonopt.scene.units import in_special_units
 from ribbonopt.scene.yamlio import loads_scene
 
-from .draws import is_number
 from .study import Ribbon, Study
 
 Group = tuple[object, ...]

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 from functools import cached_property
@@ -10,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from ribbonopt.plain import is_number
 from ribbonopt.scene.problems import InvalidSceneError, Problem, shown
 
 Two = tuple[float, float]
@@ -80,13 +80,3 @@ def _whole(name: str, value: Any) -> int:
 
 def _fault(path: tuple[str, ...], message: str, found: Any) -> InvalidSceneError:
     return InvalidSceneError([Problem(("random", *path), message, shown(found))])
-
-
-def is_number(value: Any) -> bool:
-    """Whether plain data are a finite number."""
-    if isinstance(value, bool) or not isinstance(value, int | float):
-        return False
-    try:
-        return math.isfinite(value)
-    except OverflowError:  # a whole number that no float can hold
-        return False

@@ -9,6 +9,7 @@ import numpy as np
 
 from ribbonopt.accuracy.estimate import relative_error
 from ribbonopt.errors import ModelError
+from ribbonopt.plain import finite
 from ribbonopt.sampling import evaluate_formula
 from ribbonopt.scene import Continuation, Scene
 from ribbonopt.scene.continuation_checks import parse_record, parse_stop, stages_of, words_of
@@ -107,7 +108,8 @@ def sampled(
     """Return the values of formulas at arclengths; None for what is not finite."""
     with np.errstate(all="ignore"):
         values = {name: float(solution.sample(s, text)) for name, (text, s) in formulas.items()}
-    return {name: value if np.isfinite(value) else None for name, value in values.items()}
+    found: dict[str, float | None] = finite(values)
+    return found
 
 
 def numbers_of(solution: Solution) -> dict[str, float]:

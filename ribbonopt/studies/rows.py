@@ -7,6 +7,8 @@ from collections.abc import Sequence
 from dataclasses import asdict, dataclass, fields
 from typing import Any
 
+from ribbonopt.plain import finite
+
 from .measure import Measurement, Profile, errors_of
 
 
@@ -109,12 +111,8 @@ def row_of(found: Measurement, truth: Profile | None) -> Row:
         verified=found.verified,
         status=found.status,
         message=found.message,
-        **{key: _finite(value) for key, value in values.items()},
+        **{key: finite(value) for key, value in values.items()},
     )
-
-
-def _finite(value: Any) -> Any:
-    return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
 @dataclass(frozen=True)

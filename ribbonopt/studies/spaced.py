@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from functools import cached_property
 from typing import Any, overload
 
-from .draws import is_number
+from ribbonopt.plain import is_number
 
 MOST = 10**12  # values of a key
 

@@ -19,12 +19,12 @@ from __future__ import annotations
 
 import glob
 import itertools
-import math
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from ribbonopt.errors import SceneError
+from ribbonopt.plain import is_number
 from ribbonopt.scene.problems import InvalidSceneError, Place, dotted, report, suggestion
 from ribbonopt.scene.problems import Path as Keys
 from ribbonopt.scene.yamlio import plain_yaml, read_yaml
@@ -100,8 +100,7 @@ def _study(
     if data.get("save", "none") not in SAVE:
         raise fault(("save",), f"expected one of {', '.join(SAVE)}", data["save"])
     limit = data.get("time_limit", 1.0)
-    number = isinstance(limit, int | float) and not isinstance(limit, bool)
-    if not number or not 0 < limit < math.inf:
+    if not is_number(limit) or limit <= 0:
         raise fault(("time_limit",), "expected a number of seconds > 0", limit)
     given = {} if data.get("set") is None else data["set"]
     if not isinstance(given, dict):

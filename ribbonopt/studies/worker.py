@@ -7,7 +7,6 @@ takes nothing with it. What is built for a structure is kept for the ribbons to 
 from __future__ import annotations
 
 import json
-import math
 import os
 import sys
 import threading
@@ -21,6 +20,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 from ribbonopt.errors import ModelError, RibbonoptError
 from ribbonopt.pipeline import Prepared, prepare
+from ribbonopt.plain import finite
 from ribbonopt.problem import structure_of
 from ribbonopt.scene import Scene, loads_scene
 from ribbonopt.scene.units import in_special_units
@@ -78,7 +78,7 @@ class Worker:
             message = f"{type(error).__name__}: {error}"
             row |= {"status": "error", "verified": False, "message": message}
         row["seconds"] = time.perf_counter() - started
-        return {name: _finite(value) for name, value in row.items()}, found, family
+        return finite(row), found, family
 
     def _prepared(self, scene: Scene) -> Prepared:
         """Return the structure of a scene, built once."""
@@ -86,11 +86,6 @@ class Worker:
         if structure not in self._built:
             self._built[structure] = prepare(replace(scene, continuation=None))
         return self._built[structure]
-
-
-def _finite(value: Any) -> Any:
-    """Return a value that JSON has: gaps in place of what is no number."""
-    return None if isinstance(value, float) and not math.isfinite(value) else value
 
 
 def _outcome(found: Solution, start: str) -> Row:

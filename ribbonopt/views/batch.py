@@ -9,8 +9,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ribbonopt.plain import is_number
+
 from .branch import COLOURS
-from .columns import Rows, is_logarithmic, is_number, is_numeric, numbers, said, varied, words
+from .columns import Rows, is_logarithmic, is_numeric, numbers, said, varied, words
 from .histogram import histogram_of
 from .style import BENDING, FAINT, INK, TWIST, blank, save_all, tidy
 

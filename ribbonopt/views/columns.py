@@ -6,6 +6,8 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from ribbonopt.plain import is_number
+
 Row = Mapping[str, Any]
 Rows = Sequence[Row]
 
@@ -50,16 +52,6 @@ def is_numeric(rows: Rows, name: str) -> bool:
     """Whether a column holds numbers, and nothing else but gaps."""
     values = [row.get(name) for row in rows]
     return any(map(is_number, values)) and all(is_number(v) or is_missing(v) for v in values)
-
-
-def is_number(value: Any) -> bool:
-    """Whether a value is a finite number."""
-    if not isinstance(value, int | float) or isinstance(value, bool):
-        return False
-    try:
-        return math.isfinite(value)
-    except OverflowError:  # an integer beyond all floats
-        return False
 
 
 def is_missing(value: Any) -> bool:

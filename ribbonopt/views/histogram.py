@@ -11,12 +11,13 @@ from dataclasses import dataclass
 from html import escape
 from itertools import pairwise
 
+from ribbonopt.plain import is_number
+
 from .columns import (
     Rows,
     columns,
     is_logarithmic,
     is_missing,
-    is_number,
     is_numeric,
     said,
     varied,

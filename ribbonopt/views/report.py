@@ -17,6 +17,7 @@ from statistics import median
 from typing import Any
 
 from ribbonopt.errors import OutputError
+from ribbonopt.plain import is_number
 
 from .columns import (
     VECTORS,
@@ -25,7 +26,6 @@ from .columns import (
     columns,
     is_logarithmic,
     is_missing,
-    is_number,
     is_numeric,
     numbers,
     said,
