@@ -1,4 +1,4 @@
-"""Folders of results that appear whole or not at all.
+"""Folders of results, and single files, that appear whole or not at all.
 
 Files are written to a folder beside the wanted one, which takes its place when complete. An older
 result there is replaced; other files are never touched.
@@ -10,9 +10,10 @@ import os
 import shutil
 import tempfile
 from collections.abc import Iterator
-from contextlib import contextmanager
+from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
+from typing import IO
 
 from ribbonopt.errors import OutputError
 
@@ -73,6 +74,32 @@ def staged_result(target: str | Path, own: frozenset[str] = OWN_FILES) -> Iterat
         yield Stage(folder, target, own)
     finally:
         shutil.rmtree(folder, ignore_errors=True)
+
+
+def beside(path: Path) -> Path:
+    """Return where a file is for a moment, before it takes its place."""
+    return path.with_name(f".{path.name}.new")
+
+
+@contextmanager
+def replacing(
+    path: Path, *, newline: str | None = None, errors: str | None = None
+) -> Iterator[IO[str]]:
+    """Give a text file that takes the place of another once it is complete; else the other stays.
+
+    Raises
+    ------
+    OSError
+        If it cannot be written.
+    """
+    new = beside(path)
+    try:
+        with open(new, "w", encoding="utf-8", newline=newline, errors=errors) as file:
+            yield file
+        new.replace(path)
+    finally:
+        with suppress(OSError):
+            new.unlink(missing_ok=True)
 
 
 def picture_folder(target: str | Path) -> Path:

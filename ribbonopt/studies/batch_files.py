@@ -14,7 +14,7 @@ from pathlib import Path
 from typing import IO, Any
 
 from ribbonopt.errors import OutputError
-from ribbonopt.staging import unwritable
+from ribbonopt.staging import beside, replacing, unwritable
 
 from .study import Study
 
@@ -70,14 +70,11 @@ class BatchFolder:
         try:
             self._lock.close()
             self._file.close()
-            with open(self.folder / f"{TABLE}.new", "w", newline="", encoding="utf-8") as file:
+            with replacing(self.folder / TABLE, newline="") as file:
                 writer = csv.DictWriter(file, sorted_columns(list(names), self.study.keys))
                 writer.writeheader()
                 writer.writerows(sorted(self.rows, key=lambda row: row["number"]))
-            (self.folder / f"{TABLE}.new").replace(self.folder / TABLE)
         except OSError as error:
-            with contextlib.suppress(OSError):
-                (self.folder / f"{TABLE}.new").unlink()
             raise self._full(error) from error
 
     def _count(self, row: Row) -> None:
@@ -93,7 +90,8 @@ class BatchFolder:
     def _claim(self, resume: bool) -> None:
         self.folder.mkdir(parents=True, exist_ok=True)
         found = sorted(path.name for path in self.folder.iterdir())
-        own = {ROWS, TABLE, STUDY, SOLUTIONS, *PICTURES, f"{ROWS}.new", f"{TABLE}.new"}
+        files = (ROWS, TABLE, STUDY, *PICTURES)
+        own = {SOLUTIONS, *files, *(beside(Path(name)).name for name in files)}
         foreign = [name for name in found if name not in own]
         if foreign:
             raise OutputError(
@@ -106,8 +104,8 @@ class BatchFolder:
             "inputs": self.study.keys,
             "digest": self.study.digest,
         }
-        self._lock = _locked(self.folder / STUDY)
-        try:
+        with contextlib.ExitStack() as refused:
+            self._lock = refused.enter_context(_locked(self.folder / STUDY))
             if (self.folder / STUDY).stat().st_size:
                 self._go_on(str(said["digest"]), resume)
             elif ROWS in found and (self.folder / ROWS).stat().st_size:
@@ -118,14 +116,10 @@ class BatchFolder:
             else:
                 self._lock.write((json.dumps(said, indent=2) + "\n").encode())
                 self._lock.flush()
-            text = "".join(json.dumps(row) + "\n" for row in self.rows)
-            beside = self.folder / f"{ROWS}.new"
-            beside.write_text(text, encoding="utf-8")
-            beside.replace(self.folder / ROWS)
+            with replacing(self.folder / ROWS) as file:
+                file.writelines(json.dumps(row) + "\n" for row in self.rows)
             self._file = open(self.folder / ROWS, "a", encoding="utf-8")
-        except BaseException:
-            self._lock.close()
-            raise
+            refused.pop_all()  # the folder is ours until it is closed
 
     def _go_on(self, digest: str, resume: bool) -> None:
         known = _said(self.folder)

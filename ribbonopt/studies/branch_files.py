@@ -15,7 +15,7 @@ from typing import Any
 
 from ribbonopt.errors import OutputError
 from ribbonopt.scene import Scene, dump_scene, load_scene
-from ribbonopt.staging import unwritable
+from ribbonopt.staging import beside, replacing, unwritable
 
 from .branches import Key
 from .continuation import Continuation
@@ -24,7 +24,6 @@ from .stored import Stored, state_of
 
 FILE, TABLE, SCENE = "branch.jsonl", "branch.csv", "scene.yaml"
 FIGURES = ("branch.png", "ribbons.png")
-BESIDE = f".{FILE}.new"  # what a branch file is for a moment
 
 
 class BranchFolder:
@@ -41,7 +40,8 @@ class BranchFolder:
         """
         self.folder, self.scene = Path(folder), scene
         self.lines: list[dict[str, Any]] = []
-        own = {FILE, TABLE, SCENE, *FIGURES, BESIDE}
+        files = (FILE, SCENE)
+        own = {TABLE, *FIGURES, *files, *(beside(Path(name)).name for name in files)}
         try:
             self.folder.mkdir(parents=True, exist_ok=True)
             found = sorted(path.name for path in self.folder.iterdir())
@@ -145,10 +145,8 @@ class BranchFolder:
             )
 
     def _replace(self, name: str, text: str) -> None:
-        """Write a file so that it is whole at any time."""
-        beside = self.folder / BESIDE
-        beside.write_text(text, encoding="utf-8")
-        beside.replace(self.folder / name)
+        with replacing(self.folder / name) as file:
+            file.write(text)
 
 
 def load_branch(folder: str | Path) -> tuple[Scene, list[dict[str, Any]]]:

@@ -18,6 +18,7 @@ from typing import Any
 
 from ribbonopt.errors import OutputError
 from ribbonopt.plain import is_number
+from ribbonopt.staging import replacing
 
 from .columns import (
     VECTORS,
@@ -68,13 +69,11 @@ def write_report(
     path = Path(path)
     rows = sorted(rows, key=lambda row: int(row["number"]))
     text = _page(rows, tuple(inputs), name, count, path.parent)
-    beside = path.with_name(f".{path.name}.new")
     try:
         # Half a character, which JSON can say and UTF-8 cannot, is no reason to fail.
-        beside.write_text(text, encoding="utf-8", errors="xmlcharrefreplace")
-        beside.replace(path)
+        with replacing(path, errors="xmlcharrefreplace") as file:
+            file.write(text)
     except OSError as error:
-        beside.unlink(missing_ok=True)
         raise OutputError(f"{path}: cannot be written ({error.strerror})") from error
     return path
 

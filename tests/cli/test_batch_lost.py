@@ -17,7 +17,7 @@ import pytest
 from batches import COMMAND, STUDY, lost, on_purpose, without_times, written
 from disks import Full
 
-from ribbonopt import results
+from ribbonopt import results, staging
 from ribbonopt.studies import batch_files, worker
 from ribbonopt.studies.batch import run_batch
 from ribbonopt.studies.chunks import chunks_of
@@ -127,6 +127,8 @@ def test_killed_and_resumed_is_the_same(run: Run, study: Path, tmp_path: Path) -
     rows = out / "rows.jsonl"
     rows.write_bytes(rows.read_bytes()[:-20])  # cut in a line
     assert 0 < rows_there(out) < 30
+    for name in ("rows.jsonl", "table.csv", "report.html"):
+        (out / f".{name}.new").write_text("cut")  # killed while it was written
     status, _, err = run("batch", study, "--out", out, "--jobs", "1", "--quiet")
     assert (status, "go on by --resume" in err) == (2, True)
     assert run("batch", study, "--out", out, "--jobs", "1", "--resume", "--quiet").status == 0
@@ -157,7 +159,7 @@ def test_interrupted_rows_are_kept(study: Path, tmp_path: Path) -> None:
     assert len((out / "table.csv").read_text().splitlines()) == count + 1
 
 
-@pytest.mark.parametrize("room", [{"rows.jsonl": 7}, {"table.csv.new": 3}], ids=["rows", "table"])
+@pytest.mark.parametrize("room", [{"rows.jsonl": 7}, {".table.csv.new": 3}], ids=["rows", "table"])
 def test_full_disk(
     run: Run, study: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch, room: dict[str, int]
 ) -> None:
@@ -169,13 +171,14 @@ def test_full_disk(
         return file if lines is None or "r" in mode else Full(file, lines)
 
     with monkeypatch.context() as patch:
-        patch.setattr(batch_files, "open", opened, raising=False)
+        for module in (batch_files, staging):
+            patch.setattr(module, "open", opened, raising=False)
         status, text, err = run("batch", study, "--out", out, "--jobs", "2")
     assert (status, text, err.count("\n")) == (2, "", 1)
     kept = room.get("rows.jsonl", 30)
     assert f"No space left on device); {kept} of 30 rows are kept, make room and go on" in err
     assert rows_there(out) == kept
-    assert not (out / "table.csv.new").exists()
+    assert not (out / ".table.csv.new").exists()
     assert run("batch", study, "--out", out, "--jobs", "2", "--resume", "--quiet").status == 0
     assert written(out) == without_times(list(run_batch(load_study([study]), jobs=2)))
 
