@@ -74,13 +74,12 @@ class Prepared:
         *,
         fallback: bool = True,
         quick: bool = False,
-        finer: bool = False,
     ) -> Solution:
         """Solve a scene of this structure (default: the prepared one).
 
         `guess` is where to start, instead of the scene's own guess; `fallback` whether to go on
         from the automatic start where that leads nowhere; `quick` whether to leave it at Newton's
-        method from the guess, where that can be; `finer` whether its mesh was made finer already.
+        method from the guess, where that can be.
 
         Raises
         ------
@@ -89,16 +88,13 @@ class Prepared:
         ConvergenceError
             If the prescribed ends are further apart than the ribbon is long.
         """
-        started = time.perf_counter()
         scene = scene or self.scene
         refuse_unreachable(scene)
-        search = self.search(scene)
-        self._try_all(search, guess, fallback, quick)
-        found = self._told(search, time.perf_counter() - started)
-        if found.status is Status.TOLERANCE_MISSED and guess is None and not finer:
+        found = self._once(scene, guess, fallback, quick)
+        if found.status is Status.TOLERANCE_MISSED and guess is None:
             from ribbonopt.refinement import on_finer_mesh  # after a failure only
 
-            return on_finer_mesh(found, lambda scene: prepare(scene).solve(finer=True))
+            found = on_finer_mesh(found, lambda s: prepare(s)._once(s, None, True, False))
         return found
 
     def polish(self, guess: Guess, scene: Scene | None = None) -> Solution:
@@ -148,6 +144,12 @@ class Prepared:
         from ribbonopt.starts.automatic import Automatic  # IPOPT, which many scenes do without
 
         return Automatic(in_special_units(self.scene))
+
+    def _once(self, scene: Scene, guess: Guess | None, fallback: bool, quick: bool) -> Solution:
+        started = time.perf_counter()
+        search = self.search(scene)
+        self._try_all(search, guess, fallback, quick)
+        return self._told(search, time.perf_counter() - started)
 
     def _try_all(self, search: Search, given: Guess | None, fallback: bool, quick: bool) -> None:
         """Try the guess given or the scene's, then the automatic ones, until one leads on."""

@@ -10,7 +10,7 @@ from collections import Counter
 from collections.abc import Sequence
 from contextlib import closing
 from datetime import timedelta
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from ribbonopt.arguments import count
 from ribbonopt.errors import SceneError
@@ -28,7 +28,7 @@ OFTEN = 0.1  # seconds between two pictures of the bar
 
 def batch(options: argparse.Namespace) -> int:
     """Solve all ribbons of a study."""
-    pairs = pairs_of("--plot", options.plot)
+    pairs = pairs_of(options.plot)
     from ribbonopt.studies.batch import run_batch
     from ribbonopt.studies.batch_files import BatchFolder
     from ribbonopt.studies.sweep import load_study
@@ -54,14 +54,11 @@ def batch(options: argparse.Namespace) -> int:
     )
     bar = _Bar(study.count, folder)
     try:
-        try:
-            with closing(rows), closing(bar):
-                for row in rows:
-                    folder.append(row)
-                    bar.show()
-        finally:
-            folder.close()
-        _draw(folder, pairs)
+        with closing(folder), closing(rows), closing(bar):
+            for row in rows:
+                folder.append(row)
+                bar.show()
+        _draw(study.name, study.count, study.keys, folder.rows, folder.folder, pairs)
     except KeyboardInterrupt:
         print(
             f"ribbonopt: interrupted; {len(folder.rows)} of {study.count} rows kept in "
@@ -75,15 +72,10 @@ def batch(options: argparse.Namespace) -> int:
 def draw(result: Path, out: Path, pairs: list[tuple[str, str]]) -> list[Path]:
     """Write report and figures of a batch folder again and return where."""
     from ribbonopt.studies.batch_files import load_batch
-    from ribbonopt.views.batch import save_batch_figures
-    from ribbonopt.views.report import write_report
 
     said, rows = load_batch(result)
     _known(pairs, list(dict.fromkeys(name for row in rows for name in row)))
-    report = write_report(
-        rows, tuple(said["inputs"]), out / "report.html", name=said["name"], count=said["ribbons"]
-    )
-    return [report, *save_batch_figures(rows, tuple(said["inputs"]), out, pairs)]
+    return _draw(said["name"], said["ribbons"], said["inputs"], rows, out, pairs)
 
 
 def _known(pairs: list[tuple[str, str]], columns: Sequence[str]) -> None:
@@ -96,17 +88,23 @@ def _known(pairs: list[tuple[str, str]], columns: Sequence[str]) -> None:
             raise SceneError(f"--plot: rows have no column {name!r}{near} (table.csv has them all)")
 
 
-def _draw(folder: BatchFolder, pairs: list[tuple[str, str]] | None) -> None:
-    """Write the report, and the figures where they are wanted."""
+def _draw(
+    name: str,
+    count: int,
+    inputs: Sequence[str],
+    rows: list[dict[str, Any]],
+    out: Path,
+    pairs: list[tuple[str, str]] | None,
+) -> list[Path]:
+    """Write the report, and the figures where they are wanted, and return where."""
     from ribbonopt.views.report import write_report
 
-    study = folder.study
-    path = folder.folder / "report.html"
-    write_report(folder.rows, study.keys, path, name=study.name, count=study.count)
-    if pairs is not None:
-        from ribbonopt.views.batch import save_batch_figures  # matplotlib
+    report = write_report(rows, inputs, out / "report.html", name=name, count=count)
+    if pairs is None:
+        return [report]
+    from ribbonopt.views.batch import save_batch_figures  # matplotlib
 
-        save_batch_figures(folder.rows, study.keys, folder.folder, pairs)
+    return [report, *save_batch_figures(rows, inputs, out, pairs)]
 
 
 def _tell(options: argparse.Namespace, folder: BatchFolder) -> int:

@@ -25,7 +25,7 @@ BAR = 24
 
 def follow(options: argparse.Namespace) -> int:
     """Follow the branches of a scene's `continuation`."""
-    pairs = pairs_of("--plot", options.plot)
+    pairs = pairs_of(options.plot)
     scene, _ = load(options)
     from ribbonopt.studies.branch_files import BranchFolder
     from ribbonopt.studies.continuation import Continuation

@@ -29,15 +29,15 @@ def load(options: argparse.Namespace) -> tuple[Scene, float]:
     return scene, (reading - start) + (time.perf_counter() - read)
 
 
-def pairs_of(option: str, texts: list[str] | None) -> list[tuple[str, str]] | None:
-    """Read X:Y; None where no figure is wanted."""
+def pairs_of(texts: list[str] | None) -> list[tuple[str, str]] | None:
+    """Read the X:Y of `--plot`; None where no figure is wanted."""
     if texts is None:
         return None
     pairs = []
     for text in texts:
         x, colon, y = text.partition(":")
         if not (x and colon and y):
-            raise SceneError(f"{option}: found {text!r}; expected X:Y, such as value:energy")
+            raise SceneError(f"--plot: found {text!r}; expected X:Y, such as value:energy")
         pairs.append((x, y))
     return pairs
 

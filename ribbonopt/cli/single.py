@@ -103,7 +103,7 @@ def plot(options: argparse.Namespace) -> int:
     from ribbonopt.staging import picture_folder
     from ribbonopt.views import save_figures
 
-    result, pairs = Path(options.result), pairs_of("--plot", options.plot) or []
+    result, pairs = Path(options.result), pairs_of(options.plot) or []
     if (result / "branch.jsonl").is_file():
         from .branch import draw as draw_branch
 

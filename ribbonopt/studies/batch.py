@@ -12,6 +12,7 @@ from __future__ import annotations
 import queue
 import threading
 from collections.abc import Generator, Mapping
+from contextlib import suppress
 from typing import Any
 
 from .chunks import Chunk, chunks_of
@@ -71,20 +72,21 @@ def _on_this_machine(
     work: queue.SimpleQueue[Chunk] = queue.SimpleQueue()
     for chunk in chunks:
         work.put(chunk)
-    rows: queue.SimpleQueue[Row | BaseException | None] = queue.SimpleQueue()
+    rows: queue.SimpleQueue[Row | Exception | None] = queue.SimpleQueue()
     crews = [Crew(study.save, folder, study.time_limit) for _ in range(jobs)]
     wanted = threading.Event()
     wanted.set()
 
     def serve(crew: Crew) -> None:
         try:
-            while wanted.is_set():
-                for row in crew.rows(work.get_nowait(), known):
-                    rows.put(row)
-        except queue.Empty:
-            rows.put(None)
-        except BaseException as error:  # given on: without a word, the batch would wait for ever
+            with suppress(queue.Empty):
+                while wanted.is_set():
+                    for row in crew.rows(work.get_nowait(), known):
+                        rows.put(row)
+        except Exception as error:  # of a thread: raised where the rows are asked for
             rows.put(error)
+        finally:
+            rows.put(None)
 
     threads = [threading.Thread(target=serve, args=(crew,), daemon=True) for crew in crews]
     for thread in threads:
@@ -93,7 +95,7 @@ def _on_this_machine(
     try:
         while running:
             row = rows.get()
-            if isinstance(row, BaseException):
+            if isinstance(row, Exception):
                 raise row
             if row is None:
                 running -= 1

@@ -16,6 +16,7 @@ from typing import IO, Any
 from ribbonopt.errors import OutputError
 from ribbonopt.staging import beside, replacing, unwritable
 
+from .lines import whole_lines
 from .study import Study
 
 ROWS, TABLE, STUDY, SOLUTIONS = "rows.jsonl", "table.csv", "study.json", "solutions"
@@ -193,20 +194,9 @@ def _said(folder: Path) -> dict[str, Any]:
 
 
 def _read(path: Path) -> list[Row]:
-    """Whole lines of a file of rows; one that was cut short is left out."""
-    rows: list[Row] = []
-    if not path.exists():
-        return rows
-    for number, line in enumerate(path.read_bytes().split(b"\n"), start=1):
-        if not line:
-            continue
-        try:
-            row = json.loads(line)
-        except ValueError:
-            break  # cut short when the process died, and nothing after it
-        if not isinstance(row, dict) or not {"number", "status", "verified"} <= row.keys():
-            raise OutputError(
-                f"{path}, line {number}: is damaged; remove it and all lines after it to go on"
-            )
-        rows.append(row)
-    return rows
+    return whole_lines(path, _sound) if path.exists() else []
+
+
+def _sound(row: Any) -> bool:
+    """Whether a line holds what `BatchFolder` writes."""
+    return isinstance(row, dict) and {"number", "status", "verified"} <= row.keys()

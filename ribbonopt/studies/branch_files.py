@@ -19,6 +19,7 @@ from ribbonopt.staging import beside, replacing, unwritable
 
 from .branches import Key
 from .continuation import Continuation
+from .lines import whole_lines
 from .points import POINT, Point
 from .stored import Stored, state_of
 
@@ -164,19 +165,7 @@ def rows_of(lines: list[dict[str, Any]]) -> list[dict[str, Any]]:
 
 def _read(path: Path) -> list[dict[str, Any]]:
     """Whole lines; special points after the last regular one will be found again."""
-    lines: list[dict[str, Any]] = []
-    for number, text in enumerate(path.read_bytes().split(b"\n"), start=1):
-        if not text:
-            continue
-        try:
-            line = json.loads(text)
-        except ValueError:
-            break  # cut short when the process died, and nothing after it
-        if not _sound(line):
-            raise OutputError(
-                f"{path}, line {number}: is damaged; remove it and all lines after it to go on"
-            )
-        lines.append(line)
+    lines = whole_lines(path, _sound)
     while lines and "row" in lines[-1] and lines[-1]["row"]["kind"] != POINT:
         lines.pop()
     return lines

@@ -7,7 +7,6 @@ the equilibrium of least energy. Where that is lost, N starts look for others.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
 from contextlib import suppress
 from dataclasses import dataclass, replace
 from functools import partial
@@ -81,11 +80,12 @@ def _least(
     from ribbonopt.starts.several import distinct, least  # few scenes ask for it
 
     turn = before.turn + 1 if before is not None else 0
-    followed = [_followed(m, scene, before.near(m)) for m in before.members] if before else []
+    followed = [_followed(member, scene, before) for member in before.members] if before else []
     known = [member for member in followed if member is not None]
     count = len(known)
     near = followed and followed[0] is not None
-    known += _started(prepared, scene, [turn % scene.starts] if near else range(scene.starts))
+    own = turn % scene.starts
+    known += _started(prepared, scene, range(own, own + 1) if near else range(scene.starts))
     if not known:
         return prepared.solve(scene), "own", None
     solutions = [member.solution for member in known]
@@ -96,9 +96,9 @@ def _least(
     return least(solutions, kinds), start, family
 
 
-def _followed(member: Neighbour, scene: Scene, at_any_cost: bool) -> Neighbour | None:
+def _followed(member: Neighbour, scene: Scene, before: Family) -> Neighbour | None:
     beside = member.solve(scene)
-    if beside is None and at_any_cost:
+    if beside is None and before.near(member):
         found = member.solve_at_any_cost(scene)
         beside = Neighbour(member.prepared, found) if found.verified else None
     if beside is None:
@@ -106,15 +106,15 @@ def _followed(member: Neighbour, scene: Scene, at_any_cost: bool) -> Neighbour |
     return replace(beside, solution=replace(beside.solution, times=member.solution.times))
 
 
-def _started(prepared: Prepared, scene: Scene, numbers: Sequence[int]) -> list[Neighbour]:
+def _started(prepared: Prepared, scene: Scene, numbers: range) -> list[Neighbour]:
     """Start a scene in the ways of these numbers; return what is verified."""
     from ribbonopt.starts.several import more_starts
 
     found: list[Solution] = []
     attempt = partial(prepared.polish, scene=scene)
-    further = range(max(numbers[0], 1), numbers[-1] + 1)
+    further = range(max(numbers.start, 1), numbers.stop)
     with suppress(ConvergenceError):  # raised again where nothing else is known
-        if numbers[0] == 0:
+        if 0 in numbers:
             found.append(prepared.solve(scene))
         for solution in more_starts(in_special_units(scene), prepared.automatic, attempt, further):
             found.append(solution)

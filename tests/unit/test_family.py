@@ -1,7 +1,6 @@
 """Several equilibria of a ribbon, each followed from ribbon to ribbon; the lowest is the row's."""
 
 import json
-from collections.abc import Sequence
 from typing import Any
 
 import numpy as np
@@ -73,7 +72,7 @@ def test_mirror_images_are_followed_both(monkeypatch: pytest.MonkeyPatch) -> Non
     # the one or the other: half a turn about z takes y to -y and leaves the turn as it is.
     whole = family._started
 
-    def only_first(prepared: Prepared, scene: Scene, numbers: Sequence[int]) -> list[Neighbour]:
+    def only_first(prepared: Prepared, scene: Scene, numbers: range) -> list[Neighbour]:
         return whole(prepared, scene, numbers) if len(numbers) > 1 else []
 
     monkeypatch.setattr(family, "_started", only_first)
