@@ -61,11 +61,9 @@ def parser() -> argparse.ArgumentParser:
     _scene(follow)
     follow.add_argument("--out", metavar="DIR", help="folder of the branch (default: results/NAME)")
     follow.add_argument("--resume", action="store_true", help="go on with the branch in the folder")
-    follow.add_argument(
-        "--plot",
-        nargs="*",
-        metavar="X:Y",
-        help="draw what is recorded, such as value:energy u2:energy, and ribbons along the branch",
+    _columns(
+        follow,
+        "draw what is recorded, such as value:energy u2:energy, and ribbons along the branch",
     )
 
     batch = verbs.add_parser(
@@ -81,12 +79,7 @@ def parser() -> argparse.ArgumentParser:
     batch.add_argument("--out", metavar="DIR", help="folder of the rows (default: results/NAME)")
     batch.add_argument("--resume", action="store_true", help="complete the rows in the folder")
     batch.add_argument("--scheduler", metavar="ADDRESS", help="Dask scheduler to use instead")
-    batch.add_argument(
-        "--plot",
-        nargs="*",
-        metavar="X:Y",
-        help="draw columns against each other too, such as law.epsilon:energy",
-    )
+    _columns(batch, "draw columns against each other too, such as law.epsilon:energy")
     batch.add_argument("--yes", action="store_true", help="solve more than 100,000 ribbons")
     batch.add_argument("--json", action="store_true", help="print exactly one JSON object")
     batch.add_argument("--quiet", action="store_true", help="print nothing unless it fails")
@@ -99,14 +92,13 @@ def parser() -> argparse.ArgumentParser:
         "plot", help="draw the pictures of a saved result", formatter_class=_help
     )
     plot.add_argument("result", metavar="RESULT", help="folder written by solve, continue or batch")
-    plot.add_argument(
-        "--plot",
-        nargs="*",
-        metavar="X:Y",
-        help="columns of a branch or a batch to draw, such as u2:energy",
-    )
+    _columns(plot, "columns of a branch or a batch to draw, such as u2:energy")
     plot.add_argument("--out", metavar="DIR", help="folder for the pictures (default: RESULT)")
     return result
+
+
+def _columns(verb: argparse.ArgumentParser, words: str) -> None:
+    verb.add_argument("--plot", nargs="*", metavar="X:Y", help=words)
 
 
 def _help(prog: str) -> argparse.HelpFormatter:

@@ -7,16 +7,6 @@ import sys
 from pathlib import Path
 from typing import Any
 
-SCENE = """\
-name: half
-law: {type: regularized, epsilon: 0.1}
-interval: [0, 0.5]
-boundary:
-  start: {position: [0, 0, 0], directors: identity, force: {d1: 0}, moment: {d1: 0}}
-  end: {position: {y: 0, z: 0}, d1: {x: 0}, d3: {x: 0}}
-guess: {force: [0, 43, 42], moment: [0, 2, -9]}
-tolerance: 1e-7
-"""
 STUDY = """\
 name: study
 scene: scene.yaml

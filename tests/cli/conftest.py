@@ -7,8 +7,9 @@ from pathlib import Path
 from typing import NamedTuple
 
 import pytest
-from batches import SCENE, STUDY
+from batches import STUDY
 from branches import LONG, Whole, finished, points, written
+from half_studies import SCENE
 
 from ribbonopt.cli import main
 

@@ -11,7 +11,8 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from batches import SCENE, STUDY, without_times, written
+from batches import STUDY, without_times, written
+from half_studies import SCENE
 
 from ribbonopt.cli import batch
 from ribbonopt.pipeline import solve
