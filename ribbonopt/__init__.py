@@ -12,11 +12,11 @@ from typing import TYPE_CHECKING, Any
 from ribbonopt import version
 
 if TYPE_CHECKING:
-    from ribbonopt.pipeline import prepare, solve
-    from ribbonopt.results import load_solution, save_solution
-    from ribbonopt.scene import Scene, dump_scene, json_schema, load_scene, loads_scene
-    from ribbonopt.solution import Solution
-    from ribbonopt.summary import summarize
+    from .output.results import load_solution, save_solution
+    from .output.summary import summarize
+    from .pipeline.prepared import prepare, solve
+    from .scene import Scene, dump_scene, json_schema, load_scene, loads_scene
+    from .solution.solution import Solution
 
 __version__ = version.VERSION
 
@@ -37,16 +37,16 @@ __all__ = [
 
 _HOMES = {
     "Scene": "scene",
-    "Solution": "solution",
+    "Solution": "solution.solution",
     "dump_scene": "scene",
     "json_schema": "scene",
     "load_scene": "scene",
-    "load_solution": "results",
+    "load_solution": "output.results",
     "loads_scene": "scene",
-    "prepare": "pipeline",
-    "save_solution": "results",
-    "solve": "pipeline",
-    "summarize": "summary",
+    "prepare": "pipeline.prepared",
+    "save_solution": "output.results",
+    "solve": "pipeline.prepared",
+    "summarize": "output.summary",
 }
 
 

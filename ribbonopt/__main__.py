@@ -1,5 +1,5 @@
 """`python -m ribbonopt`: the command line."""
 
-from ribbonopt.cli import run
+from .cli import run
 
 run()

@@ -13,9 +13,10 @@ from typing import Any
 
 from stopwatches import stopwatches
 
-from ribbonopt import attempts, refinement
 from ribbonopt.accuracy.estimate import estimate_error, relative_error
-from ribbonopt.pipeline import Prepared, prepare
+from ribbonopt.attempt import attempt as attempts
+from ribbonopt.pipeline import refinement
+from ribbonopt.pipeline.prepared import Prepared, prepare
 from ribbonopt.scene import load_scene
 
 CONFIGS = Path(__file__).resolve().parent.parent / "configs"

@@ -24,10 +24,10 @@ import peer_casadi
 import peer_scipy
 
 from ribbonopt.scene import load_scene
-from ribbonopt.studies.benchmark import Peer, benchmark
-from ribbonopt.studies.compare import Reference
-from ribbonopt.studies.files import save_study
-from ribbonopt.studies.table import table
+from ribbonopt.studies.comparison.benchmark import Peer, benchmark
+from ribbonopt.studies.comparison.compare import Reference
+from ribbonopt.studies.comparison.files import save_study
+from ribbonopt.studies.comparison.table import table
 from ribbonopt.views.comparison import save_figure
 
 SCENE = Path(__file__).resolve().parent.parent / "configs" / "moebius_half.yaml"

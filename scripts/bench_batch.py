@@ -23,17 +23,17 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 from stopwatches import stopwatches
 
-from ribbonopt import attempts
 from ribbonopt.accuracy import estimate
+from ribbonopt.attempt import attempt as attempts
 from ribbonopt.solvers.condense import CondensedSystem
 from ribbonopt.solvers.newton import Newton
-from ribbonopt.studies import worker
-from ribbonopt.studies.batch import run_batch
-from ribbonopt.studies.chunks import Chunk, chunks_of
-from ribbonopt.studies.crew import message
-from ribbonopt.studies.study import Study
-from ribbonopt.studies.sweep import load_study
-from ribbonopt.transcription.blocks import ElementBlocks
+from ribbonopt.studies.batch import worker
+from ribbonopt.studies.batch.batch import run_batch
+from ribbonopt.studies.batch.chunks import Chunk, chunks_of
+from ribbonopt.studies.batch.processes import message
+from ribbonopt.studies.batch.study import Study
+from ribbonopt.studies.batch.sweep import load_study
+from ribbonopt.transcription.collocation.blocks import ElementBlocks
 from ribbonopt.views.style import BENDING, FAINT, TWIST, blank, tidy
 
 CONFIGS = Path(__file__).resolve().parent.parent / "configs"

@@ -24,11 +24,11 @@ import numpy as np
 from stopwatches import stopwatches
 
 from ribbonopt.accuracy import estimate
-from ribbonopt.pipeline import Prepared
+from ribbonopt.pipeline.prepared import Prepared
 from ribbonopt.scene import Scene, load_scene
 from ribbonopt.solvers.newton import Newton
-from ribbonopt.studies import recorded, walk
-from ribbonopt.studies.continuation import Continuation
+from ribbonopt.studies.continuation import recorded, walk
+from ribbonopt.studies.continuation.continuation import Continuation
 
 CONFIGS = Path(__file__).resolve().parent.parent / "configs"
 LIMIT = 3.38657617297834557330  # u2(0) of Sadowsky's ribbon, 28 digits (SCIENCE, section 5)

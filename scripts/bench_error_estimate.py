@@ -27,12 +27,12 @@ from bench_path import ROOT
 from ribbonopt.accuracy.estimate import estimate_error
 from ribbonopt.errors import ConvergenceError, ModelError
 from ribbonopt.mechanics.rotations import matrix_of
-from ribbonopt.pipeline import prepare, solve
+from ribbonopt.output.summary import versions
+from ribbonopt.pipeline.prepared import prepare, solve
 from ribbonopt.scene import Boundary, Collocation, Directors, End, Scene, Variational, load_scene
-from ribbonopt.solution import Solution
+from ribbonopt.solution.solution import Solution
 from ribbonopt.solvers import Status
 from ribbonopt.studies.machine import machine
-from ribbonopt.summary import versions
 
 sys.path.append(str(ROOT / "tests"))
 from references import HALF_MOEBIUS, REGULARIZED

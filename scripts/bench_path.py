@@ -27,9 +27,9 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 
 import numpy as np
 
-from ribbonopt.pipeline import prepare
+from ribbonopt.output.summary import versions
+from ribbonopt.pipeline.prepared import prepare
 from ribbonopt.scene import Scene, load_scene
-from ribbonopt.summary import versions
 
 ROOT = Path(__file__).resolve().parent.parent
 SCENE = ROOT / "configs" / "moebius_half.yaml"

@@ -24,10 +24,10 @@ from bench_path import ROOT, medians
 from starts_clamps import bench_clamps
 from starts_noise import LEVELS, METHODS, QUOTED, SAME, bench_noise
 
-from ribbonopt.pipeline import solve
+from ribbonopt.output.summary import versions
+from ribbonopt.pipeline.prepared import solve
 from ribbonopt.scene import load_scene
 from ribbonopt.studies.machine import machine
-from ribbonopt.summary import versions
 
 BLUE, RED, GREEN, GREY, LIGHT = "#1f5fa8", "#c2410c", "#2f7d32", "#777777", "#b8b8b8"
 

@@ -22,7 +22,7 @@ from bench_path import ROOT
 from matplotlib.backends.backend_agg import FigureCanvasAgg
 from matplotlib.figure import Figure
 
-from ribbonopt.pipeline import prepare
+from ribbonopt.pipeline.prepared import prepare
 from ribbonopt.scene import load_scene
 
 sys.path.append(str(ROOT / "tests"))

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from ribbonopt.pipeline import Prepared, prepare
+from ribbonopt.pipeline.prepared import Prepared, prepare
 from ribbonopt.scene import Boundary, Collocation, End, LoadGuess, Quaternion, Scene, Variational
 
 SIMPLEST = LoadGuess(force=(0.0, 0.0, 0.0), moment=(1.0, 1.0, 1.0))

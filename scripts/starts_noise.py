@@ -17,7 +17,7 @@ from bench_path import REFERENCE, SCENE
 from ribbonopt.guess import Guess
 from ribbonopt.mechanics import RodFields
 from ribbonopt.mechanics.rotations import matrix_of, quaternions_from
-from ribbonopt.pipeline import Prepared, prepare
+from ribbonopt.pipeline.prepared import Prepared, prepare
 from ribbonopt.scene import load_scene
 
 LEVELS = (0.1, 0.3, 1.0)

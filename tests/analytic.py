@@ -8,7 +8,7 @@ import numpy as np
 from ribbonopt.problem import BoundaryValueProblem, Phase
 from ribbonopt.solvers import Newton, SolveReport, Status
 from ribbonopt.transcription import NLP, Collocation, Mesh
-from ribbonopt.transcription.dense import DenseOutput
+from ribbonopt.transcription.collocation.output import DenseOutput
 
 Array = np.ndarray
 

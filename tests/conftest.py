@@ -10,7 +10,7 @@ import pytest
 from hypothesis import settings
 
 if TYPE_CHECKING:
-    from ribbonopt.solution import Solution
+    from ribbonopt.solution.solution import Solution
 
 # Before numpy is loaded: workers share the cores, and small matrices gain nothing from threads.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
@@ -31,7 +31,7 @@ def configs() -> Path:
 @pytest.fixture(scope="session")
 def solved() -> "Callable[..., Solution]":
     """Return the cached solver of shipped scenes: `solved(name, *overrides)`."""
-    from ribbonopt.pipeline import solve
+    from ribbonopt.pipeline.prepared import solve
     from ribbonopt.scene import load_scene
 
     @cache

@@ -3,9 +3,9 @@
 from pathlib import Path
 from typing import Any
 
-from ribbonopt.studies.inputs import rows_of
-from ribbonopt.studies.study import Source, Study, Sweep
-from ribbonopt.studies.sweep import load_study
+from ribbonopt.studies.batch.inputs import rows_of
+from ribbonopt.studies.batch.study import Source, Study, Sweep
+from ribbonopt.studies.batch.sweep import load_study
 
 SCENE = """\
 name: half

@@ -15,8 +15,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ribbonopt.arrays import Array
-from ribbonopt.joined import Joined
-from ribbonopt.solution import Solution
+from ribbonopt.solution.solution import Solution
+from ribbonopt.solution.trajectory import Trajectory
 from ribbonopt.solvers.condense import CondensedSystem
 
 ROUNDING = 1e-15
@@ -28,7 +28,7 @@ class Analysis:
 
     Attributes
     ----------
-    better : Joined
+    better : Trajectory
         The solution after one Newton step of that scheme.
     local : (N,) array
         Local error of every element: what it adds to the states at its end, each state relative to
@@ -39,7 +39,7 @@ class Analysis:
         Factors of the better scheme, if they were to be kept.
     """
 
-    better: Joined
+    better: Trajectory
     local: Array
     errors: Mapping[str, float]
     sizes: Mapping[str, float]
@@ -47,7 +47,7 @@ class Analysis:
 
 
 # Refinement, rows and summaries ask for the same analysis one after the other.
-_latest: deque[tuple[Joined, Analysis]] = deque(maxlen=2)
+_latest: deque[tuple[Trajectory, Analysis]] = deque(maxlen=2)
 
 
 def analyse(
@@ -59,11 +59,11 @@ def analyse(
     Newton's method contracted by q: the errors then come out with a relative error of q / (1 - q).
     Factors that are to be kept cost twice as much.
     """
-    for joined, found in _latest:
-        if joined is solution.joined:
+    for trajectory, found in _latest:
+        if trajectory is solution.trajectory:
             return found
-    found = _analysed(solution.joined, near, keep)
-    _latest.append((solution.joined, found))
+    found = _analysed(solution.trajectory, near, keep)
+    _latest.append((solution.trajectory, found))
     return found
 
 
@@ -95,8 +95,8 @@ def relative_error(solution: Solution) -> tuple[float, str]:
     return relative[worst], worst
 
 
-def _analysed(joined: Joined, near: CondensedSystem | None, keep: bool) -> Analysis:
-    dense = joined.dense
+def _analysed(trajectory: Trajectory, near: CondensedSystem | None, keep: bool) -> Analysis:
+    dense = trajectory.dense
     blocks, w, p, split = dense.refined()
     if near is None:
         residuals, derivatives = blocks.linearize(w, p)
@@ -104,31 +104,37 @@ def _analysed(joined: Joined, near: CondensedSystem | None, keep: bool) -> Analy
     else:
         residuals, factors, keep = blocks.residuals(w, p), near, True
     step = factors.solve(residuals)
-    better = Joined(joined.problem, blocks.dense(w + step, p))
+    better = Trajectory(trajectory.problem, blocks.dense(w + step, p))
     size = np.maximum(np.abs(dense.at_nodes).max(axis=0), 1.0)
     local = np.abs(residuals.nodes / size).max(axis=1).reshape(-1, split).sum(axis=1)
-    errors = _errors(joined, better, split)
+    errors = _errors(trajectory, better, split)
     # Between the nodes the output starts from the node before, with the error of that element.
     errors["states"] = max(errors["states"], float(local.max()))
-    return Analysis(better, local, errors, _sizes(joined), factors if keep else None)
+    return Analysis(better, local, errors, _sizes(trajectory), factors if keep else None)
 
 
-def _errors(joined: Joined, better: Joined, split: int) -> dict[str, float]:
+def _errors(trajectory: Trajectory, better: Trajectory, split: int) -> dict[str, float]:
     """Differences of the answers, none below rounding."""
-    ours = joined.at_nodes
+    ours = trajectory.at_nodes
     theirs = {name: values[::split] for name, values in better.at_nodes.items()}
     errors = {f"{name}0": _gap(theirs[name][0], ours[name][0]) for name in ("n", "m", "u", "H")}
-    errors["energy"] = _gap(np.array(better.energy), np.array(joined.energy))
+    errors["energy"] = _gap(np.array(better.energy), np.array(trajectory.energy))
     errors["states"] = max(_gap(theirs[k], ours[k]) for k in ("r", "d1", "d2", "d3"))
     return errors
 
 
-def _sizes(joined: Joined) -> dict[str, float]:
+def _sizes(trajectory: Trajectory) -> dict[str, float]:
     """Return what the errors are relative to."""
-    start = joined.at_nodes
+    start = trajectory.at_nodes
     loads = max(float(np.abs(start[name][0]).max()) for name in ("n", "m"))
-    strains = float(np.abs(joined.at_stages["u"]).max())
-    return {"n0": loads, "m0": loads, "u0": strains, "energy": abs(joined.energy), "states": 1.0}
+    strains = float(np.abs(trajectory.at_stages["u"]).max())
+    return {
+        "n0": loads,
+        "m0": loads,
+        "u0": strains,
+        "energy": abs(trajectory.energy),
+        "states": 1.0,
+    }
 
 
 def _gap(a: Array, b: Array) -> float:

@@ -14,9 +14,9 @@ from collections.abc import Callable, Sequence
 from importlib import import_module
 from typing import NoReturn
 
-from ribbonopt.arguments import parser
 from ribbonopt.errors import ConvergenceError, ModelError, RibbonoptError
 
+from .arguments import parser
 from .common import BAD_INPUT, INTERRUPTED, NOT_CONVERGED, READER_GONE, print_json
 
 
@@ -84,12 +84,12 @@ def _verb(name: str) -> Callable[[argparse.Namespace], int]:
 
 
 MODULES = {
-    "solve": "single",
-    "check": "single",
-    "plot": "single",
-    "schema": "single",
-    "compare": "several",
-    "bench": "several",
+    "solve": "scene",
+    "check": "scene",
+    "plot": "scene",
+    "schema": "scene",
+    "compare": "comparison",
+    "bench": "comparison",
     "continue": "branch",
     "batch": "batch",
 }

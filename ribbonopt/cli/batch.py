@@ -12,15 +12,15 @@ from contextlib import closing
 from datetime import timedelta
 from typing import TYPE_CHECKING, Any
 
-from ribbonopt.arguments import count
 from ribbonopt.errors import SceneError
 
+from .arguments import count
 from .common import INTERRUPTED, NOT_CONVERGED, pairs_of, print_json
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from ribbonopt.studies.batch_files import BatchFolder
+    from ribbonopt.studies.batch.files import BatchFolder
 
 HUGE = 100_000  # ribbons, beyond which a study may be a mistake
 OFTEN = 0.1  # seconds between two pictures of the bar
@@ -29,9 +29,9 @@ OFTEN = 0.1  # seconds between two pictures of the bar
 def batch(options: argparse.Namespace) -> int:
     """Solve all ribbons of a study."""
     pairs = pairs_of(options.plot)
-    from ribbonopt.studies.batch import run_batch
-    from ribbonopt.studies.batch_files import BatchFolder
-    from ribbonopt.studies.sweep import load_study
+    from ribbonopt.studies.batch.batch import run_batch
+    from ribbonopt.studies.batch.files import BatchFolder
+    from ribbonopt.studies.batch.sweep import load_study
 
     gc.enable()  # many rows, and threads that serve the workers
     jobs = None if options.jobs is None else count("--jobs", options.jobs)
@@ -41,7 +41,7 @@ def batch(options: argparse.Namespace) -> int:
     study.check()
     _known(pairs or [], study.columns)
     if options.scheduler:
-        from ribbonopt.studies.cluster import check_cluster
+        from ribbonopt.studies.batch.cluster import check_cluster
 
         check_cluster(options.scheduler)  # before anything is written
     folder = BatchFolder(options.out or f"results/{study.name}", study, resume=options.resume)
@@ -71,18 +71,18 @@ def batch(options: argparse.Namespace) -> int:
 
 def draw(result: Path, out: Path, pairs: list[tuple[str, str]]) -> list[Path]:
     """Write report and figures of a batch folder again and return where."""
-    from ribbonopt.studies.batch_files import load_batch
+    from ribbonopt.studies.batch.files import load_batch
 
-    said, rows = load_batch(result)
+    study, rows = load_batch(result)
     _known(pairs, list(dict.fromkeys(name for row in rows for name in row)))
-    return _draw(said["name"], said["ribbons"], said["inputs"], rows, out, pairs)
+    return _draw(study["name"], study["ribbons"], study["inputs"], rows, out, pairs)
 
 
 def _known(pairs: list[tuple[str, str]], columns: Sequence[str]) -> None:
     """Refuse columns that no row has."""
     for name in (name for pair in pairs for name in pair):
         if name not in columns:
-            from ribbonopt.scene.problems import suggestion
+            from ribbonopt.scene.faults import suggestion
 
             near = suggestion(name, columns)
             raise SceneError(f"--plot: rows have no column {name!r}{near} (table.csv has them all)")
@@ -122,11 +122,11 @@ def _tell(options: argparse.Namespace, folder: BatchFolder) -> int:
             }
         )
     elif not options.quiet:
-        said = ", ".join(f"{number} {status}" for status, number in statuses.most_common())
+        study = ", ".join(f"{number} {status}" for status, number in statuses.most_common())
         seconds = sum(row.get("seconds", 0.0) for row in folder.rows)
         names = ", ".join(sorted(path.name for path in folder.folder.iterdir()))
         print(
-            f"{folder.study.name}: {len(folder.rows)} ribbons: {said}\n"
+            f"{folder.study.name}: {len(folder.rows)} ribbons: {study}\n"
             f"  {seconds:.1f} s of solving\n"
             f"  written: {folder.folder}: {names}"
         )

@@ -15,9 +15,9 @@ from .common import INTERRUPTED, NOT_CONVERGED, load, pairs_of, print_json
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from ribbonopt.studies.branch_files import BranchFolder
-    from ribbonopt.studies.continuation import Continuation
-    from ribbonopt.studies.points import Point
+    from ribbonopt.studies.continuation.continuation import Continuation
+    from ribbonopt.studies.continuation.files import BranchFolder
+    from ribbonopt.studies.continuation.points import Point
 
 PICTURES = 5
 BAR = 24
@@ -27,8 +27,8 @@ def follow(options: argparse.Namespace) -> int:
     """Follow the branches of a scene's `continuation`."""
     pairs = pairs_of(options.plot)
     scene, _ = load(options)
-    from ribbonopt.studies.branch_files import BranchFolder
-    from ribbonopt.studies.continuation import Continuation
+    from ribbonopt.studies.continuation.continuation import Continuation
+    from ribbonopt.studies.continuation.files import BranchFolder
 
     gc.enable()  # many solutions, each soon done with
     continuation = Continuation(scene)
@@ -54,8 +54,8 @@ def follow(options: argparse.Namespace) -> int:
 
 def draw(result: Path, out: Path, pairs: list[tuple[str, str]]) -> list[Path]:
     """Draw the figures of a branch folder again and return where."""
-    from ribbonopt.studies.branch_files import load_branch
-    from ribbonopt.studies.continuation import Continuation
+    from ribbonopt.studies.continuation.continuation import Continuation
+    from ribbonopt.studies.continuation.files import load_branch
 
     scene, lines = load_branch(result)
     continuation = Continuation(scene)
@@ -70,8 +70,8 @@ def _draw(
     pairs: list[tuple[str, str]],
     out: Path,
 ) -> list[Path]:
-    from ribbonopt.studies.branch_files import rows_of
-    from ribbonopt.studies.stored import spread
+    from ribbonopt.studies.continuation.files import rows_of
+    from ribbonopt.studies.continuation.stored import spread
     from ribbonopt.views.branch import save_branch_figures
 
     rows, points = rows_of(lines), spread(continuation, lines, PICTURES)

@@ -10,7 +10,7 @@ import numpy as np
 
 from ribbonopt.arrays import Array
 from ribbonopt.mechanics import RodFields
-from ribbonopt.mechanics.boundary import start_frame, start_position
+from ribbonopt.mechanics.ends.boundary import start_frame, start_position
 from ribbonopt.problem import BoundaryValueProblem, Ribbon, theta_values
 from ribbonopt.scene import LoadGuess, Scene
 from ribbonopt.transcription.buffered import Buffered, mapped

@@ -11,8 +11,8 @@ import numpy as np
 from ribbonopt.arrays import Array
 from ribbonopt.errors import ModelError
 from ribbonopt.mechanics import RodFields
-from ribbonopt.mechanics.boundary import start_frame, start_position
-from ribbonopt.mechanics.frames import number
+from ribbonopt.mechanics.ends.boundary import start_frame, start_position
+from ribbonopt.mechanics.ends.frames import number
 from ribbonopt.problem import Ribbon, theta_values
 from ribbonopt.scene import (
     ArcGuess,
@@ -88,7 +88,7 @@ def shape_of(scene: Scene) -> Shape | None:
 def loop_shape(scene: Scene, loop: Loop, place: tuple[Array, Array]) -> TwistedCircle:
     """Return a twisted circle, or the piece of it that is solved, from a position and a frame.
 
-    The fundamental piece lies about the origin of the lab, as `ribbonopt.mechanics.loops` has it.
+    The fundamental piece lies about the origin of the lab, as `mechanics.ends.loops` has it.
     """
     if loop.piece == "fundamental" and not loop.half_twists:
         raise ModelError("guess: a circle without half twists has no fundamental piece", "guess")

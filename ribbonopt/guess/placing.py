@@ -9,8 +9,8 @@ import numpy as np
 
 from ribbonopt.arrays import Array
 from ribbonopt.mechanics import MODELS, RodFields
-from ribbonopt.mechanics.boundary import ENDS, start_position
-from ribbonopt.mechanics.conditions import Component, Direction, EndName, Frame
+from ribbonopt.mechanics.ends.boundary import ENDS, start_position
+from ribbonopt.mechanics.ends.conditions import Component, Direction, EndName, Frame
 from ribbonopt.mechanics.rotations import matrix_of, turns_about
 from ribbonopt.problem import Ribbon
 from ribbonopt.scene import Scene

@@ -21,9 +21,9 @@ from typing import NamedTuple
 import casadi as ca
 
 from ribbonopt.errors import ModelError
-from ribbonopt.mechanics.conditions import Component
-from ribbonopt.mechanics.invariants import outputs
-from ribbonopt.mechanics.placement import LoadAlong
+from ribbonopt.mechanics.ends.conditions import Component
+from ribbonopt.mechanics.ends.placement import LoadAlong
+from ribbonopt.mechanics.outputs import outputs
 from ribbonopt.mechanics.rotations import product
 from ribbonopt.scene import Scene
 

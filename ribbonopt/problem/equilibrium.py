@@ -7,8 +7,8 @@ from dataclasses import dataclass
 
 import casadi as ca
 
-from ribbonopt.mechanics.conditions import CrossSection
-from ribbonopt.mechanics.invariants import outputs
+from ribbonopt.mechanics.ends.conditions import CrossSection
+from ribbonopt.mechanics.outputs import outputs
 
 from .contract import BoundaryValueProblem, Phase
 from .ribbon import Ribbon

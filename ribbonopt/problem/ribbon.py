@@ -16,9 +16,9 @@ import numpy as np
 
 from ribbonopt.arrays import Array
 from ribbonopt.errors import ModelError
-from ribbonopt.mechanics.boundary import conditions_of, start_position
-from ribbonopt.mechanics.conditions import Condition, Context, CrossSection, EndName
-from ribbonopt.mechanics.laws import LAWS, ConstitutiveLaw
+from ribbonopt.mechanics.ends.boundary import conditions_of, start_position
+from ribbonopt.mechanics.ends.conditions import Condition, Context, CrossSection, EndName
+from ribbonopt.mechanics.laws.catalogue import LAWS, ConstitutiveLaw
 from ribbonopt.mechanics.rod import MODELS, RodModel, RodState
 from ribbonopt.scene import Scene
 

@@ -13,7 +13,7 @@ from dataclasses import replace
 
 import casadi as ca
 
-from ribbonopt.mechanics.invariants import outputs
+from ribbonopt.mechanics.outputs import outputs
 
 from .contract import BoundaryValueProblem, Phase
 from .equilibrium import Unknowns

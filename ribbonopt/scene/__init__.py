@@ -18,15 +18,7 @@ from .ends import (
     Turns,
     Value,
 )
-from .laws import (
-    Homotopy,
-    Kirchhoff,
-    Law,
-    Regularized,
-    Sadowsky,
-    SingleSheet,
-    Variational,
-)
+from .laws import Homotopy, Kirchhoff, Law, Regularized, Sadowsky, SingleSheet, Variational
 from .model import (
     Algebraic,
     ArcGuess,

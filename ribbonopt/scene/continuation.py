@@ -8,7 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated, Literal
 
-from .bounds import Bounds
+from .schema.bounds import Bounds
 
 Step = Annotated[float, Bounds(gt=0)]
 

@@ -1,6 +1,6 @@
 """What a scene says of the constitutive law: its name and its numbers, no mechanics.
 
-The relations themselves are in `ribbonopt.mechanics.laws`, one class of the same name for each.
+The relations themselves are in `ribbonopt.mechanics.laws`, a file for each kind.
 """
 
 from __future__ import annotations
@@ -8,7 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated, Literal
 
-from .bounds import Bounds
+from .schema.bounds import Bounds
 
 
 @dataclass(frozen=True)

@@ -15,10 +15,11 @@ from functools import cache
 from numbers import Real
 from typing import Annotated, Any, NamedTuple, get_args, get_origin
 
-from ..errors import SceneError
+from ribbonopt.errors import SceneError
+
+from .faults import Path, dotted, nearest
 from .model import Scene
-from .problems import Path, dotted, nearest
-from .shapes import branches, hints
+from .schema.annotations import branches, hints
 from .wording import listed
 
 _ROOTS: tuple[Path, ...] = (

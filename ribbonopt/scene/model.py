@@ -1,8 +1,8 @@
 """The scene: everything a user may say about one ribbon, as frozen data.
 
 Python users build these classes directly, YAML users through `load_scene`; both are validated by
-the same schema (`ribbonopt.scene.validation`). Units: Dw = L = 1 (section 2 of the paper), or SI
-where the scene says what the ribbon is made of (`ribbon`).
+the same schema (`scene.schema.validation`). Units: Dw = L = 1 (section 2 of the paper), or SI where
+the scene says what the ribbon is made of (`ribbon`).
 """
 
 from __future__ import annotations
@@ -10,10 +10,10 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Annotated, Literal
 
-from .bounds import Bounds
 from .continuation import Continuation
 from .ends import Boundary, Value
 from .laws import Law
+from .schema.bounds import Bounds
 
 Numbers3 = tuple[float, float, float]
 

@@ -132,7 +132,9 @@ def _over(value: Any, unit: float, parameters: Mapping[str, float] | None = None
         held = {f.name: getattr(value, f.name) for f in fields(value)}
         return replace(value, **{k: _over(v, unit, parameters) for k, v in held.items()})  # type: ignore[type-var]
     if isinstance(value, str):
-        from .formulas import evaluate_value  # scenes in plain numbers start without the grammar
+        from .formulas.parsing import (
+            evaluate_value,  # scenes in plain numbers start without the grammar
+        )
 
         value = evaluate_value(value, parameters or {})
     return float(value) / unit

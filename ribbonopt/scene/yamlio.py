@@ -6,14 +6,15 @@ import os
 from collections.abc import Sequence
 from typing import Any
 
-from ..errors import SceneError
-from .checks import check
+from ribbonopt.errors import SceneError
+
+from .checks.whole import check
 from .ends import Boundary
+from .faults import InvalidSceneError, Problem, report
 from .laws import Sadowsky
 from .model import Scene
-from .problems import InvalidSceneError, Problem, report
-from .validation import validate
-from .yamltext import PlainData, YamlTextError, read
+from .schema.validation import validate
+from .text.yamltext import PlainData, YamlTextError, read
 
 
 def load_scene(path: str | os.PathLike[str], overrides: Sequence[str] = ()) -> Scene:
@@ -58,7 +59,7 @@ def locate(path: str | os.PathLike[str], overrides: Sequence[str], key: str) -> 
     """
     plain = read(_text_of(path, os.fspath(path)))
     if overrides:
-        from .overrides import override
+        from .text.overrides import override
 
         plain = override(plain, overrides)
     parts = tuple(int(part) if part.isdigit() else part for part in key.split("."))
@@ -97,7 +98,7 @@ def loads_scene(text: str, source: str = "<string>", overrides: Sequence[str] = 
         raise SceneError(f"{source}: is {kind}; expected keys such as name, law, boundary")
     plain = written
     if overrides:
-        from .overrides import override  # only scenes that are overridden pay for it
+        from .text.overrides import override  # only scenes that are overridden pay for it
 
         plain = override(written, overrides)
     try:
@@ -151,14 +152,16 @@ def dump_scene(scene: Scene) -> str:
 
     Fields equal to their default are left out, except the law and every `type`.
     """
-    from .dump import dump  # needed by no other function
+    from .text.dump import dump  # needed by no other function
 
     return dump(validate_scene(scene))
 
 
 def json_schema() -> dict[str, Any]:
     """Return the JSON schema of scene files, for editors to complete and check them."""
-    from .schema import json_schema_of  # imports pydantic itself, slower than all of this room
+    from .schema.json_schema import (
+        json_schema_of,  # imports pydantic itself, slower than all of this room
+    )
 
     return json_schema_of(Scene)
 

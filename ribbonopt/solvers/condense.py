@@ -19,7 +19,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ribbonopt.arrays import Array
-from ribbonopt.transcription.elimination import times
+from ribbonopt.transcription.collocation.elimination import times
 from ribbonopt.transcription.residuals import Derivatives, Residuals
 
 if TYPE_CHECKING:

@@ -18,12 +18,12 @@ from ribbonopt.errors import ConvergenceError
 from ribbonopt.guess import Guess, ShapeGuess
 from ribbonopt.guess.shapes import Chord, Shape
 from ribbonopt.scene import Kirchhoff, Law, Scene, Variational
-from ribbonopt.solution import Solution
+from ribbonopt.solution.solution import Solution
 from ribbonopt.solvers import SolveReport
 
 from .energy import LeastEnergy
-from .first import compresses, follower_loads, loaded, shapes_for, start_place
-from .follow import Followed, Follower
+from .first_shape import compresses, follower_loads, loaded, shapes_for, start_place
+from .homotopy import HomotopyPath, SmoothHomotopy
 from .loops import closed_scene, fundamental_scene
 from .unfold import Unfolded
 
@@ -60,8 +60,8 @@ class Automatic:
         return LeastEnergy.of(closed_scene(self.scene), _first_law(self.scene.law))
 
     @cached_property
-    def _follower(self) -> Follower:
-        return Follower.of(self.scene, _first_law(self.scene.law))
+    def _homotopy(self) -> SmoothHomotopy:
+        return SmoothHomotopy.of(self.scene, _first_law(self.scene.law))
 
     @cached_property
     def _piece(self) -> Automatic | None:
@@ -98,7 +98,7 @@ class Automatic:
         start: Guess = guess
         for _ in range(1 + AGAIN):
             report, least = self._energy.solve(closed_scene(scene), law, start)
-            path.append(_told(f"least energy{_delta(law)}, ipopt", report))
+            path.append(_solver_step(f"least energy{_delta(law)}, ipopt", report))
             if not report.status.converged:
                 break
             followed = self._follow(scene, law, least, last, path)
@@ -111,9 +111,11 @@ class Automatic:
             law, start = Variational(delta=max(last, 0.6 * reached.delta)), followed.points[-1]
         return points
 
-    def _follow(self, scene: Scene, law: Law, guess: Guess, last: float, path: Path) -> Followed:
+    def _follow(
+        self, scene: Scene, law: Law, guess: Guess, last: float, path: Path
+    ) -> HomotopyPath:
         started = time.perf_counter()
-        followed = self._follower.follow(scene, law, guess, last)
+        followed = self._homotopy.follow(scene, law, guess, last)
         reached = _delta(followed.points[-1].scene.law) if followed.points else " (lost at once)"
         lost = "" if followed.complete or not followed.points else " (lost there)"
         path.append(
@@ -133,7 +135,7 @@ def _first_law(law: Law) -> Law:
     return Variational(delta=max(FIRST, law.delta if isinstance(law, Variational) else 0.0))
 
 
-def _told(step: str, report: SolveReport) -> Mapping[str, Any]:
+def _solver_step(step: str, report: SolveReport) -> Mapping[str, Any]:
     outcome = "" if report.status.converged else f" ({report.status.name.lower()})"
     return {
         "step": step + outcome,

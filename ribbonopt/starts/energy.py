@@ -10,17 +10,16 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ribbonopt.discretize import discretize
+from ribbonopt.attempt.discretize import discretize
 from ribbonopt.guess import Guess, initial_unknowns
 from ribbonopt.problem import BoundaryValueProblem, Ribbon, ribbon_of, theta_values
 from ribbonopt.problem.energy import minimum
 from ribbonopt.scene import Collocation, Law, Scene
-from ribbonopt.solution import Solution
+from ribbonopt.solution.from_report import solution_of
+from ribbonopt.solution.solution import Solution
 from ribbonopt.solvers import SolveReport
 from ribbonopt.solvers.ipopt import Ipopt
 from ribbonopt.transcription import NLP, Mesh
-
-from .found import solution_of
 
 MESH = Collocation(scheme="gauss", degree=3, intervals=16)
 TOLERANCE, MAX_ITERATIONS = 1e-6, 120

@@ -6,9 +6,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from ribbonopt.mechanics.boundary import start_position
-from ribbonopt.mechanics.frames import DIRECTORS, components, frame_of
-from ribbonopt.mechanics.loops import end_turn
+from ribbonopt.mechanics.ends.boundary import start_position
+from ribbonopt.mechanics.ends.frames import DIRECTORS, components, frame_of
+from ribbonopt.mechanics.ends.loops import end_turn
 from ribbonopt.scene import Boundary, Loop, Scene
 
 CLOSE = 1e-9

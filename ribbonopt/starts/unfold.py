@@ -1,7 +1,7 @@
 """A band with dihedral symmetry unfolded from its fundamental piece: a guess for more of the loop.
 
 Piece j of the band is the first one turned about e_y by the angle 2 pi i / k (j = 2 i), or, for
-j = 2 i + 1, the flip of its predecessor about the axis between them: `ribbonopt.mechanics.loops`.
+j = 2 i + 1, the flip of its predecessor about the axis between them: `mechanics.ends.loops`.
 """
 
 from __future__ import annotations
@@ -13,7 +13,7 @@ import numpy as np
 from ribbonopt.arrays import Array
 from ribbonopt.mechanics import RodFields
 from ribbonopt.mechanics.rotations import turns_about
-from ribbonopt.solution import Solution
+from ribbonopt.solution.solution import Solution
 
 
 @dataclass(frozen=True, eq=False)

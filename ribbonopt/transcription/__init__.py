@@ -5,14 +5,14 @@ Multiple shooting, and the interfaces for the type checker, are imported when fi
 
 from typing import TYPE_CHECKING, Any
 
-from .collocation import Collocation
+from .collocation.collocation import Collocation
 from .layout import Layout
 from .mesh import Mesh
 from .nlp import NLP, NLPFunctions
 from .tableaus import Tableau, gauss, lobatto, radau
 
 if TYPE_CHECKING:
-    from .shooting import MultipleShooting
+    from .shooting.shooting import MultipleShooting
     from .structure import Blocks, Output
 
 __all__ = [
@@ -33,7 +33,7 @@ __all__ = [
 
 def __getattr__(name: str) -> Any:
     if name == "MultipleShooting":
-        from .shooting import MultipleShooting
+        from .shooting.shooting import MultipleShooting
 
         return MultipleShooting
     if name in ("Blocks", "Output"):

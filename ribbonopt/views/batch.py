@@ -12,7 +12,7 @@ import numpy as np
 from ribbonopt.plain import is_number
 
 from .branch import COLOURS
-from .columns import Rows, is_logarithmic, is_numeric, numbers, said, varied, words
+from .columns import Rows, as_text, is_logarithmic, is_numeric, numbers, varied, words
 from .histogram import histogram_of
 from .style import BENDING, FAINT, INK, TWIST, blank, save_all, tidy
 
@@ -137,8 +137,8 @@ def _panel(figure: Figure, axes: Axes, rows: Rows, pair: Pair, shade: str) -> No
             axes.update_datalim(np.column_stack([alone, alone]), updatex=k == 0, updatey=k == 1)
     axes.autoscale_view()
     if known.any():
-        said = f"{int(known.any(axis=1).sum())} failed"
-        axes.set_title(said, fontsize=9, color=TWIST, loc="right")
+        title = f"{int(known.any(axis=1).sum())} failed"
+        axes.set_title(title, fontsize=9, color=TWIST, loc="right")
     for axis, name, scale in zip("xy", pair, scales, strict=True):
         axes.set(**{f"{axis}label": _plain(name)})
         if isinstance(scale, list):
@@ -171,7 +171,7 @@ def _draw(figure: Figure, axes: Axes, rows: Rows, points: np.ndarray, shade: str
         bar.ax.tick_params(labelsize=9)
     elif shade:
         known = words(rows, shade)
-        which = np.array([said(row.get(shade)) for row in rows])
+        which = np.array([as_text(row.get(shade)) for row in rows])
         for word, colour in zip(known, PALETTE, strict=False):
             axes.scatter(*points[which == word].T, color=colour, label=_plain(word), **style)
         axes.scatter(*points[which == ""].T, color=FAINT, **style)
@@ -206,5 +206,5 @@ def _points(rows: Rows, pair: Pair, scales: Sequence[str | list[str]]) -> np.nda
 
 def _place(value: Any, places: str | dict[str, int]) -> float:
     if isinstance(places, dict):
-        return places.get(said(value), np.nan)
+        return places.get(as_text(value), np.nan)
     return float(value) if is_number(value) else np.nan

@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ribbonopt.solution import Solution
+from ribbonopt.solution.solution import Solution
 
 from .camera import place_camera
 from .facets import SEAM, draw_surface

@@ -44,7 +44,7 @@ def varied(rows: Rows, name: str) -> list[float]:
 
 def words(rows: Rows, name: str) -> list[str]:
     """Return the words of a column, each once, in the order in which they come."""
-    found = (said(row.get(name)) for row in rows if not is_missing(row.get(name)))
+    found = (as_text(row.get(name)) for row in rows if not is_missing(row.get(name)))
     return list(dict.fromkeys(found))
 
 
@@ -64,7 +64,7 @@ def is_logarithmic(values: Sequence[float]) -> bool:
     return bool(values) and min(values) > 0 and max(values) > WIDE * min(values)
 
 
-def said(value: Any) -> str:
+def as_text(value: Any) -> str:
     """Return a value in words, as a scene would say it; nothing for a gap."""
     if is_missing(value):
         return ""
@@ -73,7 +73,7 @@ def said(value: Any) -> str:
     if isinstance(value, float):
         return f"{value:.6g}"
     if isinstance(value, Mapping):
-        return ", ".join(f"{key}: {said(item)}" for key, item in value.items())
+        return ", ".join(f"{key}: {as_text(item)}" for key, item in value.items())
     if isinstance(value, list | tuple):
-        return f"[{', '.join(map(said, value))}]"
+        return f"[{', '.join(map(as_text, value))}]"
     return str(value)

@@ -40,8 +40,8 @@ def failures_html(rows: Rows, inputs: Sequence[str], colours: dict[str, str]) ->
     """Return a section of the report: a paragraph for each group, and where among the inputs."""
     failures = failures_of(rows)
     if not failures:
-        said = "Nothing: all verified." if rows else "No ribbon has been solved."
-        return f"<h2>What failed</h2><p>{said}</p>"
+        words = "Nothing: all verified." if rows else "No ribbon has been solved."
+        return f"<h2>What failed</h2><p>{words}</p>"
     every = {key: numbers(rows, key) if is_numeric(rows, key) else [] for key in inputs}
     parts = []
     for failure in failures[:KINDS]:

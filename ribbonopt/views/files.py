@@ -6,7 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from ribbonopt.errors import OutputError
-from ribbonopt.solution import Solution
+from ribbonopt.solution.solution import Solution
 
 from .plane import draw_plane
 from .ribbon import draw_ribbon

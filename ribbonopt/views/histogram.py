@@ -13,16 +13,7 @@ from itertools import pairwise
 
 from ribbonopt.plain import is_number
 
-from .columns import (
-    Rows,
-    columns,
-    is_logarithmic,
-    is_missing,
-    is_numeric,
-    said,
-    varied,
-    words,
-)
+from .columns import Rows, as_text, columns, is_logarithmic, is_missing, is_numeric, varied, words
 
 BINS = (6, 24)  # least and most, if values do not recur
 MOST_BARS = 60  # of values that recur, and in the room of which they lie
@@ -107,7 +98,7 @@ def _of_words(rows: Rows, name: str) -> Histogram | None:
         return None
     slots = {word: i for i, word in enumerate(known)}
     placed = [
-        (slots[said(row[name])], bool(row["verified"]))
+        (slots[as_text(row[name])], bool(row["verified"]))
         for row in rows
         if not is_missing(row.get(name))
     ]

@@ -13,7 +13,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from ribbonopt.solution import Solution
+from ribbonopt.solution.solution import Solution
 
 Array = NDArray[np.float64]
 

@@ -7,7 +7,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ribbonopt.solution import Solution
+from ribbonopt.solution.solution import Solution
 
 from .pieces import Piece
 from .style import ALLOWED, BENDING, DASHES, FAINT, FORBIDDEN, INK, blank, head, tidy

@@ -17,19 +17,19 @@ from statistics import median
 from typing import Any
 
 from ribbonopt.errors import OutputError
+from ribbonopt.output.staging import replacing
 from ribbonopt.plain import is_number
-from ribbonopt.staging import replacing
 
 from .columns import (
     VECTORS,
     Row,
     Rows,
+    as_text,
     columns,
     is_logarithmic,
     is_missing,
     is_numeric,
     numbers,
-    said,
     varied,
     words,
 )
@@ -166,7 +166,7 @@ def _cells(row: Row, names: Sequence[str], folders: set[str]) -> str:
     cells = []
     for name in names:
         value = row.get(name)
-        text, title, kind = said(value), "", _kind(name)
+        text, title, kind = as_text(value), "", _kind(name)
         if len(text) > LONGEST:
             text, title = text[: LONGEST - 1] + "…", f' title="{escape(text)}"'
         text = escape(text)
@@ -212,4 +212,4 @@ def _data(rows: Rows, inputs: tuple[str, ...], colours: dict[str, str]) -> str:
 def _plain(value: Any, numeric: bool) -> Any:
     if is_missing(value):
         return None
-    return value if numeric else said(value)
+    return value if numeric else as_text(value)

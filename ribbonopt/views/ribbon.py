@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ribbonopt.solution import Solution
+from ribbonopt.solution.solution import Solution
 
 from .camera import Camera, place_camera
 from .facets import Drawing, draw_surface

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ribbonopt.solution import Solution
+from ribbonopt.solution.solution import Solution
 
 from .pieces import Array, Piece
 from .style import ALLOWED, BENDING, DASHES, FORBIDDEN, INK, RATIO, TWIST, blank, head, tidy

@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 
-from ribbonopt.accuracy.topology import closure
+from ribbonopt.checks.topology import closure
 from ribbonopt.scene.units import Units
-from ribbonopt.solution import Solution
+from ribbonopt.solution.solution import Solution
 
 from .pieces import ROWS, Piece, sample_pieces
 from .symmetry import continued

@@ -4,13 +4,13 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from ribbonopt.accuracy.topology import Band
-from ribbonopt.symmetry import Flip
+from ribbonopt.checks.flip import Flip
+from ribbonopt.checks.topology import ClosedBand
 
 from .pieces import Piece
 
 
-def continued(band: Band, solved: tuple[Piece, ...]) -> tuple[Piece, ...]:
+def continued(band: ClosedBand, solved: tuple[Piece, ...]) -> tuple[Piece, ...]:
     """Return the pieces that follow those that were solved, in order of arclength."""
     if band.flip is None:
         return ()
@@ -38,7 +38,7 @@ def image(flip: Flip, piece: Piece) -> Piece:
     )
 
 
-def turned(band: Band, piece: Piece) -> Piece:
+def turned(band: ClosedBand, piece: Piece) -> Piece:
     """Return the next image of a piece under the turn of a band, two flips further on.
 
     The first flip is about d1. If the last is about d2 the two reverse d1 and d2, and u2 with them.

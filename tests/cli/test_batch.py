@@ -15,10 +15,10 @@ from batches import STUDY, without_times, written
 from half_studies import SCENE
 
 from ribbonopt.cli import batch
-from ribbonopt.pipeline import solve
+from ribbonopt.pipeline.prepared import solve
 from ribbonopt.scene import load_scene
-from ribbonopt.studies.batch import run_batch
-from ribbonopt.studies.sweep import load_study
+from ribbonopt.studies.batch.batch import run_batch
+from ribbonopt.studies.batch.sweep import load_study
 
 Run = Callable[..., Any]
 

@@ -12,9 +12,9 @@ from typing import Any
 import pytest
 from batches import COMMAND, STUDY, lost, on_purpose, without_times, written
 
-from ribbonopt.results import load_solution
-from ribbonopt.studies.batch import run_batch
-from ribbonopt.studies.sweep import load_study
+from ribbonopt.output.results import load_solution
+from ribbonopt.studies.batch.batch import run_batch
+from ribbonopt.studies.batch.sweep import load_study
 
 Run = Callable[..., Any]
 CLUSTER = """\

@@ -17,12 +17,13 @@ import pytest
 from batches import COMMAND, STUDY, lost, on_purpose, without_times, written
 from disks import Full
 
-from ribbonopt import results, staging
-from ribbonopt.studies import batch_files, worker
-from ribbonopt.studies.batch import run_batch
-from ribbonopt.studies.chunks import chunks_of
-from ribbonopt.studies.crew import message
-from ribbonopt.studies.sweep import load_study
+from ribbonopt.output import results, staging
+from ribbonopt.studies.batch import files as batch_files
+from ribbonopt.studies.batch import worker
+from ribbonopt.studies.batch.batch import run_batch
+from ribbonopt.studies.batch.chunks import chunks_of
+from ribbonopt.studies.batch.processes import message
+from ribbonopt.studies.batch.sweep import load_study
 
 Run = Callable[..., Any]
 

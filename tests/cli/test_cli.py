@@ -11,7 +11,7 @@ from typing import Any
 import pytest
 from references import HALF_MOEBIUS
 
-from ribbonopt.results import load_solution
+from ribbonopt.output.results import load_solution
 from ribbonopt.scene import json_schema
 from ribbonopt.version import VERSION
 

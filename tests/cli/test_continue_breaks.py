@@ -26,7 +26,7 @@ from branches import (
 )
 from disks import Full
 
-from ribbonopt.studies import branch_files
+from ribbonopt.studies.continuation import files as branch_files
 
 Run = Callable[..., Any]
 

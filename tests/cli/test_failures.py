@@ -8,7 +8,7 @@ from typing import Any
 
 import pytest
 
-from ribbonopt.results import load_solution
+from ribbonopt.output.results import load_solution
 
 Run = Callable[..., Any]
 

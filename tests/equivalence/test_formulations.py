@@ -10,16 +10,17 @@ import pytest
 from references import HALF_MOEBIUS, REGULARIZED
 
 from ribbonopt.accuracy.estimate import estimate_error
-from ribbonopt.accuracy.verify import unverified, verify
-from ribbonopt.check import check_scene
+from ribbonopt.checks.verify import verify
 from ribbonopt.errors import ModelError
-from ribbonopt.joined import Joined
-from ribbonopt.pipeline import Prepared, prepare
-from ribbonopt.report import report
-from ribbonopt.results import load_solution, save_solution
+from ribbonopt.output.report import report
+from ribbonopt.output.results import load_solution, save_solution
+from ribbonopt.output.summary import summarize
+from ribbonopt.pipeline.check import check_scene
+from ribbonopt.pipeline.prepared import Prepared, prepare
 from ribbonopt.scene import load_scene
-from ribbonopt.solution import Solution
-from ribbonopt.summary import summarize
+from ribbonopt.solution.solution import Solution
+from ribbonopt.solution.trajectory import Trajectory
+from ribbonopt.solution.verification import unverified
 
 Solved = Callable[..., Solution]
 
@@ -166,7 +167,7 @@ class TestForbiddenRegion:
         report = built.solver.solve(w, p)
         found = Solution(
             scene=built.scene,
-            joined=Joined(built.problem, built.nlp.blocks.dense(report.w, p)),
+            trajectory=Trajectory(built.problem, built.nlp.blocks.dense(report.w, p)),
             status=report.status,
             message="",
             iterations=report.iterations,

@@ -11,9 +11,9 @@ from references import HALF_MOEBIUS, REGULARIZED, VARIATIONAL
 
 from ribbonopt.accuracy.estimate import estimate_error
 from ribbonopt.errors import TranscriptionError
-from ribbonopt.pipeline import prepare
+from ribbonopt.pipeline.prepared import prepare
 from ribbonopt.scene import load_scene
-from ribbonopt.solution import Solution
+from ribbonopt.solution.solution import Solution
 
 Solved = Callable[..., Solution]
 

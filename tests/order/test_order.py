@@ -9,9 +9,9 @@ from analytic import by_newton, implicit, rational, rational_exact
 from references import HALF_MOEBIUS
 from scipy.integrate import solve_ivp
 
-from ribbonopt.pipeline import solve
+from ribbonopt.pipeline.prepared import solve
 from ribbonopt.scene import load_scene
-from ribbonopt.solution import Solution
+from ribbonopt.solution.solution import Solution
 from ribbonopt.transcription import gauss, radau
 
 SCHEMES = {"gauss": gauss, "radau": radau}

@@ -11,9 +11,9 @@ import numpy as np
 import pytest
 from references import HALF_MOEBIUS, REGULARIZED
 
-from ribbonopt.pipeline import solve
+from ribbonopt.pipeline.prepared import solve
 from ribbonopt.scene import load_scene
-from ribbonopt.solution import Solution
+from ribbonopt.solution.solution import Solution
 
 SADOWSKY = "law={type: sadowsky}"
 SMOOTHED = "law={type: regularized, epsilon: 0.01}"

@@ -14,9 +14,9 @@ from scipy.optimize import brentq
 from scipy.special import ellipe, ellipk
 
 from ribbonopt.scene import load_scene
-from ribbonopt.solution import Solution
-from ribbonopt.studies.continuation import Continuation
-from ribbonopt.studies.points import POINT, Point
+from ribbonopt.solution.solution import Solution
+from ribbonopt.studies.continuation.continuation import Continuation
+from ribbonopt.studies.continuation.points import POINT, Point
 
 Array = np.ndarray
 Solved = Callable[..., Solution]

@@ -14,7 +14,7 @@ from references import (
     agrees,
 )
 
-from ribbonopt.solution import Solution
+from ribbonopt.solution.solution import Solution
 
 Solved = Callable[..., Solution]
 FINE = "transcription={type: collocation, scheme: gauss, degree: 8, intervals: 10}"

@@ -14,10 +14,10 @@ import pytest
 from references import HALF_MOEBIUS, REGULARIZED
 from scipy.integrate import solve_ivp
 
-from ribbonopt.mechanics.laws import Regularized
-from ribbonopt.pipeline import solve
+from ribbonopt.mechanics.laws.catalogue import RegularizedLaw
+from ribbonopt.pipeline.prepared import solve
 from ribbonopt.scene import load_scene
-from ribbonopt.solution import Solution
+from ribbonopt.solution.solution import Solution
 
 Array = np.ndarray
 SADOWSKY = "law={type: sadowsky}"
@@ -148,7 +148,7 @@ def test_an_epsilon_of_rounding_is_sadowsky(configs: Path) -> None:
 @pytest.mark.parametrize("epsilon", [1e-2, 1e-6, 1e-12, 0])
 def test_law_is_evaluated_to_rounding_for_any_epsilon(epsilon: float) -> None:
     # (6.1) with 40 digits: u2 = m2 (M + mu)^2 / (2 M (2 mu + epsilon (M + mu)))
-    law = Regularized(ca.SX(epsilon))
+    law = RegularizedLaw(ca.SX(epsilon))
     a, b = ca.SX.sym("a"), ca.SX.sym("b")
     strain = ca.Function("u", [a, b], [*law.strain(a, b), *law.sheet_strain(a, b, 1)])
     for m2 in (3.0, 0.2, 1e-3, 1e-7, 1e-13, 1e-20):

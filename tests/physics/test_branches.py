@@ -14,10 +14,10 @@ from scipy.optimize import brentq, fsolve
 from scipy.special import ellipe, ellipk
 
 from ribbonopt.errors import ModelError
-from ribbonopt.pipeline import prepare
+from ribbonopt.pipeline.prepared import prepare
 from ribbonopt.scene import load_scene
-from ribbonopt.studies.continuation import Continuation
-from ribbonopt.studies.points import BRANCH_POINT, FOLD, POINT, Point
+from ribbonopt.studies.continuation.continuation import Continuation
+from ribbonopt.studies.continuation.points import BRANCH_POINT, FOLD, POINT, Point
 
 Array = np.ndarray
 DEGREE = np.pi / 180

@@ -7,8 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from ribbonopt.accuracy.topology import (
-    Band,
+from ribbonopt.checks.topology import (
+    ClosedBand,
     closure,
     count_half_twists,
     crosses_itself,
@@ -16,11 +16,11 @@ from ribbonopt.accuracy.topology import (
     loop_problems,
     writhe,
 )
-from ribbonopt.pipeline import prepare
+from ribbonopt.output.summary import summarize
+from ribbonopt.pipeline.prepared import prepare
 from ribbonopt.scene import Loop, load_scene
-from ribbonopt.solution import Solution
+from ribbonopt.solution.solution import Solution
 from ribbonopt.solvers import Status
-from ribbonopt.summary import summarize
 
 Solved = Callable[..., Solution]
 Array = np.ndarray
@@ -156,7 +156,7 @@ def test_the_edges_link_the_centre_line_as_often(solved: Solved, loop: tuple[str
         assert linking(r, edge) == pytest.approx(count, abs=0.02)
 
 
-def across(band: Band, count: int) -> Array:
+def across(band: ClosedBand, count: int) -> Array:
     """Director d2 along a closed band, at the points of its line."""
     rows = 2 * -(-count // (2 * band.pieces))
     d2 = band.solution.sample(np.linspace(*band.solution.scene.interval, rows + 1), "d2")

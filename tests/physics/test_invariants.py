@@ -9,9 +9,9 @@ from scipy.integrate import solve_ivp
 from scipy.spatial.transform import Rotation
 
 from ribbonopt.accuracy.estimate import estimate_error
-from ribbonopt.pipeline import solve
+from ribbonopt.pipeline.prepared import solve
 from ribbonopt.scene import Boundary, Directors, End, LoadGuess, Sadowsky, Scene
-from ribbonopt.solution import Solution
+from ribbonopt.solution.solution import Solution
 
 Solved = Callable[..., Solution]
 Array = np.ndarray

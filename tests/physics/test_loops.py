@@ -11,8 +11,8 @@ from scipy.optimize import brentq
 from scipy.spatial.transform import Rotation
 from scipy.special import ellipe, ellipk
 
-from ribbonopt.accuracy.topology import count_half_twists
-from ribbonopt.pipeline import solve
+from ribbonopt.checks.topology import count_half_twists
+from ribbonopt.pipeline.prepared import solve
 from ribbonopt.scene import (
     Boundary,
     Collocation,
@@ -25,7 +25,7 @@ from ribbonopt.scene import (
     Scene,
     Variational,
 )
-from ribbonopt.solution import Solution
+from ribbonopt.solution.solution import Solution
 
 Array = np.ndarray
 SMOOTH, PAPER = Variational(delta=0.01), Regularized(epsilon=0.01)

@@ -13,12 +13,12 @@ import pytest
 from scipy.integrate import solve_ivp
 from scipy.spatial.transform import Rotation
 
-from ribbonopt.accuracy.arcs import Arcs
-from ribbonopt.accuracy.verify import verify
-from ribbonopt.pipeline import prepare, solve
+from ribbonopt.checks.arcs import Arcs
+from ribbonopt.checks.verify import verify
+from ribbonopt.pipeline.prepared import prepare, solve
+from ribbonopt.pipeline.search import Search
 from ribbonopt.scene import Scene, loads_scene
-from ribbonopt.search import Search
-from ribbonopt.solution import Solution
+from ribbonopt.solution.solution import Solution
 from ribbonopt.solvers import Status
 
 Array = np.ndarray

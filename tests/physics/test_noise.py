@@ -9,7 +9,7 @@ from ribbonopt.arrays import Array
 from ribbonopt.guess import Guess
 from ribbonopt.mechanics import RodFields
 from ribbonopt.mechanics.rotations import matrix_of, quaternions_from
-from ribbonopt.pipeline import Prepared, prepare
+from ribbonopt.pipeline.prepared import Prepared, prepare
 from ribbonopt.scene import load_scene
 
 TRIES = 50

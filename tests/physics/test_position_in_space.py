@@ -9,7 +9,7 @@ import pytest
 from references import ELASTICA, agrees
 from scipy.spatial.transform import Rotation
 
-from ribbonopt.pipeline import solve
+from ribbonopt.pipeline.prepared import solve
 from ribbonopt.scene import (
     Boundary,
     Collocation,
@@ -25,7 +25,7 @@ from ribbonopt.scene import (
     Turns,
     Variational,
 )
-from ribbonopt.solution import Solution
+from ribbonopt.solution.solution import Solution
 
 Array = np.ndarray
 WAYS = ("quaternion", "turns", "directors of the lab")

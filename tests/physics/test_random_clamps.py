@@ -13,9 +13,9 @@ import pytest
 from scipy.integrate import solve_ivp
 
 from ribbonopt.mechanics.rotations import matrix_of
-from ribbonopt.pipeline import prepare
+from ribbonopt.pipeline.prepared import prepare
 from ribbonopt.scene import Boundary, Collocation, Directors, End, Scene, Variational
-from ribbonopt.solution import Solution
+from ribbonopt.solution.solution import Solution
 
 DELTA = 0.01
 FAR_END = 1e-7

@@ -7,14 +7,14 @@ import casadi as ca
 import numpy as np
 import pytest
 
-from ribbonopt.accuracy import stability
-from ribbonopt.accuracy.stability import negative_directions, second_variation, why_not
+from ribbonopt.checks import stability
+from ribbonopt.checks.stability import negative_directions, second_variation, why_not
 from ribbonopt.guess import initial_unknowns
-from ribbonopt.pipeline import prepare, solve
+from ribbonopt.pipeline.prepared import prepare, solve
 from ribbonopt.problem import ribbon_of, theta_values
 from ribbonopt.problem.energy import minimum
 from ribbonopt.scene import Scene, loads_scene
-from ribbonopt.solution import Solution
+from ribbonopt.solution.solution import Solution
 from ribbonopt.solvers import Status
 from ribbonopt.transcription import Collocation, Mesh
 

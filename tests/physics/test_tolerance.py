@@ -14,11 +14,11 @@ from test_mixture import clamp, draw
 
 from ribbonopt.accuracy.estimate import relative_error
 from ribbonopt.cli import main
-from ribbonopt.pipeline import prepare, solve
-from ribbonopt.refinement import on_finer_mesh
-from ribbonopt.results import load_solution
+from ribbonopt.output.results import load_solution
+from ribbonopt.pipeline.prepared import prepare, solve
+from ribbonopt.pipeline.refinement import on_finer_mesh
 from ribbonopt.scene import Collocation, Scene, load_scene
-from ribbonopt.solution import Solution
+from ribbonopt.solution.solution import Solution
 from ribbonopt.solvers import Status
 
 Array = np.ndarray

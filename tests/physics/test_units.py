@@ -9,17 +9,17 @@ import numpy as np
 import pytest
 
 from ribbonopt.accuracy.estimate import estimate_error
-from ribbonopt.check import check_scene
 from ribbonopt.errors import ConvergenceError, ModelError
-from ribbonopt.pipeline import prepare, solve
+from ribbonopt.output.report import report
+from ribbonopt.output.results import load_solution, save_solution
+from ribbonopt.output.summary import summarize
+from ribbonopt.pipeline.check import check_scene
+from ribbonopt.pipeline.prepared import prepare, solve
 from ribbonopt.problem import theta_of
-from ribbonopt.report import report
-from ribbonopt.results import load_solution, save_solution
 from ribbonopt.scene import Scene, loads_scene
 from ribbonopt.scene.units import in_special_units, units_of
-from ribbonopt.solution import Solution
-from ribbonopt.studies.compare import compare
-from ribbonopt.summary import summarize
+from ribbonopt.solution.solution import Solution
+from ribbonopt.studies.comparison.compare import compare
 from ribbonopt.views.subject import subject_of
 
 # D = 2.4e9 x 1e-12 / (12 x 0.75) = 8e-4 / 3 N m and L = 0.25 m: D w / L^2 = F N, D w / L = M N m.

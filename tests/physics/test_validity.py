@@ -6,12 +6,12 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from ribbonopt.accuracy.validity import generatrix_slopes, warnings_of, wunderlich_factor
-from ribbonopt.report import report
+from ribbonopt.checks.validity import generatrix_slopes, warnings_of, wunderlich_factor
+from ribbonopt.output.report import report
+from ribbonopt.output.summary import summarize
 from ribbonopt.scene import Boundary, Loop, RibbonSizes
-from ribbonopt.solution import Solution
+from ribbonopt.solution.solution import Solution
 from ribbonopt.solvers import Status
-from ribbonopt.summary import summarize
 
 Solved = Callable[..., Solution]
 SLOPE = 6.21195648  # largest eta' of the half Moebius ribbon, L = 1

@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from ribbonopt.scene import dump_scene, json_schema, load_scene, loads_scene
-from ribbonopt.solution import Solution
+from ribbonopt.solution.solution import Solution
 
 CONFIGS = Path(__file__).parents[2] / "configs"
 EXPECTED = {

@@ -8,8 +8,8 @@ from references import REGULARIZED, VARIATIONAL, agrees
 from scipy.integrate import solve_ivp
 from scipy.special import ellipe, ellipk
 
-from ribbonopt.accuracy.topology import count_half_twists
-from ribbonopt.solution import Solution
+from ribbonopt.checks.topology import count_half_twists
+from ribbonopt.solution.solution import Solution
 
 Solved = Callable[..., Solution]
 Array = np.ndarray

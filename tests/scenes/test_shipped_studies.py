@@ -6,11 +6,11 @@ import numpy as np
 import pytest
 from references import HALF_MOEBIUS, REGULARIZED
 
-from ribbonopt.pipeline import solve
+from ribbonopt.pipeline.prepared import solve
 from ribbonopt.scene import loads_scene
-from ribbonopt.studies.batch import run_batch
-from ribbonopt.studies.study import Study, assignments
-from ribbonopt.studies.sweep import load_study
+from ribbonopt.studies.batch.batch import run_batch
+from ribbonopt.studies.batch.study import Study, assignments
+from ribbonopt.studies.batch.sweep import load_study
 
 STUDIES = Path(__file__).parents[2] / "configs" / "studies"
 NAMES = sorted(path.stem for path in STUDIES.glob("*.yaml"))

@@ -1,0 +1,28 @@
+"""From what a scene says of its transcription to the transcription itself."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from ribbonopt.problem import BoundaryValueProblem
+from ribbonopt.scene import Collocation as CollocationSettings
+from ribbonopt.scene import Scene
+from ribbonopt.transcription import NLP, Collocation
+
+if TYPE_CHECKING:
+    from ribbonopt.transcription.shooting.shooting import MultipleShooting
+
+
+def transcription_of(scene: Scene) -> Collocation | MultipleShooting:
+    """Return the transcription a scene asks for; TranscriptionError where there is none such."""
+    settings = scene.transcription
+    if isinstance(settings, CollocationSettings):
+        return Collocation.named(settings.scheme, settings.degree)
+    from ribbonopt.transcription.shooting.shooting import MultipleShooting  # few scenes need it
+
+    return MultipleShooting.named(settings.scheme, settings.degree, settings.steps)
+
+
+def discretize(scene: Scene, problem: BoundaryValueProblem) -> NLP:
+    """Return the NLP of a scene's problem on its own number of intervals."""
+    return transcription_of(scene).transcribe(problem, (scene.transcription.intervals,))

@@ -1,0 +1,1 @@
+"""Verdicts on a solution: whether it is what was asked, stable, in the range of the model."""

@@ -1,0 +1,104 @@
+"""Whether Sadowsky's model applies to a ribbon: L >> w >> h, and generatrices that turn slowly.
+
+Needs the sizes of the ribbon, so only scenes in SI are judged. Sadowsky's energy is the limit of
+Wunderlich's for |eta'| w << 1: per length they differ by the factor (1/x) ln((2 + x)/(2 - x)), with
+x = eta' w, and at |x| = 2 the generatrices meet on an edge.
+"""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+
+from ribbonopt.arrays import Array
+from ribbonopt.scene import Homotopy, Kirchhoff, RibbonSizes
+from ribbonopt.solution.solution import Solution
+
+SLENDER = 10.0  # least ratio of length to width, and of width to thickness
+WIDEST = 1 / math.sqrt(3)  # w / L of a Moebius band in space (Schwartz 2023)
+NOTABLE, MEETING = 0.5, 2.0  # |eta'| w
+ROWS = 2001
+FLAT = 1e-9  # of the largest moment, or of D w / L: below it m3 counts as zero
+
+
+def warnings_of(solution: Solution) -> list[str]:
+    """Return a sentence for each reason to doubt the model; none for scenes without sizes."""
+    ribbon = solution.scene.ribbon
+    if ribbon is None:
+        return []
+    result = [*_slenderness(ribbon), *_width_of_loop(solution, ribbon)]
+    if solution.status.converged:
+        result += _generatrices(solution, ribbon.width)
+    return result
+
+
+def wunderlich_factor(x: float) -> float:
+    """Wunderlich's energy per length over Sadowsky's, at x = eta' w; |x| < 2."""
+    return 1.0 if x == 0 else math.log((2 + x) / (2 - x)) / x
+
+
+def _slenderness(ribbon: RibbonSizes) -> list[str]:
+    pairs = (("length", "width"), ("width", "thickness"))
+    ratios = {pair: getattr(ribbon, pair[0]) / getattr(ribbon, pair[1]) for pair in pairs}
+    return [
+        f"the {large} is only {ratio:.3g} times the {small}; the model is for L >> w >> h"
+        for (large, small), ratio in ratios.items()
+        if ratio < SLENDER
+    ]
+
+
+def _width_of_loop(solution: Solution, ribbon: RibbonSizes) -> list[str]:
+    loop = solution.scene.boundary.loop
+    if loop is None or loop.half_twists % 2 == 0:
+        return []
+    pieces = {"whole": 1, "half": 2, "fundamental": 2 * abs(loop.half_twists)}[loop.piece]
+    start, end = solution.scene.interval
+    share = ribbon.width / (pieces * (end - start))
+    if share < WIDEST:
+        return []
+    return [
+        f"no embedded developable Moebius band is that wide: w/L = {share:.3g}, and "
+        f"w/L < 1/sqrt(3) = {WIDEST:.3g}"
+    ]
+
+
+def _generatrices(solution: Solution, width: float) -> list[str]:
+    """Compare with Wunderlich's energy where the generatrices turn fastest."""
+    law = solution.scene.law
+    if isinstance(law, Kirchhoff) or (isinstance(law, Homotopy) and law.rho < 1):
+        return []
+    s = np.linspace(*solution.scene.interval, ROWS)
+    slopes = np.abs(generatrix_slopes(solution, s))
+    row = int(slopes.argmax())
+    x, place = float(slopes[row]) * width, f"at s = {s[row]:.4g}"
+    if x >= MEETING:
+        return [
+            f"the generatrices meet inside the ribbon {place} (|eta'| w = {x:.3g}, beyond 2): "
+            "Sadowsky's model is out of its range"
+        ]
+    if x <= NOTABLE:
+        return []
+    more = wunderlich_factor(x) - 1
+    return [
+        f"Wunderlich's energy per length is {more:.1%} above Sadowsky's {place} "
+        f"(|eta'| w = {x:.3g})"
+    ]
+
+
+def generatrix_slopes(solution: Solution, s: Array) -> Array:
+    """Slopes eta' (k,) at arclengths s (k,), by the moments; zero where |eta| > 1 or not twisted.
+
+    Sadowsky's law has |eta| = tan(phi / 2) with tan phi = m3 / |m2|, so that on either sheet
+    eta' = phi' (1 + eta^2) / 2; m2' = -n1 - u3 m1 and m3' = u2 m1 by eqs. (2.2), (2.7). Where m2
+    changes sign eta leaps, and laws that smooth the leap are not blamed for it.
+    """
+    o = solution.outputs(s)
+    largest = max(float(np.hypot(o["m2"], o["m3"]).max()), solution.units.moment)
+    rows = (np.abs(o["m3"]) > FLAT * largest) & (np.abs(o["eta"]) <= 1 + 1e-9)
+    m1, m2, m3, n1, u2, u3 = (o[name][rows] for name in ("m1", "m2", "m3", "n1", "u2", "u3"))
+    size = np.hypot(m2, m3)
+    turn = (m2 * u2 * m1 + m3 * (n1 + u3 * m1)) / size**2
+    result = np.zeros(len(s))
+    result[rows] = (1 + (m3 / (size + np.abs(m2))) ** 2) / 2 * turn
+    return result

@@ -1,0 +1,109 @@
+"""Verification: whether this is the solution of the problem that the scene states.
+
+Every condition is evaluated again on the dense output, by expressions that have no other roots than
+the condition itself; directors must be orthonormal and |eta| <= 1 where the law demands it, and a
+loop must close with the half twists that were asked.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from ribbonopt.arrays import Array
+from ribbonopt.problem import Ribbon
+from ribbonopt.solution.solution import Solution
+from ribbonopt.solution.verification import Verification, unverified
+from ribbonopt.transcription.buffered import buffered
+
+TOLERANCE = 1e-8
+
+
+def verify(solution: Solution, ribbon: Ribbon) -> Verification:
+    """Check a solution against its scene."""
+    if not (np.diff(solution.trajectory.ends) > 0).all():
+        problem = "a phase between two sign changes of m2 has no length"
+        return replace(unverified(), problems=(problem,))
+    worst_name, worst = _worst_condition(solution, ribbon)
+    residual = float(solution.dense.residual_between_nodes().max())
+    nodes = solution.at_nodes
+    drift = {
+        "n": _drift(nodes["n"]),
+        "n_dot_m": _drift(nodes["n_dot_m"], np.linalg.norm(solution.n0) * _size(nodes["m"])),
+        "H": _drift(nodes["H"]),
+        "orthonormality": float(nodes["orthonormality"].max()),
+    }
+    problems = []
+    # Gauss keeps orthonormality to rounding, other schemes only to their own accuracy; natural
+    # conditions of a minimum hold to the accuracy of the mesh.
+    exact = solution.dense.blocks.symplectic and not solution.problem.recovered
+    allowed = TOLERANCE + (0.0 if exact else residual)
+    if not worst <= allowed:
+        units = "" if solution.scene.ribbon is None else " (units Dw = L = 1)"
+        problems.append(f"{worst_name} is off by {worst:.2g}{units}")
+    if not drift["orthonormality"] <= allowed:
+        problems.append(
+            f"the directors are not orthonormal (off by {drift['orthonormality']:.2g}); refine the "
+            "mesh or use scheme: gauss"
+        )
+    # The convexified energy itself allows |eta| > 1, as a mixture of both sheets.
+    if solution.sheets:
+        from .arcs import phase_problems  # few scenes have phases
+
+        problems += phase_problems(solution)
+    if ribbon.law.bounds_eta and not solution.problem.recovered:
+        eta = np.abs(nodes["eta"])
+        if 0 in solution.sheets:
+            eta[
+                np.array(solution.sheets)[solution.trajectory.phase_of(solution.trajectory.nodes)]
+                == 0
+            ] = 0
+        if not eta.max() <= 1 + TOLERANCE + residual:
+            s = solution.nodes[int(eta.argmax())]
+            problems.append(
+                f"|eta| = {eta.max():.4g} at s = {s:.4g}, beyond 1: eq. (4.1) forbids it; the "
+                "ribbon wants to switch sheets there (law: sadowsky, regularized or variational)"
+            )
+    loop = solution.scene.boundary.loop
+    if loop is not None:
+        from .topology import loop_problems  # only where a scene has one
+
+        problems += loop_problems(solution, loop, residual)
+    law = float(solution.at_stages["law_residual"].max())
+    law /= max(_size(nodes["u"]), np.finfo(float).tiny)  # a straight ribbon has no strains
+    return Verification(tuple(problems), worst, residual, law, drift)
+
+
+def _worst_condition(solution: Solution, ribbon: Ribbon) -> tuple[str, float]:
+    """Name and size of the condition that is furthest from what was asked."""
+    names, function = ribbon.verdicts_function
+    count, constants = len(ribbon.model.states), len(ribbon.model.constants)
+    nodes = solution.dense.at_nodes
+    # Without further states, and without the lengths of phases.
+    known = (
+        nodes[0, :count],
+        nodes[-1, :count],
+        solution.constants[:constants],
+        solution.dense.theta,
+    )
+    (values,) = buffered(function)(*known)
+    # Relative to the loads, absolute in lengths and directors (L = 1).
+    n0, m0 = solution.n0 / solution.units.force, solution.m0 / solution.units.moment
+    scale = 1 + max(np.linalg.norm(n0), np.linalg.norm(m0))
+    sizes = np.abs(values)
+    loads = np.array(["force" in n or "moment" in n or "also" in n for n in names])
+    sizes = np.where(np.isfinite(sizes), sizes / np.where(loads, scale, 1.0), np.inf)
+    index = int(sizes.argmax())
+    return names[index], float(sizes[index])
+
+
+def _drift(values: Array, scale: float | None = None) -> float:
+    """Largest change along the ribbon, relative to the size of the quantity."""
+    size = _size(values) if scale is None else scale
+    change = np.abs(values - values[0]).max()
+    return float(change / size) if size > 0 else float(change)
+
+
+def _size(values: Array) -> float:
+    return float(np.abs(values).max())

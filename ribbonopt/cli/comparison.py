@@ -1,0 +1,66 @@
+"""Verbs of many solves: `compare`, `bench`."""
+
+from __future__ import annotations
+
+import argparse
+import gc
+import sys
+from collections.abc import Callable
+from typing import TYPE_CHECKING
+
+from .arguments import chosen, count, numbers
+from .common import NOT_CONVERGED, load, print_json
+
+if TYPE_CHECKING:
+    from ribbonopt.studies.comparison.benchmark import Benchmark
+    from ribbonopt.studies.comparison.compare import Comparison
+
+
+def compare(options: argparse.Namespace) -> int:
+    """Solve a scene by all formulations and transcriptions."""
+    tolerances = numbers("--tolerances", options.tolerances)
+    scene, _ = load(options)
+    from ribbonopt.studies.comparison.compare import compare
+
+    return _study(options, "comparison", lambda: compare(scene, *chosen(options), tolerances))
+
+
+def bench(options: argparse.Namespace) -> int:
+    """Measure time against error over degrees and meshes."""
+    repeat = count("--repeat", options.repeat)
+    scene, _ = load(options)
+    from ribbonopt.studies.comparison.benchmark import benchmark
+
+    return _study(
+        options, "benchmark", lambda: benchmark(scene, *chosen(options), repeat, options.quick)
+    )
+
+
+def _study(
+    options: argparse.Namespace, name: str, run: Callable[[], Comparison | Benchmark]
+) -> int:
+    gc.enable()  # many scenes, and most of what they build is soon done with
+    if options.out:
+        from ribbonopt.output.staging import staged_result
+        from ribbonopt.studies.comparison.files import save_study
+        from ribbonopt.views.comparison import save_figure
+
+        # The place is known to be good before minutes are spent.
+        own = frozenset(f"{name}.{kind}" for kind in ("csv", "json", "png"))
+        with staged_result(options.out, own) as stage:
+            study = run()
+            save_study(study, stage.folder, name)
+            save_figure(study.plain(), stage.folder / f"{name}.png")
+            stage.commit()
+    else:
+        study = run()
+    if options.json:
+        print_json(study.plain())
+    elif not options.quiet:
+        from ribbonopt.studies.comparison.table import table
+
+        print(table(study))
+    if study.solved:
+        return 0
+    print(f"ribbonopt: {study.name}: no pair gave a verified solution", file=sys.stderr)
+    return NOT_CONVERGED

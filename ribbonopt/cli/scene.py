@@ -1,0 +1,124 @@
+"""Verbs of one scene: `solve`, `check`, `plot`, `schema`."""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from typing import TYPE_CHECKING, Any
+
+from ribbonopt.errors import SceneError
+
+from .common import NOT_CONVERGED, load, pairs_of, print_json
+
+if TYPE_CHECKING:
+    from pathlib import Path
+
+    from ribbonopt.solution.solution import Solution
+
+
+def solve(options: argparse.Namespace) -> int:
+    """Solve a scene and report its numbers."""
+    scene, import_seconds = load(options)
+    from ribbonopt.pipeline.prepared import solve
+
+    if not (options.out or options.plot):
+        return _tell(options, solve(scene), import_seconds, None)
+    from ribbonopt.output.results import save_solution
+    from ribbonopt.output.staging import staged_result
+
+    # Claimed before solving, so that a folder that cannot be written costs no solve.
+    with staged_result(options.out or f"results/{scene.name}") as stage:
+        solution = solve(scene)
+        save_solution(solution, stage.folder)
+        if options.plot:
+            from ribbonopt.views import save_figures
+
+            save_figures(solution, stage.folder)
+        written = stage.commit(solution.status.failure)
+    return _tell(options, solution, import_seconds, written)
+
+
+def _tell(
+    options: argparse.Namespace, solution: Solution, import_seconds: float, written: Path | None
+) -> int:
+    from ribbonopt.output.report import report
+    from ribbonopt.output.summary import summarize
+
+    summary = summarize(solution)
+    summary["timings"] = {"import": import_seconds} | summary["timings"]
+    if options.json:
+        print_json(summary)
+    elif not options.quiet:
+        print(report(summary))
+        if written:
+            names = ", ".join(sorted(p.name for p in written.iterdir()))
+            print(f"  written: {written}: {names}")
+    if solution.verified:
+        return 0
+    kept = f"; kept in {written}" if written else ""
+    print(f"ribbonopt: {solution.scene.name}: {solution.message}{kept}", file=sys.stderr)
+    return NOT_CONVERGED
+
+
+def check(options: argparse.Namespace) -> int:
+    """Validate a scene and count unknowns and conditions."""
+    scene, _ = load(options)
+    from ribbonopt.pipeline.check import check_scene
+
+    found = check_scene(scene)
+    if options.json:
+        print_json(found)
+    elif not options.quiet:
+        print(_checked(found))
+    return 0
+
+
+def _checked(found: dict[str, Any]) -> str:
+    unknowns = ", ".join(f"{name} {count}" for name, count in found["unknowns"].items())
+    lines = [
+        f"{found['name']}: valid",
+        f"  {sum(found['unknowns'].values())} unknown numbers: {unknowns}",
+        f"  {len(found['conditions'])} conditions:",
+        *(f"    {name}" for name in found["conditions"]),
+        f"  {found['size']} unknowns once discretised",
+        "  will be skipped:",
+        *(f"    {reason}" for reason in found["skipped"]),
+    ]
+    return "\n".join(lines)
+
+
+def schema(options: argparse.Namespace) -> int:
+    """Print the JSON schema of scenes."""
+    from ribbonopt.scene import json_schema
+
+    print_json(json_schema(), indent=2)
+    return 0
+
+
+def plot(options: argparse.Namespace) -> int:
+    """Draw the pictures of a saved result."""
+    from pathlib import Path
+
+    from ribbonopt.output.results import load_solution
+    from ribbonopt.output.staging import picture_folder
+    from ribbonopt.views import save_figures
+
+    result, pairs = Path(options.result), pairs_of(options.plot) or []
+    if (result / "branch.jsonl").is_file():
+        from .branch import draw as draw_branch
+
+        paths = draw_branch(result, picture_folder(options.out or result), pairs)
+    elif (result / "rows.jsonl").is_file():
+        from .batch import draw as draw_batch
+
+        paths = draw_batch(result, picture_folder(options.out or result), pairs)
+    elif pairs:
+        raise SceneError(
+            f"--plot: {result} is no branch and no batch, whose columns could be drawn"
+        )
+    else:
+        solution = load_solution(result)
+        paths = save_figures(solution, picture_folder(options.out or result))
+    for path in paths:
+        print(path)
+    return 0

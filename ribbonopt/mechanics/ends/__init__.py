@@ -1,0 +1,1 @@
+"""The ends of a ribbon: what may be prescribed there, as conditions."""

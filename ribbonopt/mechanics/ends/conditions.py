@@ -1,0 +1,206 @@
+"""What may be prescribed at the ends of a ribbon: one class for each kind of condition.
+
+Each knows its numbers (`theta`: names and values, which become parameters of the problem), its
+residuals (zero where the condition holds, one expression per scalar equation) and its verdicts
+(what to look at afterwards; more than the residuals where these have other roots). Names are the
+paths of the scene file, so that messages speak the user's language.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from typing import Literal
+
+import casadi as ca
+import numpy as np
+
+from ribbonopt.mechanics.rod import RodModel, RodState
+from ribbonopt.mechanics.rotations import directors_of, quaternions_from
+
+EndName = Literal["start", "end"]
+Named = dict[str, ca.SX]
+
+
+@dataclass(frozen=True, eq=False)
+class CrossSection:
+    """The rod at one end: states x, cross section, and strains (u2, u3)."""
+
+    model: RodModel
+    x: ca.SX
+    rod: RodState
+    u2: ca.SX
+    u3: ca.SX
+
+
+@dataclass(frozen=True, eq=False)
+class Context:
+    """What conditions are made of: both ends and the parameters of the problem by name."""
+
+    ends: Mapping[EndName, CrossSection]
+    theta: Callable[[str], ca.SX]
+
+
+class Condition(ABC):
+    """One thing prescribed at the ends."""
+
+    @abstractmethod
+    def theta(self) -> dict[str, float]:
+        """Numbers of this condition by parameter name."""
+
+    @abstractmethod
+    def residuals(self, context: Context) -> Named:
+        """Expressions that vanish where the condition holds, by name."""
+
+    def verdicts(self, context: Context) -> Named:
+        """Expressions to verify on a solution, by name; the residuals unless they have others."""
+        return self.residuals(context)
+
+    @property
+    def kinematic(self) -> bool:
+        """Whether it speaks of positions and directors only, not of loads."""
+        return True
+
+
+@dataclass(frozen=True, eq=False)
+class Component(Condition):
+    """One component of a vector: `quantity` is position, d1, d2, d3, force or moment.
+
+    `axis` is x, y, z (lab frame) or d1, d2, d3 (along a director).
+    """
+
+    end: EndName
+    quantity: str
+    axis: str
+    value: float
+
+    @property
+    def name(self) -> str:
+        """Path of the component in the scene."""
+        return f"boundary.{self.end}.{self.quantity}.{self.axis}"
+
+    @property
+    def kinematic(self) -> bool:
+        return self.quantity not in ("force", "moment")
+
+    def theta(self) -> dict[str, float]:
+        return {self.name: self.value}
+
+    def residuals(self, context: Context) -> Named:
+        rod = context.ends[self.end].rod
+        attribute = {"position": "r", "force": "n", "moment": "m"}.get(self.quantity, self.quantity)
+        vector = getattr(rod, attribute)
+        if self.axis in ("x", "y", "z"):
+            found = vector["xyz".index(self.axis)]
+        else:
+            found = ca.dot(vector, getattr(rod, self.axis))
+        return {self.name: found - context.theta(self.name)}
+
+
+@dataclass(frozen=True, eq=False)
+class Frame(Condition):
+    """All three directors: three equations, because the rest is orthonormality."""
+
+    end: EndName
+    matrix: tuple[float, ...]  # nine numbers, rows x, y, z; columns d1, d2, d3
+
+    @property
+    def name(self) -> str:
+        """Path of the frame in the scene."""
+        return f"boundary.{self.end}.directors"
+
+    def theta(self) -> dict[str, float]:
+        q = quaternions_from(np.reshape(self.matrix, (1, 3, 3)))[0]
+        return {f"{self.name}.q{i}": float(q[i]) for i in range(4)}
+
+    def residuals(self, context: Context) -> Named:
+        section = context.ends[self.end]
+        residual = section.model.alignment(section.x, self._quaternion(context))
+        return {f"{self.name} (turn about {a})": residual[i] for i, a in enumerate("xyz")}
+
+    def verdicts(self, context: Context) -> Named:
+        rod = context.ends[self.end].rod
+        targets = directors_of(self._quaternion(context))
+        found = {"d1": rod.d1, "d2": rod.d2, "d3": rod.d3}
+        return {
+            f"{self.name}.{name}": ca.norm_2(found[name] - target)
+            for name, target in zip(found, targets, strict=True)
+        }
+
+    def _quaternion(self, context: Context) -> ca.SX:
+        return ca.vertcat(*(context.theta(f"{self.name}.q{i}") for i in range(4)))
+
+
+@dataclass(frozen=True, eq=False)
+class Direction(Condition):
+    """One whole director: two equations, that it has no part across the prescribed direction."""
+
+    end: EndName
+    director: str
+    target: tuple[float, float, float]
+
+    @property
+    def name(self) -> str:
+        """Path of the director in the scene."""
+        return f"boundary.{self.end}.{self.director}"
+
+    def theta(self) -> dict[str, float]:
+        target = np.array(self.target)
+        # Two directions across the target: the null space of its transpose.
+        across = np.linalg.svd(target[None])[2][1:]
+        vectors = {"across0": across[0], "across1": across[1], "target": target}
+        return {
+            f"{self.name}.{key}.{axis}": float(v[i])
+            for key, v in vectors.items()
+            for i, axis in enumerate("xyz")
+        }
+
+    def residuals(self, context: Context) -> Named:
+        d = getattr(context.ends[self.end].rod, self.director)
+        keys = ("across0", "across1")
+        return {
+            f"{self.name} ({i + 1} of 2)": ca.dot(d, self._vector(context, key))
+            for i, key in enumerate(keys)
+        }
+
+    def verdicts(self, context: Context) -> Named:
+        d = getattr(context.ends[self.end].rod, self.director)
+        return {self.name: ca.norm_2(d - self._vector(context, "target"))}
+
+    def _vector(self, context: Context, key: str) -> ca.SX:
+        return ca.vertcat(*(context.theta(f"{self.name}.{key}.{axis}") for axis in "xyz"))
+
+
+@dataclass(frozen=True, eq=False)
+class Equation(Condition):
+    """Any equation between quantities at the ends, compiled from a formula of the scene.
+
+    `of_loads` says whether forces, moments or strains occur in it; `numbers` are its literals by
+    key; `difference` gives left minus right, a scalar or a vector (3,).
+    """
+
+    index: int
+    text: str
+    of_loads: bool
+    numbers: tuple[tuple[str, float], ...]
+    difference: Callable[[Context, str], ca.SX]
+
+    @property
+    def name(self) -> str:
+        """Path of the equation in the scene."""
+        return f"boundary.also.{self.index}"
+
+    @property
+    def kinematic(self) -> bool:
+        return not self.of_loads
+
+    def theta(self) -> dict[str, float]:
+        return {f"{self.name}.{key}": value for key, value in self.numbers}
+
+    def residuals(self, context: Context) -> Named:
+        difference = self.difference(context, self.name)
+        label = f"{self.name} ({self.text})"
+        if difference.numel() == 1:
+            return {label: difference}
+        return {f"{label}.{axis}": difference[i] for i, axis in enumerate("xyz")}

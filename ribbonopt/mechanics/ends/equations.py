@@ -1,0 +1,81 @@
+"""Equations of a scene (`also:`) as conditions: formulas evaluated on CasADi expressions.
+
+In a scene that was written in SI the quantities are multiplied by their units, and both sides
+divided by that of the equation.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from typing import Literal
+
+import casadi as ca
+
+from ribbonopt.scene.formulas.expressions import Number, Quantity, evaluate, parts
+from ribbonopt.scene.formulas.parsing import parse_equation
+from ribbonopt.scene.units import DIMENSIONS, UNIT_FORCE, UNIT_LENGTH
+
+from .conditions import Context, EndName, Equation
+from .dimensions import dimension_of_equation
+
+Unit = Callable[[float, float], ca.SX]
+
+
+def equation(index: int, text: str, parameters: dict[str, float]) -> Equation:
+    """Return the condition of one entry of `also:`; raises FormulaError if it does not parse."""
+    formula = parse_equation(text, parameters)
+    dimension = dimension_of_equation(formula.left, formula.right)
+
+    def difference(context: Context, name: str) -> ca.SX:
+        unit = _unit(context) if UNIT_LENGTH in parameters else None
+        env = _SymbolicEnv(context, name, unit)
+        result = ca.SX(evaluate(formula.left, env) - evaluate(formula.right, env))
+        return result if unit is None else result / unit(dimension.length, dimension.force)
+
+    nodes = [*parts(formula.left), *parts(formula.right)]
+    numbers = tuple((n.key, n.value) for n in nodes if isinstance(n, Number) and n.key is not None)
+    quantities = {n.name for n in nodes if isinstance(n, Quantity)}
+    of_loads = not quantities <= {"r", "d1", "d2", "d3"}
+    return Equation(index, formula.text, of_loads, numbers, difference)
+
+
+def _unit(context: Context) -> Unit:
+    """Return the unit of a quantity by its exponents of length and force."""
+    length, force = (context.theta(f"parameters.{name}") for name in (UNIT_LENGTH, UNIT_FORCE))
+    return lambda a, b: length**a * force**b
+
+
+class _SymbolicEnv:
+    """Evaluates a formula on CasADi expressions of both ends; `unit` as above, or None for 1."""
+
+    def __init__(self, context: Context, prefix: str, unit: Unit | None) -> None:
+        self._context, self._prefix, self._unit = context, prefix, unit
+
+    def number(self, value: float, key: str | None) -> ca.SX:
+        return ca.SX(value) if key is None else self._context.theta(f"{self._prefix}.{key}")
+
+    def name(self, name: str) -> ca.SX:
+        return self._context.theta(f"parameters.{name}")
+
+    def quantity(self, name: str, end: EndName) -> ca.SX:
+        section = self._context.ends[end]
+        value: ca.SX
+        if name in ("u2", "u3"):
+            value = getattr(section, name)
+        elif name[0] in "nm" and name[1:]:
+            value = section.rod.along(getattr(section.rod, name[0]))[int(name[1]) - 1]
+        else:
+            value = getattr(section.rod, name)
+        return value if self._unit is None else value * self._unit(*DIMENSIONS.get(name, (0, 0)))
+
+    def vector(self, components: Sequence[ca.SX]) -> ca.SX:
+        return ca.vertcat(*components)
+
+    def component(self, vector: ca.SX, axis: Literal["x", "y", "z"]) -> ca.SX:
+        value: ca.SX = vector["xyz".index(axis)]
+        return value
+
+    def call(self, function: str, arguments: Sequence[ca.SX]) -> ca.SX:
+        name = {"abs": "fabs", "norm": "norm_2"}.get(function, function)
+        value: ca.SX = getattr(ca, name)(*arguments)
+        return value

@@ -1,0 +1,1 @@
+"""Constitutive laws: relations between strains and moments, one file for each kind."""

@@ -1,0 +1,1 @@
+"""What leaves the package: summaries, reports, result folders."""

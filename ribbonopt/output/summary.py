@@ -1,0 +1,109 @@
+"""The summary of a solution: plain numbers under keys that stay (DESIGN: `summary.json`)."""
+
+from __future__ import annotations
+
+import platform
+from dataclasses import fields
+from typing import Any
+
+import casadi as ca
+import numpy as np
+
+from ribbonopt.accuracy.estimate import estimate_error
+from ribbonopt.checks.topology import count_half_twists
+from ribbonopt.plain import finite
+from ribbonopt.problem import formulation_name
+from ribbonopt.solution.solution import Solution
+from ribbonopt.version import VERSION
+
+
+def summarize(solution: Solution) -> dict[str, Any]:
+    """Return the summary: lab-frame vectors at the start, in the units of the scene, seconds.
+
+    Numbers that are not known are None.
+    """
+    scene, dense, checks = solution.scene, solution.dense, solution.verification
+    start = solution.start
+    law = {f.name: getattr(scene.law, f.name) for f in fields(scene.law)}
+    summary = {
+        "name": scene.name,
+        "status": solution.status.name.lower(),
+        "verified": solution.verified,
+        "message": solution.message,
+        "formulation": formulation_name(scene),
+        "states": scene.states,
+        "transcription": scene.transcription.type,
+        "scheme": scene.transcription.scheme,
+        "solver": scene.solver.type,
+        "law": law,
+        "parameters": dict(scene.parameters),
+        "interval": list(scene.interval),
+        "loads_from": "costates" if solution.problem.recovered else "unknowns",
+        "n0": start["n"].tolist(),
+        "m0": start["m"].tolist(),
+        "u0": start["u"].tolist(),
+        "H0": float(start["H"]),
+        "energy": solution.energy,
+        "twist": solution.twist,
+        "length": scene.interval[1] - scene.interval[0],
+        "invariant_drift": dict(checks.drift),
+        "worst_condition": checks.worst_condition,
+        "residual_between_nodes": checks.residual_between_nodes,
+        "law_residual": checks.law_residual,
+        "error_estimate": _error_estimate(solution),
+        "switch_points": solution.switch_points.tolist(),
+        "phases": list(solution.sheets),
+        "half_twists": count_half_twists(solution),
+        "unknowns": dense.blocks.layout.unknowns,
+        "intervals": dense.blocks.layout.element_count,
+        "degree": dense.blocks.degree,
+        "iterations": solution.iterations,
+        "equilibria": [_equilibrium(found) for found in (solution, *solution.others)],
+        "path": [dict(step) for step in solution.path],
+        "skipped": list(solution.skipped),
+        "timings": dict(solution.timings),
+        "versions": versions(),
+        "units": solution.units.name,
+        "warnings": _warnings(solution),
+    }
+    plain: dict[str, Any] = finite(summary)
+    return plain
+
+
+def _warnings(solution: Solution) -> list[str]:
+    """Return reasons to doubt the model, which only sizes in SI can give."""
+    if solution.scene.ribbon is None:
+        return []
+    from ribbonopt.checks.validity import warnings_of
+
+    return warnings_of(solution)
+
+
+def _equilibrium(solution: Solution) -> dict[str, Any]:
+    """Return what tells one equilibrium of a scene from the others; `starts` led to it."""
+    return {
+        "energy": solution.energy,
+        "n0": solution.n0.tolist(),
+        "m0": solution.m0.tolist(),
+        "starts": solution.times,
+    }
+
+
+def _error_estimate(solution: Solution) -> dict[str, float | None]:
+    """Estimated absolute errors; None without convergence, and for minima (no square system)."""
+    if not solution.status.converged or solution.problem.recovered:
+        return dict.fromkeys(("n0", "m0", "u0", "H0", "energy", "states"))
+    try:
+        return dict(estimate_error(solution))
+    except np.linalg.LinAlgError:  # singular equations: the solution is not the only one near
+        return dict.fromkeys(("n0", "m0", "u0", "H0", "energy", "states"))
+
+
+def versions() -> dict[str, str]:
+    """Versions of what the numbers depend on."""
+    return {
+        "ribbonopt": VERSION,
+        "casadi": ca.CasadiMeta.version(),
+        "numpy": np.__version__,
+        "python": platform.python_version(),
+    }

@@ -1,0 +1,156 @@
+"""Refinement: from a solution to one whose estimated error meets the scene's tolerance.
+
+Nodes are moved (widths are parameters: nothing is built), then elements are added, until the error
+of the answer is small enough. Each solve starts on the solution before, by Newton's method.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ribbonopt.accuracy.estimate import analyse, relative_error
+from ribbonopt.accuracy.remesh import (
+    SIZES,
+    UNSEEN,
+    analyticity,
+    graded,
+    redistributed,
+    size_for,
+    wanted_widths,
+)
+from ribbonopt.arrays import Array
+from ribbonopt.attempt.attempt import verified
+from ribbonopt.solution.solution import Solution
+from ribbonopt.solvers import Status
+from ribbonopt.transcription import Mesh
+
+if TYPE_CHECKING:
+    from ribbonopt.attempt.attempt import Attempts
+    from ribbonopt.problem import Ribbon
+    from ribbonopt.scene import Scene
+
+ROUNDS = 20
+SAFE = 0.5  # share of the tolerance that the estimate, itself in error, must meet
+SLOW = 0.3  # share of the error before that a round should leave
+AIM = 0.2  # share of the tolerance that a new mesh aims at
+GROWTH = 2.0  # most that the number of elements grows in a round
+
+
+def refine(
+    solution: Solution,
+    tolerance: float,
+    ribbon: Ribbon,
+    attempts_on: Callable[[Mesh, Array], Attempts],
+    aim: float = AIM,
+) -> Solution:
+    """Return a verified solution whose error, relative to the sizes of the answer, is small enough.
+
+    Parameters
+    ----------
+    solution
+        A verified solution on any mesh.
+    tolerance
+        Relative error wanted, see `ribbonopt.accuracy.estimate.relative_error`.
+    ribbon
+        Mechanics, to verify what comes out.
+    attempts_on
+        Gives the means to solve on a mesh, phases meeting at given fractions of the length.
+    aim
+        Share of the tolerance that a new mesh aims at.
+
+    Returns
+    -------
+    Solution
+        With a status that says so where the tolerance could not be met.
+    """
+    first, path, before = solution, list(solution.path), np.inf
+    for _ in range(ROUNDS):
+        try:
+            error, _ = relative_error(solution)
+        except np.linalg.LinAlgError:
+            status = Status.SINGULAR
+            return replace(solution, status=status, message=status.value, path=tuple(path))
+        if error <= SAFE * tolerance:
+            done = solution if solution is first else verified(solution, ribbon)
+            return replace(done, path=tuple(path))
+        started = time.perf_counter()
+        mesh, short = _better_mesh(solution, aim * tolerance / error, error > SLOW * before)
+        before = error
+        attempts = attempts_on(mesh, solution.trajectory.ends[1:-1])
+        if not attempts.run(solution, quick=True, check=False) or attempts.best is None:
+            break
+        solution = attempts.best
+        path.append(
+            {
+                "step": f"mesh of {sum(mesh.elements)} intervals for an error of {error:.0e}",
+                "iterations": attempts.iterations,
+                "seconds": time.perf_counter() - started,
+            }
+        )
+        if short:
+            break
+    solution = verified(replace(solution, path=tuple(path)), ribbon)
+    return _missed(solution, tolerance) if solution.verified else solution
+
+
+def on_finer_mesh(missed: Solution, solve: Callable[[Scene], Solution]) -> Solution:
+    """Solve a scene anew on twice as many elements, if no finer mesh led on from its own.
+
+    A coarse mesh has solutions of its own, near which there is none of the ribbon's equations.
+    """
+    scene, count = missed.scene, missed.scene.transcription.intervals
+    if sum(missed.mesh.elements) > count:
+        return missed
+    finer = replace(scene.transcription, intervals=2 * count)
+    found = solve(replace(scene, transcription=finer))
+    if not found.verified:
+        return missed
+    path, iterations = (*missed.path, *found.path), missed.iterations + found.iterations
+    spent = {name: missed.timings[name] + seconds for name, seconds in found.timings.items()}
+    return replace(found, scene=scene, path=path, iterations=iterations, timings=spent)
+
+
+def _better_mesh(solution: Solution, reduction: float, surprised: bool) -> tuple[Mesh, bool]:
+    """Return a mesh that reduces the error by a factor, and whether it is as fine as any may be.
+
+    `surprised` that the mesh before did not, it expects a layer that no stage has met so far.
+    """
+    blocks, local = solution.dense.blocks, analyse(solution).local
+    widths, phases, short = blocks.widths(solution.dense.p), [], False
+    target = float(local.sum()) * reduction / len(local)
+    rho = analyticity(solution.dense.decay())
+    if surprised:
+        rho = np.where(local > target, UNSEEN, rho)
+    for part in blocks.layout.phase_slices:
+        h = widths[part]
+        wanted = wanted_widths(h, local[part], rho[part], blocks.order, target)
+        positions, share = graded(h, wanted)
+        count = max(int(np.ceil(share[-1])), len(h) // 2)
+        size = size_for(min(count, int(GROWTH * len(h))))
+        short = short or (size == SIZES[-1] and count > size)
+        phases.append(redistributed(positions, share, size))
+    return Mesh(tuple(phases)), short
+
+
+def _missed(solution: Solution, tolerance: float) -> Solution:
+    """Return the solution, with what keeps its error from being small enough."""
+    error, name = relative_error(solution)
+    if error <= tolerance:
+        return solution
+    local = analyse(solution).local
+    element = int(np.argmax(local))
+    a, b = solution.nodes[element], solution.nodes[element + 1]
+    return replace(
+        solution,
+        status=Status.TOLERANCE_MISSED,
+        message=(
+            f"{Status.TOLERANCE_MISSED.value}. The relative error of {name} is {error:.1e}, asked "
+            f"was {tolerance:.1e}, on {len(local)} intervals; most of it comes from s = {a:.4g} to "
+            f"s = {b:.4g}"
+        ),
+    )

@@ -1,0 +1,1 @@
+"""Before anything is solved: whether the conditions determine an equilibrium."""

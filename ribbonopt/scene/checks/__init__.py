@@ -1,0 +1,1 @@
+"""What can be wrong with a scene and needs no mechanics to see."""

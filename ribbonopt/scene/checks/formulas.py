@@ -1,0 +1,49 @@
+"""What is wrong with the parameters, formulas and equations of a scene; the values of the rest."""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from keyword import iskeyword
+
+from ribbonopt.scene.faults import Path, Problem, dotted
+from ribbonopt.scene.formulas.parsing import RESERVED, FormulaError, evaluate_value, parse_equation
+
+
+def values_of(
+    formulas: Mapping[Path, str], parameters: Mapping[str, float]
+) -> tuple[dict[Path, float], list[Problem]]:
+    """Return the values of formulas by path, and a problem for each that has none."""
+    values, problems = {}, []
+    for path, formula in formulas.items():
+        try:
+            values[path] = evaluate_value(formula, parameters)
+        except FormulaError as error:
+            problems.append(Problem(path, str(error)))
+    return values, problems
+
+
+def check_parameters(parameters: Mapping[str, float]) -> Iterator[Problem]:
+    """Yield the parameters that no formula could name."""
+    for name in parameters:
+        if not (name.isascii() and name.isidentifier()) or iskeyword(name):
+            message = "is no name; use letters, digits and _, with a letter first"
+            yield Problem(("parameters", name), message)
+        elif name in RESERVED:
+            yield Problem(("parameters", name), "is a word of the formulas; choose another name")
+
+
+def check_equations(equations: tuple[str, ...], parameters: Mapping[str, float]) -> list[Problem]:
+    """Return the faults of `also`, where a formula is wrong or an equation stands twice."""
+    problems = []
+    first: dict[str, int] = {}
+    for index, text in enumerate(equations):
+        path: Path = ("boundary", "also", index)
+        try:
+            parse_equation(text, parameters)
+        except FormulaError as error:
+            problems.append(Problem(path, str(error)))
+        plain = "".join(text.split())
+        if first.setdefault(plain, index) != index:
+            before = dotted((*path[:-1], first[plain]))
+            problems.append(Problem(path, f"says the same as {before}; keep one", repr(text)))
+    return problems

@@ -1,0 +1,114 @@
+"""What is wrong with a scene as a whole and needs no mechanics to see.
+
+Each check looks at one matter and returns all problems it finds; none depends on another.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator
+from dataclasses import is_dataclass
+from itertools import pairwise
+from typing import Any, get_origin
+
+from ribbonopt.scene.ends import Boundary, Loop
+from ribbonopt.scene.faults import Path, Problem
+from ribbonopt.scene.model import Guess, MoebiusGuess, RibbonSizes, Scene
+from ribbonopt.scene.schema.annotations import branches, hints, inside
+from ribbonopt.scene.wording import written
+
+from .frames import check_frame
+from .loops import check_loop, check_piece
+from .supports import check_supports
+
+
+def check(scene: Scene) -> list[Problem]:
+    """Return the problems of a scene whose single values are valid."""
+    boundary = scene.boundary
+    problems = list(_interval(scene.interval))
+    formulas = dict(_formulas(boundary, Boundary, ("boundary",)))
+    formulas |= _formulas(scene.guess, Guess, ("guess",))
+    values: dict[Path, float] = {}
+    if formulas or boundary.also or scene.parameters:
+        # Imported late: a scene in plain numbers starts without the grammar of formulas.
+        from .formulas import check_equations, check_parameters, values_of
+
+        values, found = values_of(formulas, scene.parameters)
+        problems += check_parameters(scene.parameters)
+        problems += [*found, *check_equations(boundary.also, scene.parameters)]
+    for name in ("start", "end"):
+        problems += check_frame(getattr(boundary, name), ("boundary", name), values)
+    if isinstance(scene.guess, MoebiusGuess):
+        problems += check_piece(scene.guess.moebius, ("guess", "moebius"))
+    if boundary.loop is not None:
+        problems += check_loop(boundary.loop, boundary, scene.guess)
+    else:
+        problems += check_supports(boundary, values)
+    if isinstance(scene.switching, tuple):
+        problems += _switching(scene.switching, scene.interval)
+    if scene.ribbon is not None:
+        problems += [*_sizes(scene.ribbon), *_fits(scene, scene.ribbon)]
+    if scene.record or scene.continuation is not None:
+        # Imported late: few scenes are continued.
+        from .continuation import check_continuation
+
+        problems += check_continuation(scene, sound=not problems)
+    return problems
+
+
+def _interval(interval: tuple[float, float]) -> Iterator[Problem]:
+    start, end = interval
+    if not start < end:
+        message = "must go from a smaller to a larger arclength"
+        yield Problem(("interval",), message, f"[{start:g}, {end:g}]")
+
+
+def _switching(switching: tuple[float, ...], interval: tuple[float, float]) -> Iterator[Problem]:
+    ends = (interval[0], *switching, interval[1])
+    if not switching or any(b <= a for a, b in pairwise(ends)):
+        message = (
+            "expected arclengths inside the interval, increasing, such as [{:g}]; or auto, off"
+        )
+        middle = (interval[0] + interval[1]) / 2
+        found = ", ".join(f"{s:g}" for s in switching)
+        yield Problem(("switching",), message.format(middle), f"[{found}]")
+
+
+def _formulas(value: Any, annotation: Any, path: Path) -> Iterator[tuple[Path, str]]:
+    """Yield the formulas in a value: texts that stand where the annotation has numbers as well."""
+    options = branches(annotation).values()
+    if isinstance(value, str):
+        if str in options:
+            yield path, value
+    elif is_dataclass(value):
+        cls: type = type(value)
+        for name, inner in hints(cls).items():
+            yield from _formulas(getattr(value, name), inner, (*path, name))
+    elif isinstance(value, tuple):
+        items = next((some for some in options if get_origin(some) is tuple), annotation)
+        for index, item in enumerate(value):
+            yield from _formulas(item, inside(items, index), (*path, index))
+
+
+def _sizes(ribbon: RibbonSizes) -> Iterator[Problem]:
+    for small, large in (("width", "length"), ("thickness", "width")):
+        size, limit = getattr(ribbon, small), getattr(ribbon, large)
+        if not size < limit:
+            message = f"expected less than ribbon.{large}, {limit:g}; sizes are in metres, moduli "
+            example = f'in pascals; for 1 mm write "{small}: 0.001"'
+            yield Problem(("ribbon", small), message + example, f"{size:g}")
+
+
+def _fits(scene: Scene, ribbon: RibbonSizes) -> Iterator[Problem]:
+    start, end = scene.interval
+    if end - start > ribbon.length * (1 + 1e-9):
+        fitting = written((start, start + ribbon.length / _pieces(scene.boundary.loop)))
+        message = f"is longer than the ribbon, ribbon.length: {ribbon.length:.12g}; write for "
+        example = f'example "interval: {fitting}"'
+        yield Problem(("interval",), message + example, written(scene.interval))
+
+
+def _pieces(loop: Loop | None) -> int:
+    """Return how many pieces make the ribbon, one of which is solved."""
+    if loop is None or loop.piece == "whole":
+        return 1
+    return 2 if loop.piece == "half" else 2 * max(abs(loop.half_twists), 1)

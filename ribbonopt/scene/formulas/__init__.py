@@ -1,0 +1,1 @@
+"""Formulas of scenes: their grammar, their parts, their values."""

@@ -1,0 +1,1 @@
+"""The schema of scenes: validation, messages, and the JSON schema of editors."""

@@ -1,0 +1,126 @@
+"""What annotations say, and which branch of a union the shape of a value picks.
+
+Every branch of a union has a tag: the name of a dataclass, or the shape a value must have.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import is_dataclass
+from functools import cache
+from numbers import Real
+from types import NoneType, UnionType
+from typing import Annotated, Any, Literal, Union, get_args, get_origin, get_type_hints
+
+from ribbonopt.scene.faults import nearest
+
+
+def key_of(name: str) -> str:
+    """Return the key of a field: its name without the underscore that tells it from a keyword."""
+    return name.removesuffix("_")
+
+
+@cache
+def hints(cls: type) -> dict[str, Any]:
+    """Return the annotations of a dataclass, by the key of the field."""
+    members = get_type_hints(cls, include_extras=True).items()
+    return {key_of(name): annotation for name, annotation in members}
+
+
+@cache
+def branches(annotation: Any) -> Mapping[str, Any]:
+    """Return the branches of a union by tag; empty for what is not a union."""
+    if get_origin(annotation) not in (Union, UnionType):
+        return {}
+    tagged: dict[str, Any] = {}
+    for branch in get_args(annotation):
+        tag = _tag_of_annotation(branch)
+        if tag in tagged:
+            raise TypeError(f"two branches of {annotation} look alike: {tagged[tag]} and {branch}")
+        tagged[tag] = branch
+    return tagged
+
+
+def classes_of(annotation: Any) -> dict[str, type]:
+    """Return the dataclasses among the branches of a union, by tag."""
+    members = branches(annotation).items()
+    return {tag: cls for tag, cls in members if is_dataclass(cls) and isinstance(cls, type)}
+
+
+def types_of(annotation: Any) -> dict[str, str]:
+    """Return the values of `type` that pick a dataclass of a union, each with its tag."""
+    return {
+        name: tag
+        for tag, cls in classes_of(annotation).items()
+        if "type" in hints(cls)
+        for name in get_args(hints(cls)["type"])
+    }
+
+
+def tag_chooser(annotation: Any) -> Callable[[Any], str | None]:
+    """Return the function that picks the branch of a union by the shape of a value.
+
+    A mapping goes to the dataclass named by its `type`; where the dataclasses have no `type`, to
+    the one that owns most of its keys, or else names like them. No branch may exist for the tag
+    that is returned.
+    """
+    classes = {tag: hints(cls) for tag, cls in classes_of(annotation).items()}
+    types = types_of(annotation)
+
+    def choose(value: Any) -> str | None:
+        if not isinstance(value, dict) or not classes:
+            return _tag_of_value(value)
+        if len(classes) == 1:
+            return next(iter(classes))
+        if types:
+            name = value.get("type")
+            return types.get(name) if isinstance(name, str) else None
+        keys = [key for key in value if isinstance(key, str)]
+        owned = {tag: sum(key in classes[tag] for key in keys) for tag in classes}
+        if not any(owned.values()):
+            names = [name for members in classes.values() for name in members]
+            meant = [nearest(key, names) for key in keys]
+            owned = {tag: sum(name in classes[tag] for name in meant) for tag in classes}
+        best = max(owned, key=lambda tag: owned[tag])
+        return best if owned[best] else None
+
+    return choose
+
+
+def inside(annotation: Any, step: str | int) -> Any:
+    """Return the annotation of what a key or an index leads to; None where nothing is."""
+    origin, arguments = get_origin(annotation), get_args(annotation)
+    if is_dataclass(annotation) and isinstance(annotation, type):
+        return hints(annotation).get(str(step))
+    if origin is dict:
+        return arguments[1]
+    if origin is tuple and isinstance(step, int):
+        return arguments[0] if arguments[-1] is Ellipsis else arguments[step]
+    return None
+
+
+def _tag_of_annotation(annotation: Any) -> str:
+    origin, arguments = get_origin(annotation), get_args(annotation)
+    if origin is Annotated:
+        return _tag_of_annotation(arguments[0])
+    if origin is Literal:
+        return _tag_of_value(arguments[0])
+    if is_dataclass(annotation) and isinstance(annotation, type):
+        return annotation.__name__
+    samples: dict[Any, object] = {float: 0.0, int: 0, bool: True, str: "", NoneType: None}
+    samples |= {tuple: (), dict: {}}
+    return _tag_of_value(samples[origin or annotation])
+
+
+def _tag_of_value(value: object) -> str:
+    if isinstance(value, str):
+        return "text"
+    if isinstance(value, bool):
+        return "truth"
+    if isinstance(value, Real):
+        return "number"
+    if isinstance(value, list | tuple):
+        return "list"
+    if isinstance(value, dict):
+        return "mapping"
+    return "null" if value is None else type(value).__name__

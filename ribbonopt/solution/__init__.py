@@ -1,0 +1,1 @@
+"""A solution: the frozen result of one solve, and its trajectory along the ribbon."""

@@ -1,0 +1,242 @@
+"""A solution: the frozen result of one solve, to sample, summarise, verify, or use as a guess."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from functools import cached_property
+from typing import TYPE_CHECKING, Any
+
+import numpy as np
+
+from ribbonopt.arrays import Array
+from ribbonopt.mechanics import RodFields
+from ribbonopt.problem import BoundaryValueProblem
+from ribbonopt.scene import Scene
+from ribbonopt.scene.units import Units, units_of
+from ribbonopt.solvers import Status
+from ribbonopt.transcription import Mesh
+
+from .trajectory import Trajectory
+from .verification import Verification
+
+if TYPE_CHECKING:
+    from ribbonopt.transcription.structure import Output
+
+
+@dataclass(frozen=True, eq=False)
+class Solution:
+    """Equilibrium of one ribbon.
+
+    Lab-frame vectors, arclength s as in the scene's interval. What is sampled is in the units of
+    the scene, SI or Dw = L = 1; the numbers behind it (`dense`, `constants`, `fields`) are in units
+    Dw = L = 1 always.
+
+    Attributes
+    ----------
+    scene : Scene
+        What was asked.
+    trajectory : Trajectory
+        The equations that were solved and the numbers, all phases read as one.
+    status, message : Status, str
+        How the solve ended.
+    multipliers : (ng,) array
+        Lagrange multipliers of the discretised equations.
+    iterations : int
+        Iterations of the solver.
+    timings : mapping of str to float
+        Seconds by kind of work.
+    path : tuple of mappings
+        The steps that led here, with their cost.
+    skipped : tuple of str
+        What this scene did not need.
+    verification : Verification
+        What was checked afterwards.
+    others : tuple of Solution
+        Other equilibria of the scene, where several starts were asked for, by increasing energy.
+    times : int
+        How many of those starts led here.
+    sheets : tuple of int
+        Kinds of the phases: sign of m2, or 0 for a mixture of both sheets; empty for one phase.
+    """
+
+    scene: Scene
+    trajectory: Trajectory
+    status: Status
+    message: str
+    iterations: int
+    verification: Verification
+    multipliers: Array = field(default_factory=lambda: np.empty(0))
+    timings: Mapping[str, float] = field(default_factory=dict)
+    path: tuple[Mapping[str, Any], ...] = ()
+    skipped: tuple[str, ...] = ()
+    others: tuple[Solution, ...] = ()
+    times: int = 1
+    sheets: tuple[int, ...] = ()
+
+    @property
+    def problem(self) -> BoundaryValueProblem:
+        """The equations that were solved."""
+        return self.trajectory.problem
+
+    @property
+    def dense(self) -> Output:
+        """The numbers."""
+        return self.trajectory.dense
+
+    @property
+    def verified(self) -> bool:
+        """Whether the solve converged and everything checked is as the scene asked."""
+        return self.status is Status.CONVERGED
+
+    @cached_property
+    def units(self) -> Units:
+        """Units of everything that is sampled."""
+        return units_of(self.scene)
+
+    @cached_property
+    def nodes(self) -> Array:
+        """Arclengths (N + 1,) of the mesh nodes."""
+        start, end = self.scene.interval
+        return start + (end - start) * self.trajectory.nodes
+
+    @property
+    def mesh(self) -> Mesh:
+        """Relative widths of the elements of every phase."""
+        blocks = self.dense.blocks
+        widths = blocks.widths(self.dense.p)
+        return Mesh(tuple(widths[part] for part in blocks.layout.phase_slices))
+
+    @property
+    def switch_points(self) -> Array:
+        """Arclengths (k,) where one phase ends and the next begins."""
+        start, end = self.scene.interval
+        return start + (end - start) * self.trajectory.ends[1:-1]
+
+    def sample(self, s: Any, expression: str) -> Array:
+        """Return a named output, or a formula of named outputs, at arclengths s.
+
+        Parameters
+        ----------
+        s
+            Arclength or array (k,) of arclengths inside the scene's interval.
+        expression
+            A name (`r`, `d1`, `d2`, `d3`, `n`, `m` in the lab frame; `u` along the directors;
+            `u2`, `u3`, `eta`, `n1` ... `m3`, `energy`, `H`) or a formula such as "m2 / m3" or
+            "dot(d1, ex)".
+
+        Returns
+        -------
+        array
+            (k,) for scalars, (k, 3) for vectors; without the first axis for a single arclength.
+
+        Raises
+        ------
+        FormulaError
+            If the expression does not parse; a ValueError.
+        ValueError
+            If an arclength is outside the interval.
+        """
+        points = np.atleast_1d(np.asarray(s, dtype=float))
+        values = self.outputs(points)
+        result = values.get(expression)
+        if result is None:
+            from .sampling import evaluate_formula  # plain names need no parser
+
+            result = evaluate_formula(expression, values)
+        return np.asarray(result[0] if np.ndim(s) == 0 else result)
+
+    def outputs(self, s: Array) -> dict[str, Array]:
+        """All named outputs at arclengths s (k,): (k,) for scalars, (k, 3) for vectors."""
+        start, end = self.scene.interval
+        sigma = (s - start) / (end - start)
+        if not ((sigma >= -1e-12) & (sigma <= 1 + 1e-12)).all():
+            raise ValueError(f"arclengths are expected in [{start}, {end}], found {s}")
+        if len(s) == 0:
+            return {name: value[:0] for name, value in self.outputs(np.array([start])).items()}
+        return self._in_own_units(self.trajectory.outputs(sigma))
+
+    def integral(self, name: str) -> float:
+        """Integral over s of a scalar named output, by the scheme's own quadrature."""
+        start, end = self.scene.interval
+        return float((end - start) * self.trajectory.stages[2] @ self.at_stages[name])
+
+    @cached_property
+    def at_stages(self) -> dict[str, Array]:
+        """All named outputs at the stages, where the solver itself evaluated the equations."""
+        return self._in_own_units(self.trajectory.at_stages)
+
+    @cached_property
+    def at_nodes(self) -> dict[str, Array]:
+        """All named outputs at the nodes; where two phases meet, those of the later one."""
+        return self._in_own_units(self.trajectory.at_nodes)
+
+    def unknowns_for(
+        self, problem: BoundaryValueProblem, theta: Array, fraction: Array
+    ) -> tuple[Array, Array] | None:
+        """Unknowns v (k, nv) and constants of another problem of the same kind, at fractions.
+
+        None where they cannot be taken as they are; the lengths of phases are not among them.
+        """
+        mine, own = self.problem, self.dense
+        same = mine is problem or (
+            mine.state_names == problem.state_names
+            and mine.algebraic.numel() == problem.algebraic.numel() == 0
+        )
+        # Moments are about a point of reference.
+        points = [
+            [t[p.parameter_names.index(f"reference.{axis}")] for axis in "xyz"]
+            for p, t in ((mine, own.theta), (problem, theta))
+        ]
+        if not same or points[0] != points[1]:
+            return None
+        lengths = len(mine.phases) - 1
+        return self.trajectory.approximate(fraction), own.constants[: len(own.constants) - lengths]
+
+    def fields(self, fraction: Array) -> RodFields:
+        """Fields at fractions (k,) of the length, units Dw = L = 1: a solution is a guess."""
+        o = self.trajectory.outputs(fraction)
+        return RodFields(o["r"], np.stack([o["d1"], o["d2"], o["d3"]], axis=2), o["n"], o["m"])
+
+    @cached_property
+    def start(self) -> dict[str, Array]:
+        """Named outputs at the start of the ribbon."""
+        return {k: v[0] for k, v in self.at_nodes.items()}
+
+    @property
+    def constants(self) -> Array:
+        """Constants of the rod: unknowns of the problem, or recovered from its costates."""
+        if not self.problem.recovered:
+            return self.dense.constants
+        names = self.problem.parameter_names
+        return self.dense.theta[[names.index(name) for name in self.problem.recovered]]
+
+    @property
+    def n0(self) -> Array:
+        """Force (3,) at the start, lab frame."""
+        return self.start["n"]
+
+    @property
+    def m0(self) -> Array:
+        """Moment (3,) at the start, lab frame."""
+        return self.start["m"]
+
+    @property
+    def u0(self) -> Array:
+        """Strains (u1, u2, u3) at the start, along the directors."""
+        return self.start["u"]
+
+    @property
+    def energy(self) -> float:
+        """Strain energy of the ribbon."""
+        return self.trajectory.energy * self.units.moment
+
+    @property
+    def twist(self) -> float:
+        """Twist of the directors about the centre line, in turns."""
+        return self.integral("u3") / (2 * np.pi)
+
+    def _in_own_units(self, values: Mapping[str, Array]) -> dict[str, Array]:
+        if self.scene.ribbon is None:
+            return dict(values)
+        return {name: value * self.units.of(name) for name, value in values.items()}

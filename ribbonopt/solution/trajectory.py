@@ -1,0 +1,138 @@
+"""A solution of one or several phases read as one, in units Dw = L = 1.
+
+Positions are fractions of the whole length. What is evaluated once is kept: verification, the
+estimate of the error and the summary read the same numbers.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import TYPE_CHECKING
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ribbonopt.arrays import Array
+from ribbonopt.problem import BoundaryValueProblem
+from ribbonopt.transcription.buffered import buffered, mapped
+
+if TYPE_CHECKING:
+    from ribbonopt.transcription.structure import Output
+
+
+Phases = NDArray[np.intp]
+
+
+@dataclass(frozen=True, eq=False)
+class Trajectory:
+    """The phases of an output, one after another; fractions (k,) run from 0 to 1."""
+
+    problem: BoundaryValueProblem
+    dense: Output
+
+    @cached_property
+    def ends(self) -> Array:
+        """Fractions (P + 1,) at which the phases begin and end."""
+        lengths = self._extent[1:]
+        ends = np.append(0.0, np.cumsum(lengths) / lengths.sum())
+        ends[-1] = 1.0
+        return ends
+
+    @cached_property
+    def nodes(self) -> Array:
+        """Fractions (N + 1,) of all nodes."""
+        parts = [
+            a + (b - a) * self.dense.nodes(i)
+            for i, (a, b) in enumerate(zip(self.ends[:-1], self.ends[1:], strict=True))
+        ]
+        return np.concatenate([*(part[:-1] for part in parts[:-1]), parts[-1]])
+
+    def phase_of(self, fraction: Array) -> Phases:
+        """Phase (k,) of each fraction; where two meet, the later one."""
+        found = np.searchsorted(self.ends, fraction, side="right") - 1
+        return np.clip(found, 0, len(self.problem.phases) - 1)
+
+    def approximate(self, fraction: Array) -> Array:
+        """Unknowns v (k, nv) at fractions: quick, fit to start Newton's method on."""
+        phase, local = self._local(fraction)
+        v = np.empty((len(fraction), self.dense.blocks.layout.nv))
+        for i in range(len(self.problem.phases)):
+            rows = phase == i
+            if rows.any():
+                v[rows] = self.dense.approximate(i, local[rows])
+        return v
+
+    def outputs(self, fraction: Array) -> dict[str, Array]:
+        """Named outputs at fractions: (k,) for scalars, (k, 3) for vectors."""
+        phase, local = self._local(fraction)
+        v = np.empty((len(fraction), self.dense.blocks.layout.nv))
+        nx = self.dense.blocks.layout.nx
+        for i in range(len(self.problem.phases)):
+            rows = phase == i
+            if rows.any():
+                v[rows, :nx] = self.dense.states(i, local[rows])
+                v[rows, nx:] = self.dense.algebraic(i, local[rows])
+        return self._named(v, fraction, phase)
+
+    @cached_property
+    def stages(self) -> tuple[Array, Array, Array, Phases]:
+        """Stage values v (k, nv), fractions (k,), quadrature weights (k,), phases (k,)."""
+        parts = []
+        for i, (a, b) in enumerate(zip(self.ends[:-1], self.ends[1:], strict=True)):
+            v, sigma, weights = self.dense.stages(i)
+            phase = np.full(len(sigma), i)
+            parts.append((v, a + (b - a) * sigma, (b - a) * weights, phase))
+        v, sigma, weights, phases = (np.concatenate(part) for part in zip(*parts, strict=True))
+        return v, sigma, weights, phases
+
+    @cached_property
+    def at_stages(self) -> Mapping[str, Array]:
+        """Named outputs at the stages, where the solver itself evaluated the equations."""
+        v, fraction, _, phase = self.stages
+        return self._named(v, fraction, phase)
+
+    @cached_property
+    def at_nodes(self) -> Mapping[str, Array]:
+        """Named outputs at the nodes; where two phases meet, those of the later one."""
+        if self.dense.blocks.layout.nz:
+            return self.outputs(self.nodes)
+        counts = self.dense.blocks.layout.elements
+        phase = np.append(np.repeat(np.arange(len(counts)), counts), len(counts) - 1)
+        return self._named(self.dense.at_nodes, self.nodes, phase)
+
+    @cached_property
+    def energy(self) -> float:
+        """Strain energy, by the quadrature of the scheme."""
+        return float(self._extent[1:].sum() * self.stages[2] @ self.at_stages["energy"])
+
+    @cached_property
+    def _extent(self) -> Array:
+        """Arclength where the ribbon starts, and the lengths of its phases."""
+        extent = buffered(self.problem.extent_function)
+        return extent(self.dense.constants, self.dense.theta)[0]
+
+    def _local(self, fraction: Array) -> tuple[Phases, Array]:
+        """Phase and position in the phase of each fraction."""
+        phase = self.phase_of(fraction)
+        a, b = self.ends[phase], self.ends[phase + 1]
+        return phase, np.clip((fraction - a) / (b - a), 0.0, 1.0)
+
+    def _named(self, v: Array, fraction: Array, phase: Phases) -> dict[str, Array]:
+        sizes = self.problem.output_functions[0][1]
+        column = np.empty((len(v), sum(sizes.values())))
+        s = self._extent[0] + self._extent[1:].sum() * fraction
+        known = self.dense.constants, self.dense.theta
+        for i, (function, _) in enumerate(self.problem.output_functions):
+            rows = phase == i
+            count = int(np.count_nonzero(rows))
+            if count:
+                (found,) = mapped(function)(v[rows], *known, s[rows])
+                column[rows] = found.reshape(count, -1)
+        result, at = {}, 0
+        for name, size in sizes.items():
+            part = column[:, at : at + size]
+            result[name] = part[:, 0] if size == 1 else part
+            at += size
+        return result

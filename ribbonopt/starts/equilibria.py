@@ -1,0 +1,168 @@
+"""Several starts: the distinct equilibria of one scene, lowest energy first.
+
+Mirrored, twisted by a turn to either side, then perturbed at random (seeded). Equilibria that a
+symmetry of the law carries into one another (either sign of each strain, either sense of s) or that
+differ by a rigid motion count as one.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Callable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property
+from itertools import islice, product
+
+import numpy as np
+
+from ribbonopt.arrays import Array
+from ribbonopt.guess import Guess
+from ribbonopt.guess.named import shape_of
+from ribbonopt.guess.shapes import Chord, Perturbed, Shape
+from ribbonopt.scene import Scene
+from ribbonopt.solution.solution import Solution
+
+from .automatic import Automatic, Path
+from .first_shape import dead_force_of, shapes_for
+
+SAME = 1e-3  # of strains over the largest strain (root mean square), and of invariants
+POINTS = 129
+AMPLITUDE = 1.0  # radians, of the first mode of a perturbed start
+TRIES = 2  # guesses tried from each shape
+
+Kinds = list[list[list[int]]]
+
+
+@dataclass(frozen=True, eq=False)
+class _Described:
+    """What tells one equilibrium from others."""
+
+    solution: Solution
+
+    @cached_property
+    def invariants(self) -> Array:
+        """Energy, |n| and n . m, which no symmetry changes but for signs."""
+        at, units = self.solution.at_nodes, self.solution.units
+        force = np.linalg.norm(at["n"][0])
+        values = np.array([self.solution.energy, force, abs(at["n_dot_m"][0])])
+        invariants: Array = values / [units.moment, units.force, units.of("n_dot_m")]
+        return invariants
+
+    @cached_property
+    def strains(self) -> Array:
+        """Strains u2, u3 (2, k) along the ribbon: dear, and needed where invariants agree."""
+        outputs = self.solution.outputs(np.linspace(*self.solution.scene.interval, POINTS))
+        return np.stack([outputs["u2"], outputs["u3"]])
+
+
+def equilibria(
+    scene: Scene, first: Solution, automatic: Automatic, attempt: Callable[[Guess], Solution]
+) -> Solution:
+    """Return the equilibrium of least energy, the other distinct ones as its `others`.
+
+    Parameters
+    ----------
+    scene
+        What is asked; `starts` and `seed` say how many starts, and which perturbations.
+    first
+        What the first start gave; returned as it is where no start leads anywhere.
+    automatic
+        The automatic start of this structure.
+    attempt
+        Solves from one guess.
+    """
+    started = time.perf_counter()
+    found = [first] if first.verified else []
+    found += more_starts(scene, automatic, attempt, range(1, scene.starts))
+    if not found:
+        return first
+    lowest = least(found)
+    seconds = time.perf_counter() - started
+    count = len(lowest.others) + 1
+    words = "1 equilibrium" if count == 1 else f"{count} equilibria"
+    step = {"step": f"{scene.starts - 1} more starts: {words} in all", "seconds": seconds}
+    spent = {name: first.timings.get(name, 0.0) + seconds for name in ("rest", "total")}
+    timings = {**first.timings, **spent}
+    return replace(lowest, path=(*lowest.path, step), timings=timings)
+
+
+def more_starts(
+    scene: Scene, automatic: Automatic, attempt: Callable[[Guess], Solution], numbers: range
+) -> Iterator[Solution]:
+    """Yield a verified solution of each start that leads to one; number 0 is the scene's own."""
+    path: Path = []
+    for shape in islice(_variants(scene), numbers.start - 1, numbers.stop - 1):
+        for guess in islice(automatic.guesses(scene, path, shape), TRIES):
+            solution = attempt(guess)
+            if solution.verified:
+                yield solution
+                break
+
+
+def least(solutions: Sequence[Solution], kinds: Kinds | None = None) -> Solution:
+    """Return the equilibrium of least energy, the other distinct ones as its `others`."""
+    lowest, *others = (
+        replace(
+            solutions[kind[0][0]], times=sum(solutions[i].times for image in kind for i in image)
+        )
+        for kind in kinds or distinct(solutions)
+    )
+    return replace(lowest, others=tuple(others))
+
+
+def distinct(solutions: Sequence[Solution]) -> Kinds:
+    """Return the indices of each equilibrium's solutions, mirror images apart.
+
+    Equilibria come by increasing energy, images and their solutions in the order given.
+    """
+    kinds: list[list[tuple[_Described, list[int]]]] = []
+    for i, solution in enumerate(solutions):
+        new = _Described(solution)
+        kind = next((kind for kind in kinds if _same(kind[0][0], new, images=True)), None)
+        if kind is None:
+            kinds.append([(new, [i])])
+            continue
+        image = next((image for image in kind if _same(image[0], new, images=False)), None)
+        if image is None:
+            kind.append((new, [i]))
+        else:
+            image[1].append(i)
+    kinds.sort(key=lambda kind: potential(kind[0][0].solution))
+    return [[members for _, members in kind] for kind in kinds]
+
+
+def potential(solution: Solution) -> float:
+    """Strain energy less the work of dead forces, in the units of the solution."""
+    s = np.array(solution.scene.interval)
+    ends = solution.outputs(s)
+    chord = ends["r"][1] - ends["r"][0]
+    work = float(dead_force_of(solution.scene) @ chord)
+    return float(solution.energy - work)
+
+
+def _variants(scene: Scene) -> Iterator[Shape]:
+    """Yield shapes other than the first one: twisted, then perturbed without end."""
+    base = shape_of(scene) or next(shapes_for(scene))
+    if isinstance(base, Chord):
+        yield replace(base, bow=-base.bow)
+        for turns in (1.0, -1.0):
+            yield replace(base, turns=turns)
+    rng = np.random.default_rng(scene.seed)
+    while True:
+        yield Perturbed.at_random(base, AMPLITUDE, rng)
+
+
+def _same(a: _Described, b: _Described, *, images: bool) -> bool:
+    """Whether two solutions are the same one, or mirror images where these count as that."""
+    gap = np.abs(a.invariants - b.invariants)
+    if (gap > SAME * np.maximum(np.abs(a.invariants), np.abs(a.invariants).max() * 1e-3)).any():
+        return False
+    if a.solution.scene.boundary.loop is not None:
+        return True  # the same band may start elsewhere along itself
+    size = float(np.abs(a.strains).max()) or 1.0
+    for signs in product((1, -1), (1, -1)) if images else [(1, 1)]:
+        image = b.strains * np.array(signs)[:, None]
+        for candidate in (image, image[:, ::-1]) if images else (image,):
+            if np.sqrt(np.mean((a.strains - candidate) ** 2)) <= SAME * size:
+                return True
+    return False

@@ -1,0 +1,1 @@
+"""Batches: many ribbons from one study file, by worker processes that may die."""

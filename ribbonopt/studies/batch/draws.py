@@ -1,0 +1,82 @@
+"""Random inputs: independent draws from named distributions, the same for the same seed."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from ribbonopt.plain import is_number
+from ribbonopt.scene.faults import InvalidSceneError, Problem, shown
+
+Two = tuple[float, float]
+
+#: two numbers each: bounds, or mean and standard deviation
+DISTRIBUTIONS: dict[str, Callable[[np.random.Generator, float, float], float]] = {
+    "uniform": lambda rng, a, b: float(rng.uniform(a, b)),
+    "log_uniform": lambda rng, a, b: float(
+        np.clip(np.exp(rng.uniform(np.log(a), np.log(b))), a, b)
+    ),
+    "normal": lambda rng, a, b: float(rng.normal(a, b)),
+}
+EXAMPLE = "expected {count: 100, seed: 1, over: {parameters.a: {uniform: [0, 1]}}}"
+
+
+@dataclass(frozen=True)
+class Draws:
+    """How many ribbons, the seed, and the distribution of each key."""
+
+    count: int
+    seed: int
+    over: Mapping[str, tuple[str, Two]]
+
+    @classmethod
+    def read(cls, value: Any) -> Draws:
+        """Read plain data; InvalidSceneError says what is wrong."""
+        if not isinstance(value, dict) or set(value) - {"count", "seed", "over"}:
+            raise _fault((), EXAMPLE, value)
+        over = value.get("over")
+        if not isinstance(over, dict) or not over:
+            raise _fault(("over",) if "over" in value else (), EXAMPLE, over)
+        count, seed = (_whole(n, value.get(n, d)) for n, d in (("count", None), ("seed", 0)))
+        return cls(count, seed, {str(key): _distribution(key, item) for key, item in over.items()})
+
+    @cached_property
+    def rows(self) -> list[dict[str, float]]:
+        """Inputs of all ribbons; each key has a stream of its own."""
+        streams = {key: np.random.default_rng([self.seed, i]) for i, key in enumerate(self.over)}
+        return [
+            {key: DISTRIBUTIONS[kind](streams[key], *two) for key, (kind, two) in self.over.items()}
+            for _ in range(self.count)
+        ]
+
+
+def _distribution(key: Any, item: Any) -> tuple[str, Two]:
+    kinds = " or ".join(f"{{{name}: [a, b]}}" for name in DISTRIBUTIONS)
+    path = "over", str(key)
+    if not isinstance(item, dict) or len(item) != 1:
+        raise _fault(path, f"expected {kinds}", item)
+    ((kind, two),) = item.items()
+    numbers = isinstance(two, list) and len(two) == 2 and all(map(is_number, two))
+    if kind not in DISTRIBUTIONS or not numbers:
+        raise _fault(path, f"expected {kinds}", item)
+    if kind == "log_uniform" and min(two) <= 0:
+        raise _fault(path, "log_uniform needs bounds > 0", item)
+    if kind == "normal" and two[1] < 0:
+        raise _fault(path, "expected {normal: [mean, standard deviation >= 0]}", item)
+    if kind != "normal" and two[0] > two[1]:
+        raise _fault(path, f"expected {{{kind}: [lower, upper]}}", item)
+    return str(kind), (float(two[0]), float(two[1]))
+
+
+def _whole(name: str, value: Any) -> int:
+    if not isinstance(value, int) or isinstance(value, bool) or value < 0:
+        raise _fault((name,), "expected a whole number >= 0", value)
+    return value
+
+
+def _fault(path: tuple[str, ...], message: str, found: Any) -> InvalidSceneError:
+    return InvalidSceneError([Problem(("random", *path), message, shown(found))])

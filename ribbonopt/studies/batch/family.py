@@ -1,0 +1,121 @@
+"""The equilibria that are known of a ribbon, each followed to the next ribbon of its chunk.
+
+Of a scene with `starts: N` the first ribbon of a chunk is started N times. The next ones follow all
+that was found, mirror images too, are started once more each, in another way every time, and take
+the equilibrium of least energy. Where that is lost, N starts look for others.
+"""
+
+from __future__ import annotations
+
+from contextlib import suppress
+from dataclasses import dataclass, replace
+from functools import partial
+
+from ribbonopt.errors import ConvergenceError
+from ribbonopt.pipeline.prepared import Prepared
+from ribbonopt.scene import Scene
+from ribbonopt.scene.units import in_special_units
+from ribbonopt.solution.solution import Solution
+
+from .neighbour import Neighbour
+
+MOST = 2  # times as many equilibria as starts are followed, the lowest
+NEAR = 1.0  # times the least energy, that others may be above it to be followed at any cost
+
+
+@dataclass(frozen=True, eq=False)
+class Family:
+    """Equilibria of a ribbon, the one of least energy first.
+
+    Attributes
+    ----------
+    members : tuple of Neighbour
+        The equilibria.
+    number : int
+        Number of the ribbon.
+    turn : int
+        How many ribbons were solved beside one another before this one.
+    """
+
+    members: tuple[Neighbour, ...]
+    number: int
+    turn: int = 0
+
+    def near(self, member: Neighbour) -> bool:
+        """Whether one may become that of least energy within a few ribbons."""
+        from ribbonopt.starts.equilibria import potential  # few scenes ask for it
+
+        lowest = potential(self.members[0].solution)
+        return potential(member.solution) - lowest <= NEAR * abs(lowest)
+
+
+def solve_beside(
+    prepared: Prepared, scene: Scene, number: int, before: Family | None
+) -> tuple[Solution, str, Family | None]:
+    """Solve a ribbon from the one before, if that is near, else from nothing.
+
+    Returns its solution, what it was started from, and what the next one may start from.
+    """
+    if before is not None and before.members[0].prepared is not prepared:
+        before = None
+    if scene.starts > 1:
+        return _least(prepared, scene, number, before)
+    nearest = before.members[0] if before is not None else None
+    name = f"ribbon {before.number}" if before is not None else ""
+    beside = nearest and nearest.solve(scene)
+    if beside is not None:
+        return beside.solution, name, Family((beside,), number)
+    found, start = prepared.solve(scene), "own"
+    if nearest is not None and not found.verified:
+        other = nearest.solve_at_any_cost(scene)
+        found, start = (other, name) if other.verified else (found, start)
+    family = Family((Neighbour(prepared, found),), number) if found.verified else None
+    return found, start, family
+
+
+def _least(
+    prepared: Prepared, scene: Scene, number: int, before: Family | None
+) -> tuple[Solution, str, Family | None]:
+    """Solve a ribbon in all ways that are known; the equilibrium of least energy is its own."""
+    from ribbonopt.starts.equilibria import distinct, least  # few scenes ask for it
+
+    turn = before.turn + 1 if before is not None else 0
+    followed = [_followed(member, scene, before) for member in before.members] if before else []
+    known = [member for member in followed if member is not None]
+    count = len(known)
+    near = followed and followed[0] is not None
+    own = turn % scene.starts
+    known += _started(prepared, scene, range(own, own + 1) if near else range(scene.starts))
+    if not known:
+        return prepared.solve(scene), "own", None
+    solutions = [member.solution for member in known]
+    kinds = distinct(solutions)
+    firsts = [image[0] for kind in kinds for image in kind][: MOST * scene.starts]
+    family = Family(tuple(known[i] for i in firsts), number, turn)
+    start = f"ribbon {before.number}" if before and firsts[0] < count else "own"
+    return least(solutions, kinds), start, family
+
+
+def _followed(member: Neighbour, scene: Scene, before: Family) -> Neighbour | None:
+    beside = member.solve(scene)
+    if beside is None and before.near(member):
+        found = member.solve_at_any_cost(scene)
+        beside = Neighbour(member.prepared, found) if found.verified else None
+    if beside is None:
+        return None
+    return replace(beside, solution=replace(beside.solution, times=member.solution.times))
+
+
+def _started(prepared: Prepared, scene: Scene, numbers: range) -> list[Neighbour]:
+    """Start a scene in the ways of these numbers; return what is verified."""
+    from ribbonopt.starts.equilibria import more_starts
+
+    found: list[Solution] = []
+    attempt = partial(prepared.polish, scene=scene)
+    further = range(max(numbers.start, 1), numbers.stop)
+    with suppress(ConvergenceError):  # raised again where nothing else is known
+        if 0 in numbers:
+            found.append(prepared.solve(scene))
+        for solution in more_starts(in_special_units(scene), prepared.automatic, attempt, further):
+            found.append(solution)
+    return [Neighbour(prepared, solution) for solution in found if solution.verified]

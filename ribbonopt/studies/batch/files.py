@@ -1,0 +1,202 @@
+"""Batches on disk: a row for each ribbon, appended as it comes; nothing that is there is lost.
+
+`rows.jsonl` holds one JSON object in a line; `table.csv` has them sorted by number; `study.json`
+says which study it is; `solutions/NUMBER` are full results.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import csv
+import json
+from collections.abc import Sequence
+from pathlib import Path
+from typing import IO, Any
+
+from ribbonopt.errors import OutputError
+from ribbonopt.output.staging import beside, replacing, unwritable
+from ribbonopt.studies.lines import whole_lines
+
+from .study import Study
+
+ROWS, TABLE, STUDY, SOLUTIONS = "rows.jsonl", "table.csv", "study.json", "solutions"
+PICTURES = ("report.html", "outcomes.png", "scatter.png")  # what views write beside them
+
+Row = dict[str, Any]
+
+
+class BatchFolder:
+    """A folder that rows are written to."""
+
+    def __init__(self, folder: str | Path, study: Study, *, resume: bool) -> None:
+        """Claim the folder.
+
+        Raises
+        ------
+        OutputError
+            If it cannot be written, holds other files, rows that are not to be added to, or rows
+            of another study.
+        """
+        self.folder, self.study = Path(folder), study
+        self.rows: list[Row] = []
+        self.failed = 0
+        try:
+            self._claim(resume)
+        except OutputError:  # an OSError too, but one that says what to do
+            raise
+        except OSError as error:
+            raise unwritable(self.folder, error) from error
+
+    @property
+    def known(self) -> dict[int, str]:
+        """Statuses of the ribbons whose rows are there."""
+        return {row["number"]: row["status"] for row in self.rows}
+
+    def append(self, row: Row) -> None:
+        """Add a row, on disk before this returns."""
+        try:
+            self._file.write(json.dumps(row) + "\n")
+            self._file.flush()
+        except OSError as error:
+            with contextlib.suppress(OSError):  # it tries to write the rest of the row once more
+                self._file.close()
+            raise self._full(error) from error
+        self._count(row)
+
+    def close(self) -> None:
+        """Write the table, sorted by number, and close the file of rows."""
+        names: dict[str, None] = {}
+        for row in self.rows:
+            names |= dict.fromkeys(row)
+        try:
+            self._lock.close()
+            self._file.close()
+            with replacing(self.folder / TABLE, newline="") as file:
+                writer = csv.DictWriter(file, sorted_columns(list(names), self.study.keys))
+                writer.writeheader()
+                writer.writerows(sorted(self.rows, key=lambda row: row["number"]))
+        except OSError as error:
+            raise self._full(error) from error
+
+    def _count(self, row: Row) -> None:
+        self.rows.append(row)
+        self.failed += not row["verified"]
+
+    def _full(self, error: OSError) -> OutputError:
+        return OutputError(
+            f"{self.folder}: cannot be written ({error.strerror}); {len(self.rows)} of "
+            f"{self.study.count} rows are kept, make room and go on by --resume"
+        )
+
+    def _claim(self, resume: bool) -> None:
+        self.folder.mkdir(parents=True, exist_ok=True)
+        found = sorted(path.name for path in self.folder.iterdir())
+        files = (ROWS, TABLE, STUDY, *PICTURES)
+        own = {SOLUTIONS, *files, *(beside(Path(name)).name for name in files)}
+        foreign = [name for name in found if name not in own]
+        if foreign:
+            raise OutputError(
+                f"{self.folder}: holds files that are no batch ({', '.join(foreign[:3])}); choose "
+                "a new or an empty folder"
+            )
+        record = {
+            "name": self.study.name,
+            "ribbons": self.study.count,
+            "inputs": self.study.keys,
+            "digest": self.study.digest,
+        }
+        with contextlib.ExitStack() as refused:
+            self._lock = refused.enter_context(_locked(self.folder / STUDY))
+            if (self.folder / STUDY).stat().st_size:
+                self._go_on(str(record["digest"]), resume)
+            elif ROWS in found and (self.folder / ROWS).stat().st_size:
+                raise OutputError(
+                    f"{self.folder}: holds rows without {STUDY}, which said of what study; choose "
+                    "another folder"
+                )
+            else:
+                self._lock.write((json.dumps(record, indent=2) + "\n").encode())
+                self._lock.flush()
+            with replacing(self.folder / ROWS) as file:
+                file.writelines(json.dumps(row) + "\n" for row in self.rows)
+            self._file = open(self.folder / ROWS, "a", encoding="utf-8")
+            refused.pop_all()  # the folder is ours until it is closed
+
+    def _go_on(self, digest: str, resume: bool) -> None:
+        known = _record_of(self.folder)
+        if known["digest"] != digest:
+            raise OutputError(
+                f"{self.folder}: holds rows of another study ({known['name']}); choose another "
+                "folder"
+            )
+        if not resume:
+            raise OutputError(
+                f"{self.folder}: holds rows of this study already; go on by --resume, or choose "
+                "another folder"
+            )
+        for row in _read(self.folder / ROWS):
+            self._count(row)
+
+
+def sorted_columns(names: list[str], inputs: Sequence[str]) -> list[str]:
+    """Return columns: number, scene, inputs, what came out, and what it cost last."""
+    first = ["number", "scene", *inputs, "status", "verified", "energy"]
+    last = ["start", "iterations", "path", "message", "seconds"]
+    middle = [name for name in sorted(names) if name not in (*first, *last)]
+    return [name for name in (*first, *middle, *last) if name in names]
+
+
+def load_batch(folder: str | Path) -> tuple[dict[str, Any], list[Row]]:
+    """Return what a batch folder says of its study (name, ribbons, inputs), and its rows.
+
+    Raises
+    ------
+    OutputError
+        If it holds none, or is damaged.
+    """
+    folder = Path(folder)
+    try:
+        return _record_of(folder), _read(folder / ROWS)
+    except FileNotFoundError:
+        raise OutputError(
+            f"{folder}: no batch; expected a folder written by ribbonopt batch"
+        ) from None
+
+
+def _locked(path: Path) -> IO[bytes]:
+    """Open a file so that no other batch can; the system forgets it with this process."""
+    file = open(path, "ab")
+    try:
+        import fcntl  # where there is none, nothing is locked
+    except ImportError:
+        return file
+    try:
+        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
+    except OSError as error:
+        if not isinstance(error, BlockingIOError):
+            return file  # on a file system without locks
+        file.close()
+        raise OutputError(
+            f"{path.parent}: is being written by another batch; wait for its end, or stop it"
+        ) from None
+    return file
+
+
+def _record_of(folder: Path) -> dict[str, Any]:
+    path = folder / STUDY
+    try:
+        record = json.loads(path.read_text(encoding="utf-8"))
+    except ValueError:
+        record = None
+    if not isinstance(record, dict) or not {"name", "ribbons", "inputs", "digest"} <= record.keys():
+        raise OutputError(f"{path}: is damaged; choose another folder")
+    return record
+
+
+def _read(path: Path) -> list[Row]:
+    return whole_lines(path, _sound) if path.exists() else []
+
+
+def _sound(row: Any) -> bool:
+    """Whether a line holds what `BatchFolder` writes."""
+    return isinstance(row, dict) and {"number", "status", "verified"} <= row.keys()

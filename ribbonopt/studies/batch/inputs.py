@@ -1,0 +1,215 @@
+"""Inputs of the ribbons of a study: the kinds of sweep, each read from plain data.
+
+Rows are made when they are asked for: how many there are is known before any exists.
+"""
+
+from __future__ import annotations
+
+import csv
+import io
+import math
+from collections.abc import Callable, Iterator, Mapping, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+from typing import Any, overload
+
+from ribbonopt.errors import SceneError
+from ribbonopt.scene.faults import InvalidSceneError, Problem, shown, suggestion
+from ribbonopt.scene.faults import Path as Keys
+from ribbonopt.scene.text.yamltext import YamlTextError, read
+
+from .draws import Draws
+from .spaced import Spaced
+
+Inputs = dict[str, Any]
+
+
+@dataclass(frozen=True)
+class Rows(Sequence[Inputs]):
+    """Inputs of ribbons: how many, which keys they set, and each by its index."""
+
+    size: int
+    keys: tuple[str, ...]
+    at: Callable[[int], Inputs]
+
+    def __len__(self) -> int:
+        """Return the number of ribbons."""
+        return self.size
+
+    @overload
+    def __getitem__(self, index: int) -> Inputs: ...
+    @overload
+    def __getitem__(self, index: slice) -> list[Inputs]: ...
+    def __getitem__(self, index: int | slice) -> Inputs | list[Inputs]:
+        """Return the inputs of a ribbon."""
+        if isinstance(index, slice):
+            return [self.at(i) for i in range(*index.indices(self.size))]
+        if not 0 <= index < self.size:
+            raise IndexError(index)
+        return self.at(index)
+
+    def __iter__(self) -> Iterator[Inputs]:
+        """Yield the inputs of all ribbons."""
+        return map(self.at, range(self.size))
+
+
+NOTHING = Rows(1, (), lambda index: {})
+
+
+def rows_of(folder: Path, sweep: Any) -> Rows:
+    """Return the inputs of a `sweep`: the product of all kinds that are given.
+
+    Files are looked for in a folder. InvalidSceneError says what is wrong.
+    """
+    if not isinstance(sweep, dict) or not sweep:
+        raise fault((), f"expected one or more of {', '.join(KINDS)}", sweep)
+    parts: dict[str, Rows] = {}
+    for kind, value in sweep.items():
+        if kind not in KINDS:
+            known = f"unknown kind of sweep; expected {', '.join(KINDS)}"
+            raise fault((kind,), known + suggestion(str(kind), KINDS))
+        parts[kind] = KINDS[kind](folder, value)
+        if not parts[kind].size:
+            empty = [key for key, values in value.items() if values == []] if kind == "grid" else []
+            raise fault((kind, *empty[:1]), "the sweep is empty; give it values")
+        for other in list(parts)[:-1]:
+            if twice := set(parts[kind].keys) & set(parts[other].keys):
+                raise fault((kind, min(twice)), f"is swept by {other} already; keep one of them")
+    return _product(list(parts.values()))
+
+
+def fault(path: Keys, message: str, *found: Any) -> InvalidSceneError:
+    """Return the error of a key of the study."""
+    return InvalidSceneError([Problem(path, message, *(shown(value) for value in found))])
+
+
+def text_of(path: Path, key: Keys = ()) -> str:
+    """Return the text of a file, that a key of the study names; SceneError if it cannot be read."""
+    try:
+        return path.read_text(encoding="utf-8-sig")
+    except FileNotFoundError:
+        message = f"{path}: no such file"
+    except (OSError, ValueError) as error:
+        message = f"{path}: cannot be read: {error}"
+    raise fault(key, message) if key else SceneError(message)
+
+
+def _product(parts: Sequence[Rows]) -> Rows:
+    """All combinations, the last part changing fastest."""
+    counts = [part.size for part in parts]
+
+    def at(index: int) -> Inputs:
+        chosen: Inputs = {}
+        for part, i in zip(parts, _digits(index, counts), strict=True):
+            chosen |= part.at(i)
+        return chosen
+
+    keys = tuple(key for part in parts for key in part.keys)
+    return Rows(math.prod(counts), keys, at)
+
+
+def _digits(index: int, counts: Sequence[int]) -> list[int]:
+    digits = []
+    for count in reversed(counts):
+        index, digit = divmod(index, count)
+        digits.append(digit)
+    return digits[::-1]
+
+
+def _grid(_: Path, value: Any) -> Rows:
+    axes = _axes("grid", value)
+    return _product([_column(key, values) for key, values in axes.items()])
+
+
+def _zip(_: Path, value: Any) -> Rows:
+    axes = _axes("zip", value)
+    lengths = {key: len(values) for key, values in axes.items()}
+    if len(set(lengths.values())) > 1:
+        found = ", ".join(f"{key}: {length}" for key, length in lengths.items())
+        raise fault(("zip",), f"lists of unequal length ({found}); make them equal")
+    count = next(iter(lengths.values()))
+    return Rows(count, tuple(axes), lambda i: {key: values[i] for key, values in axes.items()})
+
+
+def _list(_: Path, value: Any) -> Rows:
+    if not isinstance(value, list) or not all(isinstance(item, dict) for item in value):
+        example = "expected a list of mappings such as - {law.epsilon: 0.1}"
+        raise fault(("list",), example, value)
+    return _table([{str(key): item for key, item in row.items()} for row in value])
+
+
+def _random(_: Path, value: Any) -> Rows:
+    draws = Draws.read(value)
+    return Rows(draws.count, tuple(draws.over), lambda i: draws.rows[i])
+
+
+def _csv(folder: Path, value: Any) -> Rows:
+    if not isinstance(value, str):
+        raise fault(("csv",), "expected the name of a CSV file", value)
+    path = folder / value
+    lines = csv.reader(io.StringIO(text_of(path, ("csv",))))
+    try:
+        # Lines of a spreadsheet's end may hold nothing but separators.
+        rows = [(lines.line_num, row) for row in lines if any(cell.strip() for cell in row)]
+    except csv.Error as error:
+        raise SceneError(f"{path}, line {lines.line_num}: cannot be read: {error}") from None
+    if not rows:
+        raise SceneError(f"{path}: is empty; expected a line of keys and a line for each ribbon")
+    (first, names), *rest = rows
+    keys = [name.strip() for name in names]
+    if not all(keys) or len(set(keys)) < len(keys):
+        raise SceneError(f"{path}, line {first}: found {names}, expected keys, each of them once")
+    for line, row in rest:
+        if len(row) != len(keys):
+            raise SceneError(f"{path}, line {line}: found {len(row)} values, expected {len(keys)}")
+    return _table(
+        [
+            {key: _cell(text, f"{path}, line {line}") for key, text in zip(keys, row, strict=True)}
+            for line, row in rest
+        ]
+    )
+
+
+def _cell(text: str, where: str) -> Any:
+    try:
+        return read(text).data
+    except YamlTextError as error:
+        raise SceneError(f"{where}: found {text!r}, which is {error}") from None
+
+
+def _table(rows: list[Inputs]) -> Rows:
+    keys = tuple(dict.fromkeys(key for row in rows for key in row))
+    return Rows(len(rows), keys, rows.__getitem__)
+
+
+def _column(key: str, values: Sequence[Any]) -> Rows:
+    return Rows(len(values), (key,), lambda i: {key: values[i]})
+
+
+def _axes(kind: str, value: Any) -> dict[str, Sequence[Any]]:
+    if not isinstance(value, dict) or not value:
+        example = "expected keys and their values, such as {law.epsilon: [0.1, 0.01]}"
+        raise fault((kind,), example, value)
+    return {str(key): _values((kind, key), item) for key, item in value.items()}
+
+
+def _values(path: Keys, item: Any) -> Sequence[Any]:
+    """Values of one key: a list, or numbers evenly spaced between two, or between two powers."""
+    if isinstance(item, list):
+        return item
+    wanted = {"from", "to", "count"}
+    if isinstance(item, dict) and wanted <= set(item) <= wanted | {"scale"}:
+        spaced = Spaced(item["from"], item["to"], item["count"], item.get("scale", "linear"))
+        if spaced.sound:
+            return spaced
+    example = "expected a list, or {from: 0, to: 1, count: 11} (scale: log for powers)"
+    raise fault(path, example, item)
+
+
+KINDS: Mapping[str, Callable[[Path, Any], Rows]] = {
+    "grid": _grid,
+    "zip": _zip,
+    "list": _list,
+    "random": _random,
+    "csv": _csv,
+}

@@ -1,0 +1,111 @@
+"""From a solved ribbon to one whose numbers differ little: everything that is near enough is kept.
+
+Mesh and phases, the unknowns (continued along the last step from ribbon to ribbon), and the factors
+of the Jacobian, which serve as long as Newton's method contracts with them: a ribbon then costs a
+few evaluations of its equations.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ribbonopt.accuracy.estimate import analyse
+from ribbonopt.arrays import Array
+from ribbonopt.attempt.attempt import Attempts
+from ribbonopt.pipeline.prepared import Prepared
+from ribbonopt.scene import Scene
+from ribbonopt.solution.solution import Solution
+from ribbonopt.solvers.condense import CondensedSystem
+from ribbonopt.solvers.protocols import Factors
+
+SPARE = 0.05  # of the error that a new mesh may leave: it shall serve the neighbours to come
+FARTHEST = 2.0  # times the step before, that it is continued
+
+
+@dataclass(frozen=True, eq=False)
+class Neighbour:
+    """A solved ribbon that others of its structure start from.
+
+    Attributes
+    ----------
+    prepared : Prepared
+        The structure.
+    solution : Solution
+        The ribbon, verified.
+    factors, finer : factors or None
+        Of its equations, and of those that estimate the error; of a ribbon near by at least.
+    before : Solution or None
+        The ribbon that it was solved from, if that is on the same mesh.
+    """
+
+    prepared: Prepared
+    solution: Solution
+    factors: Factors | None = None
+    finer: CondensedSystem | None = None
+    before: Solution | None = None
+
+    def solve(self, scene: Scene) -> Neighbour | None:
+        """Return a verified solution of another scene of this structure; None if none is near.
+
+        Where the mesh or the phases do not do, they are made anew from the shape.
+        """
+        search, old = self.prepared.search(scene), self.solution
+        attempts = search.on_mesh(old.sheets, old.mesh, old.trajectory.ends[1:-1])
+        if self._run(attempts) and attempts.best is not None:
+            found = attempts.best
+            if found.sheets or not (search.phases_help and search.changes_sign(found)):
+                finer = self._finer(found, served=attempts.factorizations == 0)
+                refined = self.prepared.refined(found, SPARE, search)
+                on_new_mesh = refined.trajectory is not found.trajectory
+                if refined.verified and on_new_mesh:
+                    return Neighbour(self.prepared, refined, search.factors)
+                if refined.verified and attempts.check():
+                    kept = attempts.best, attempts.factors, finer, old
+                    return Neighbour(self.prepared, *kept)
+        anew = self.prepared.solve(scene, guess=old, fallback=False, quick=True)
+        return Neighbour(self.prepared, anew) if anew.verified else None
+
+    def solve_at_any_cost(self, scene: Scene) -> Solution:
+        """Return a solution of another scene of this structure, by all that a guess may lead to."""
+        return self.prepared.solve(scene, guess=self.solution, fallback=False)
+
+    def _run(self, attempts: Attempts) -> bool:
+        old = self.solution
+        if not _same_meaning(attempts, old):
+            return attempts.run(old, quick=True, check=False)
+        w = self._continued(attempts.p)
+        return attempts.run_from(w, quick=True, check=False, factors=self.factors)
+
+    def _continued(self, p: Array) -> Array:
+        """Unknowns (nw,) for other parameters on this mesh: what the last step was, once more."""
+        here = self.solution.dense
+        if self.before is None:
+            return here.w
+        there = self.before.dense
+        step, wanted = here.theta - there.theta, p[: len(here.theta)] - here.theta
+        length = float(step @ step)
+        share = float(wanted @ step) / length if length > 0 else 0.0
+        if not abs(share) <= FARTHEST:
+            return here.w
+        continued: Array = here.w + share * (here.w - there.w)
+        return continued
+
+    def _finer(self, found: Solution, served: bool) -> CondensedSystem | None:
+        """Analyse a solution; return the factors of that, if they are worth to be kept."""
+        if found.problem.recovered:
+            return None
+        try:
+            # Where the factors of the equations had to be made anew, those are not near either.
+            return analyse(found, self.finer if served else None, keep=served).factors
+        except np.linalg.LinAlgError:
+            return None
+
+
+def _same_meaning(attempts: Attempts, old: Solution) -> bool:
+    """Whether unknowns can be taken as they are: moments are about a point of reference."""
+    names = attempts.problem.parameter_names
+    where = [names.index(f"reference.{axis}") for axis in "xyz"]
+    same = attempts.nlp.blocks is old.dense.blocks
+    return same and bool((attempts.p[where] == old.dense.theta[where]).all())

@@ -1,0 +1,176 @@
+"""What a study is: scenes, the inputs of their ribbons, and how they are solved; as plain data."""
+
+from __future__ import annotations
+
+import hashlib
+import itertools
+import json
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, field
+from typing import Any, Literal
+
+from ribbonopt.errors import SceneError
+from ribbonopt.scene import Scene
+from ribbonopt.scene.yamlio import loads_scene
+
+from .inputs import NOTHING, Inputs, Rows
+
+PAIR = re.compile(r"\\u(d[89ab][0-9a-f]{2})\\u(d[c-f][0-9a-f]{2})")
+#: of every row; a ribbon that failed has some of them only
+COLUMNS = (
+    *("number", "scene", "status", "verified", "energy", "H0"),
+    *("n0x", "n0y", "n0z", "m0x", "m0y", "m0z", "u2", "u3", "error"),
+    *("start", "iterations", "path", "message", "seconds"),
+)
+
+
+@dataclass(frozen=True)
+class Source:
+    """A scene as text, and where it was read."""
+
+    name: str
+    text: str
+
+
+@dataclass(frozen=True)
+class Sweep:
+    """A source with the inputs of its ribbons, and what holds for all of them.
+
+    `where` says where the study names each key.
+    """
+
+    source: Source
+    common: Inputs = field(default_factory=dict)
+    inputs: Rows = NOTHING
+    where: Mapping[str, str] = field(default_factory=dict)
+
+    def check(self) -> str:
+        """Read the first ribbon; return what is wrong with the scene by itself, "" if nothing.
+
+        Raises
+        ------
+        SceneError
+            If it is one of the study's keys that is unknown, or its first value wrong.
+        """
+        first = self.common | self.inputs[0]
+        fault = self._fault(first)
+        if not fault or self._fault({}):
+            return fault
+        culprits = [k for k in first if not self._fault({o: v for o, v in first.items() if o != k})]
+        where = ", ".join(self.where.get(key, key) for key in culprits[:1] or first)
+        raise SceneError(f"{where}: {fault}")
+
+    @property
+    def recorded(self) -> tuple[str, ...]:
+        """Names of what rows hold for this scene alone; none of a bad scene."""
+        try:
+            scene = self._scene(self.common | self.inputs[0])
+        except SceneError:
+            return ()
+        return (*scene.record, *(("equilibria",) if scene.starts > 1 else ()))
+
+    def _fault(self, inputs: Inputs) -> str:
+        try:
+            self._scene(inputs)
+        except SceneError as error:
+            return str(error)
+        return ""
+
+    def _scene(self, inputs: Inputs) -> Scene:
+        return loads_scene(self.source.text, self.source.name, assignments(inputs))
+
+
+@dataclass(frozen=True)
+class StudyRibbon:
+    """One ribbon of a study: its number, its scene and its inputs."""
+
+    number: int
+    source: Source
+    common: Inputs
+    inputs: Inputs
+
+    @property
+    def overrides(self) -> list[str]:
+        """Overrides of the scene, as `load_scene` takes them."""
+        return assignments(self.common | self.inputs)
+
+
+@dataclass(frozen=True)
+class Study:
+    """All ribbons of a batch, in order.
+
+    Attributes
+    ----------
+    name : str
+        Name of the study.
+    sweeps : tuple of Sweep
+        Scenes and their inputs.
+    save : str
+        Which full solutions are kept: all, failed or none.
+    time_limit : float
+        Seconds that a ribbon may take.
+    """
+
+    name: str
+    sweeps: tuple[Sweep, ...]
+    save: Literal["all", "failed", "none"] = "failed"
+    time_limit: float = 300.0
+
+    @property
+    def count(self) -> int:
+        """Number of ribbons."""
+        return sum(sweep.inputs.size for sweep in self.sweeps)
+
+    @property
+    def keys(self) -> tuple[str, ...]:
+        """Keys of all inputs, in order."""
+        return tuple(dict.fromkeys(key for sweep in self.sweeps for key in sweep.inputs.keys))
+
+    @property
+    def columns(self) -> tuple[str, ...]:
+        """Names of all columns that rows may have."""
+        recorded = (name for sweep in self.sweeps for name in sweep.recorded)
+        return tuple(dict.fromkeys((*self.keys, *COLUMNS, *recorded)))
+
+    @property
+    def ribbons(self) -> Iterator[StudyRibbon]:
+        """The ribbons, numbered from 1."""
+        numbers = itertools.count(1)
+        for sweep in self.sweeps:
+            for inputs in sweep.inputs:
+                yield StudyRibbon(next(numbers), sweep.source, sweep.common, inputs)
+
+    def check(self) -> None:
+        """Refuse a study none of whose ribbons can be solved.
+
+        Raises
+        ------
+        SceneError
+            If a key of the study does not fit its scene, or no scene is sound. A bad scene among
+            good ones only spoils its own rows.
+        """
+        faults = [sweep.check() for sweep in self.sweeps]
+        if all(faults):
+            raise SceneError(faults[0])
+
+    @property
+    def digest(self) -> str:
+        """What tells this study from others: everything that decides its rows."""
+        parts = [[sweep.source.text, sweep.common, list(sweep.inputs)] for sweep in self.sweeps]
+        return hashlib.sha256(json.dumps(parts).encode()).hexdigest()
+
+
+def assignments(inputs: Inputs) -> list[str]:
+    """Return inputs as overrides of a scene."""
+    return [f"{key}={as_yaml(value)}" for key, value in inputs.items()]
+
+
+def as_yaml(value: Any) -> str:
+    """Return plain data as YAML on one line, which JSON is but for two words on one character."""
+    return PAIR.sub(_joined, json.dumps(value))
+
+
+def _joined(pair: re.Match[str]) -> str:
+    high, low = (int(word, 16) for word in pair.groups())
+    return f"\\U{0x10000 + ((high - 0xD800) << 10) + low - 0xDC00:08x}"

@@ -1,0 +1,156 @@
+"""A worker of a batch: reads chunks as lines of JSON, writes a line for each ribbon.
+
+A process of its own (`python -m ribbonopt.studies.batch.worker`), so that a ribbon that hangs or
+crashes takes nothing with it. What is built for a structure is kept for the ribbons to come.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+import sys
+import threading
+import time
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+from typing import Any
+
+os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+
+from ribbonopt.errors import ModelError, RibbonoptError
+from ribbonopt.pipeline.prepared import Prepared, prepare
+from ribbonopt.plain import finite
+from ribbonopt.problem import structure_of
+from ribbonopt.scene import Scene, loads_scene
+from ribbonopt.scene.units import in_special_units
+from ribbonopt.solution.solution import Solution
+from ribbonopt.studies.continuation.recorded import error_of, numbers_of, sampled
+
+from .family import Family, solve_beside
+
+Row = dict[str, Any]
+WATCH = 2.0  # seconds between two looks whether the batch is still there
+
+
+class Worker:
+    """Solves chunks; keeps what it has built."""
+
+    def __init__(self) -> None:
+        """Begin with nothing built."""
+        self._built: dict[tuple[object, ...], Prepared] = {}
+
+    def answers(self, chunk: dict[str, Any]) -> Iterator[dict[str, Any]]:
+        """Yield for every ribbon that it begins, and its row; those of `skip` are passed over."""
+        before: Family | None = None
+        for ribbon in chunk["ribbons"]:
+            if ribbon["number"] in chunk["skip"]:
+                continue
+            yield {"at": ribbon["number"]}
+            row, found, family = self._solved(ribbon, before)
+            before = family or before
+            if ribbon["number"] not in chunk["known"]:
+                try:
+                    _save(chunk, ribbon, row, found)
+                except OSError as error:  # the row, which may still find room, says it
+                    row["message"] += f"{row['message'] and '; '}full solution not kept: {error}"
+                yield {"row": row}
+
+    def _solved(
+        self, ribbon: dict[str, Any], before: Family | None
+    ) -> tuple[Row, Solution | None, Family | None]:
+        """Return row and solution of a ribbon, and what the next one may start from."""
+        started = time.perf_counter()
+        row: Row = {"number": ribbon["number"], "scene": ribbon["source"], **ribbon["inputs"]}
+        found, family = None, None
+        try:
+            scene = loads_scene(ribbon["text"], ribbon["source"], ribbon["set"])
+            row["scene"] = scene.name
+            found, start, family = solve_beside(
+                self._prepared(scene), scene, ribbon["number"], before
+            )
+            row |= _outcome(found, start)
+            row |= _recorded(found, row)
+        except RibbonoptError as error:
+            status = getattr(error, "status", "bad_input")
+            row |= {"status": status, "verified": False, "message": str(error)}
+        except Exception as error:  # whatever it is, the other ribbons go on
+            message = f"{type(error).__name__}: {error}"
+            row |= {"status": "error", "verified": False, "message": message}
+        row["seconds"] = time.perf_counter() - started
+        return finite(row), found, family
+
+    def _prepared(self, scene: Scene) -> Prepared:
+        """Return the structure of a scene, built once."""
+        structure = structure_of(in_special_units(scene))
+        if structure not in self._built:
+            self._built[structure] = prepare(replace(scene, continuation=None))
+        return self._built[structure]
+
+
+def _outcome(found: Solution, start: str) -> Row:
+    row: Row = {
+        "status": found.status.name.lower(),
+        "verified": found.verified,
+        "message": "" if found.verified else found.message,
+    }
+    if found.status.converged:
+        row |= numbers_of(found) | {"error": error_of(found)}
+        if found.scene.starts > 1:
+            row["equilibria"] = 1 + len(found.others)
+    steps = [step["step"] for step in found.path]
+    return row | {"start": start, "iterations": found.iterations, "path": "; ".join(steps)}
+
+
+def _recorded(found: Solution, row: Row) -> Row:
+    """Return what the scene records besides."""
+    scene = found.scene
+    if not (scene.record and found.status.converged):
+        return {}
+    for name in scene.record:
+        if name in row:
+            raise ModelError(f"record.{name}: every row has that already; choose another name")
+    from ribbonopt.scene.checks.continuation import parse_record  # formulas, which few need
+
+    return sampled(found, {name: parse_record(text, scene) for name, text in scene.record.items()})
+
+
+def _save(chunk: dict[str, Any], ribbon: dict[str, Any], row: Row, found: Solution | None) -> None:
+    """Keep the full solution where the study wants it."""
+    wanted = chunk["save"] == "all" or (chunk["save"] == "failed" and not row["verified"])
+    if not wanted or found is None or not chunk["folder"]:
+        return
+    from ribbonopt.output.results import save_solution
+    from ribbonopt.output.staging import staged_result
+
+    with staged_result(Path(chunk["folder"]) / "solutions" / str(ribbon["number"])) as stage:
+        save_solution(found, stage.folder)
+        stage.commit()
+
+
+def main() -> None:
+    """Serve until stdin ends, or the batch does."""
+    threading.Thread(target=_watch, args=(os.getppid(),), daemon=True).start()
+    answers = os.fdopen(os.dup(1), "w", encoding="utf-8")
+    os.dup2(2, 1)  # what libraries print must not stand among the answers
+    worker = Worker()
+    for line in sys.stdin:
+        for answer in worker.answers(json.loads(line)):
+            answers.write(json.dumps(answer) + "\n")
+            answers.flush()
+        answers.write('{"done": true}\n')
+        answers.flush()
+
+
+def _watch(batch: int) -> None:
+    """End with the batch, even in the middle of a ribbon that hangs."""
+    while os.getppid() == batch:
+        time.sleep(WATCH)
+    os._exit(1)
+
+
+if __name__ == "__main__":
+    try:
+        main()
+    except BrokenPipeError:  # nobody wants the rest
+        os._exit(0)

@@ -1,0 +1,1 @@
+"""One scene by every formulation and scheme, and run time against error."""

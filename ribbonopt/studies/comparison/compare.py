@@ -1,0 +1,237 @@
+"""Compare ways to solve one scene: formulations, states and transcriptions by time and true error.
+
+Every pair climbs a ladder of meshes until it meets the tightest tolerance. Errors are taken from a
+reference where one is given, else from the most accurate solution of all by its own estimate; a
+fine solve of the inverted form is among the candidates.
+"""
+
+from __future__ import annotations
+
+import time
+from collections.abc import Iterable, Iterator, Sequence
+from dataclasses import dataclass, replace
+from statistics import median
+from typing import Any
+
+import numpy as np
+
+from ribbonopt.output.summary import versions
+from ribbonopt.pipeline.prepared import Prepared
+from ribbonopt.scene import Collocation, Scene
+from ribbonopt.studies.machine import machine
+
+from .measure import Measurement, Profile, cost_of, errors_of, measure
+from .pairs import Pair, pairs_of
+from .rows import Cheapest, Row, cheapest, row_of
+
+TOLERANCES = (1e-4, 1e-6, 1e-8, 1e-10)
+FINE = Pair("inverted", "reduced", "gauss")
+FINE_INTERVALS = (24, 96, 384)
+# Seconds after which a pair climbs no further, and unverified solves in a row after which it gives
+# up: coarse meshes may fail where finer ones do not.
+PATIENCE = 3.0
+FAILURES = 4
+# Rows up to NEAR times as slow as the quickest are timed again, ROUNDS times.
+NEAR, ROUNDS = 3.0, 7
+
+UNKNOWN = "unknown: nothing solved"
+
+Numbers = Sequence[float]
+
+
+@dataclass(frozen=True)
+class Reference:
+    """Known n, m (lab frame, units of the scene) at the start, and where they come from."""
+
+    n0: Numbers
+    m0: Numbers
+    source: str = "the reference given"
+
+
+@dataclass(frozen=True, eq=False)
+class Truth:
+    """What errors are measured against, where it comes from, and how well it is known."""
+
+    profile: Profile
+    source: str
+    error: float = 0.0
+
+
+@dataclass(frozen=True)
+class Comparison:
+    """All rows, from cheap to fine for each pair, and what they say.
+
+    Attributes
+    ----------
+    name : str
+        Of the scene.
+    truth : str
+        What errors were measured against.
+    truth_error : float
+        Relative error of the truth itself, as far as is known.
+    tolerances : tuple of float
+        Relative errors of n(0), m(0) that were wanted.
+    rows : tuple of Row
+        One for each solve.
+    """
+
+    name: str
+    truth: str
+    truth_error: float
+    tolerances: tuple[float, ...]
+    rows: tuple[Row, ...]
+
+    @property
+    def cheapest(self) -> tuple[Cheapest, ...]:
+        """The cheapest pair at each tolerance."""
+        return tuple(cheapest(self.rows, tolerance) for tolerance in self.tolerances)
+
+    @property
+    def sentences(self) -> tuple[str, ...]:
+        """What the rows say, in plain words."""
+        return tuple(
+            found.sentence
+            if found.tolerance >= self.truth_error
+            else f"To {found.tolerance:.0e}: not decided, the truth is known to "
+            f"{self.truth_error:.0e} only; give a reference."
+            for found in self.cheapest
+        )
+
+    @property
+    def solved(self) -> bool:
+        """Whether any pair gave a verified solution."""
+        return any(row.verified for row in self.rows)
+
+    def plain(self) -> dict[str, Any]:
+        """Everything as plain data for JSON."""
+        return {
+            "name": self.name,
+            "truth": self.truth,
+            "truth_error": self.truth_error,
+            "tolerances": list(self.tolerances),
+            "rows": [row.plain() for row in self.rows],
+            "cheapest": [found.plain() for found in self.cheapest],
+            "sentences": list(self.sentences),
+            "machine": machine(),
+            "versions": versions(),
+        }
+
+
+def compare(
+    scene: Scene,
+    formulations: Iterable[str] | None = None,
+    transcriptions: Iterable[str] | None = None,
+    tolerances: Iterable[float] | None = None,
+    reference: Reference | None = None,
+) -> Comparison:
+    """Solve a scene by all pairs of formulation, states and transcription.
+
+    Parameters
+    ----------
+    scene
+        What to solve; its formulation, states and transcription are not used.
+    formulations, transcriptions
+        Names of `FORMULATIONS` and `TRANSCRIPTIONS`; None for all.
+    tolerances
+        Relative errors of n(0), m(0) wanted; the tightest ends every ladder.
+    reference
+        The truth, if known better than by the best solution; else the scene's own reference, if it
+        has one.
+
+    Raises
+    ------
+    SceneError
+        If a name is not known. What a pair refuses or fails to solve is a row.
+    """
+    pairs = pairs_of(formulations, transcriptions)
+    reference = reference or reference_of(scene)
+    wanted = tuple(sorted(TOLERANCES if tolerances is None else tolerances, reverse=True))
+    fine = fine_solves(scene, wanted[-1])
+    provisional = truth_of(fine, reference)
+    found = [one for pair in pairs for one in _climb(pair, scene, provisional, wanted[-1])]
+    truth = truth_of([*fine, *(measurement for measurement, _ in found)], reference)
+    profile = truth.profile if truth else None
+    source, error = (truth.source, truth.error) if truth else (UNKNOWN, 0.0)
+    rows = [row_of(measurement, profile) for measurement, _ in found]
+    rows = _leaders_again(rows, [prepared for _, prepared in found], wanted)
+    return Comparison(scene.name, source, error, wanted, tuple(rows))
+
+
+def reference_of(scene: Scene) -> Reference | None:
+    """Return the truth that a scene states, if it does."""
+    known = scene.reference
+    return None if known is None else Reference(known.n0, known.m0, "the reference of the scene")
+
+
+def fine_solves(scene: Scene, wanted: float) -> list[Measurement]:
+    """Solve the inverted form on fine meshes until its own estimate is well below what is wanted.
+
+    Where m2 changes sign the order is low and the first mesh is not enough.
+    """
+    found = []
+    for intervals in FINE_INTERVALS:
+        mesh = Collocation(scheme="gauss", degree=10, intervals=intervals)
+        found.append(measure(FINE, scene, mesh, repeat=1)[0])
+        if found[-1].refused or (found[-1].estimate or 1.0) < wanted / 10:
+            break
+    return found
+
+
+def truth_of(found: Sequence[Measurement], reference: Reference | None = None) -> Truth | None:
+    """Return the reference, or the verified solution whose own estimate is smallest.
+
+    A reference says nothing of u along s: that comes from the best solution in any case.
+    """
+    best, profile = None, None
+    for one in found:
+        if one.verified and one.estimate is not None and one.profile is not None:
+            if best is None or one.estimate < (best.estimate or 0.0):
+                best, profile = one, one.profile
+    if best is None or profile is None:
+        return None
+    if reference is None:
+        row = row_of(best, None)
+        source = f"{row.name}, {row.mesh}, by its own estimate within {best.estimate:.0e}"
+        return Truth(profile, source, best.estimate or 0.0)
+    given = replace(profile, n0=np.array(reference.n0), m0=np.array(reference.m0))
+    return Truth(given, reference.source)
+
+
+def _leaders_again(
+    rows: list[Row], built: Sequence[Prepared | None], tolerances: Iterable[float]
+) -> list[Row]:
+    """Time those that might be cheapest again, interleaved: a busy machine should not decide."""
+    leaders: set[int] = set()
+    for tolerance in tolerances:
+        good = {i: row.solve for i, row in enumerate(rows) if row.solve and row.meets(tolerance)}
+        near = NEAR * min(good.values(), default=0.0)
+        leaders.update(i for i, value in good.items() if value <= near)
+    seconds: dict[int, list[float]] = {i: [] for i in sorted(leaders)}
+    for _ in range(ROUNDS):
+        for i, values in seconds.items():
+            prepared = built[i]
+            if prepared is not None:
+                values.append(cost_of(prepared).solve)
+    again = {i: median(values) for i, values in seconds.items() if values}
+    return [replace(row, solve=again.get(i, row.solve)) for i, row in enumerate(rows)]
+
+
+def _climb(
+    pair: Pair, scene: Scene, truth: Truth | None, wanted: float
+) -> Iterator[tuple[Measurement, Prepared | None]]:
+    """Measure from cheap to fine meshes until the error is met."""
+    started, failures = time.perf_counter(), 0
+    for mesh in pair.family.ladder:
+        found, prepared = measure(pair, scene, mesh)
+        yield found, prepared
+        failures = 0 if found.verified else failures + 1
+        spent = time.perf_counter() - started
+        if found.refused or failures >= FAILURES or spent > PATIENCE or _met(found, truth, wanted):
+            return
+
+
+def _met(found: Measurement, truth: Truth | None, wanted: float) -> bool:
+    if truth is None or not found.verified or found.profile is None:
+        return False
+    errors = errors_of(found.profile, truth.profile)
+    return max(errors["error_n0"], errors["error_m0"]) <= wanted

@@ -1,0 +1,225 @@
+"""One solve of a comparison, measured: cost, own error estimate, drifts, samples along s.
+
+What is refused or does not converge is a measurement too, with the message that says why.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, replace
+from functools import cached_property, lru_cache
+from statistics import median
+from typing import Any
+
+import casadi as ca
+import numpy as np
+
+from ribbonopt.accuracy.estimate import ROUNDING, analyse
+from ribbonopt.arrays import Array
+from ribbonopt.errors import ConvergenceError, RibbonoptError
+from ribbonopt.guess import Guess
+from ribbonopt.pipeline.prepared import Prepared, prepare
+from ribbonopt.problem import ribbon_of, theta_values
+from ribbonopt.scene import Scene
+from ribbonopt.scene.units import Units, in_special_units
+from ribbonopt.solution.solution import Solution
+
+from .pairs import Mesh, Pair
+
+SAMPLES = 101
+SLOW = 0.1  # seconds of a solve that is not repeated for a median
+
+
+@dataclass(frozen=True, eq=False)
+class Profile:
+    """What errors are measured on: n, m (3,) at the start, lab frame, and u (SAMPLES, 3) along s.
+
+    u is taken in the middles of equal parts of the ribbon, because it may jump at the ends (at the
+    end of half a Moebius ribbon m2 changes sign, and at epsilon = 0 that throws u2 over). All in
+    the scene's `units`, with which n and m can be compared.
+    """
+
+    n0: Array
+    m0: Array
+    u: Array
+    units: Units
+
+
+@dataclass(frozen=True, eq=False)
+class Measurement:
+    """One solve.
+
+    Attributes
+    ----------
+    pair, mesh : Pair, Mesh
+        How the scene was solved.
+    status, message, verified : str, str, bool
+        How it ended; the message in one line.
+    numbers : mapping of str to int, float or None
+        `unknowns`, `nonzeros`, `iterations`; seconds `build`, `evaluate`, `linear`, `solve`;
+        `drift_invariant`, `drift_law`, `drift_frame`. Empty where nothing was solved.
+    profile : Profile or None
+        None unless the equations are solved.
+    estimate : float or None
+        The solution's own estimate of its relative error of n(0), m(0).
+    """
+
+    pair: Pair
+    mesh: Mesh
+    status: str
+    message: str
+    verified: bool
+    numbers: dict[str, Any]
+    profile: Profile | None = None
+    estimate: float | None = None
+
+    @property
+    def refused(self) -> bool:
+        """Whether the pair makes no sense, so that other meshes need no try."""
+        return self.status == "refused"
+
+
+@dataclass(frozen=True, eq=False)
+class LawResidual:
+    """Departure from the constitutive law along a solution: |u - u*(m)| relative to |u|."""
+
+    scene: Scene
+
+    def __call__(self, outputs: dict[str, Array], units: Units) -> float:
+        """Return the largest departure on sampled outputs."""
+        m2, m3 = (outputs[name][None] / units.moment for name in ("m2", "m3"))
+        expected = np.array(self._strain(m2, m3))
+        found = np.stack([outputs["u2"], outputs["u3"]]) / units.strain
+        return _relative(found - expected, found)
+
+    @cached_property
+    def _strain(self) -> ca.Function:
+        scene = in_special_units(self.scene)
+        ribbon, values = ribbon_of(scene), theta_values(scene)
+        m2, m3 = ca.SX.sym("m2"), ca.SX.sym("m3")
+        u = ca.vertcat(*ribbon.law.strain(m2, m3))
+        theta = ca.vertcat(*ribbon.theta.values())
+        return ca.Function("strain", [m2, m3], [ca.substitute(u, theta, ca.DM(values))])
+
+
+@dataclass(frozen=True)
+class Cost:
+    """Seconds of one solve from the scene's guess: functions, linear algebra, all."""
+
+    evaluate: float
+    linear: float
+    solve: float
+
+
+@lru_cache(maxsize=1)
+def _guess(prepared: Prepared) -> Guess:
+    """First guess of a prepared scene, made once for its repeated solves."""
+    return prepared.guess()
+
+
+def cost_of(prepared: Prepared) -> Cost:
+    """Solve again and return the cost; guess and checks, the same for all pairs, are left out."""
+    attempts = prepared.solver.solve(*prepared.start(guess=_guess(prepared))).attempts
+    return Cost(
+        sum(a.evaluate for a in attempts),
+        sum(a.linear for a in attempts),
+        sum(a.total for a in attempts),
+    )
+
+
+def measure(
+    pair: Pair, scene: Scene, mesh: Mesh, repeat: int = 3
+) -> tuple[Measurement, Prepared | None]:
+    """Solve a scene by a pair on a mesh; times are medians of `repeat` further solves.
+
+    What was built is returned too, to solve again; None where it was refused.
+    """
+    try:
+        prepared = prepare(pair.scene(scene, mesh))
+        # The one guess: a pair that needs another start than the rest has failed here.
+        solution = prepared.solve(guess=_guess(prepared), fallback=False)
+        costs = [cost_of(prepared)]
+        while len(costs) < repeat and costs[0].solve < SLOW:
+            costs.append(cost_of(prepared))
+        return _measured(pair, mesh, prepared, solution, costs), prepared
+    except ConvergenceError as error:
+        return _failed(pair, mesh, error.status, error), None
+    except np.linalg.LinAlgError as error:
+        return _failed(pair, mesh, "singular", error), None
+    except RibbonoptError as error:
+        return _failed(pair, mesh, "refused", error), None
+
+
+def _measured(
+    pair: Pair, mesh: Mesh, prepared: Prepared, solution: Solution, costs: Sequence[Cost]
+) -> Measurement:
+    numbers: dict[str, Any] = {
+        "unknowns": prepared.nlp.unknowns,
+        "nonzeros": prepared.nlp.functions.jacobian.sparsity_out(1).nnz(),
+        "iterations": solution.iterations,
+        "build": prepared.seconds,
+        "evaluate": median(cost.evaluate for cost in costs),
+        "linear": median(cost.linear for cost in costs),
+        "solve": median(cost.solve for cost in costs),
+    }
+    profile = estimate = None
+    if solution.status.converged:
+        start, end = solution.scene.interval
+        o = solution.outputs(start + (end - start) * (np.arange(SAMPLES) + 0.5) / SAMPLES)
+        profile = Profile(solution.n0, solution.m0, o["u"], solution.units)
+        estimate = _estimate(solution, profile)
+        numbers |= {
+            "drift_invariant": solution.verification.drift["H"],
+            "drift_law": LawResidual(solution.scene)(o, solution.units),
+            "drift_frame": float(o["orthonormality"].max()),
+        }
+    message = "" if solution.verified else _line(solution.message)
+    status = solution.status.name.lower()
+    return Measurement(pair, mesh, status, message, solution.verified, numbers, profile, estimate)
+
+
+def _estimate(solution: Solution, profile: Profile) -> float | None:
+    """Own estimate of the error of n(0), m(0) alone; None for minima (no square system)."""
+    if solution.problem.recovered:
+        return None
+    better, units = analyse(solution).better.at_nodes, solution.units
+    n0, m0 = better["n"][0] * units.force, better["m"][0] * units.moment
+    errors = errors_of(replace(profile, n0=n0, m0=m0), profile)
+    return max(errors["error_n0"], errors["error_m0"], ROUNDING)
+
+
+def load_sizes(profile: Profile) -> tuple[float, float]:
+    """Sizes of n(0) and m(0); one that vanishes is measured by the other, and both by one."""
+    units = profile.units
+    n = float(np.linalg.norm(profile.n0)) / units.force
+    m = float(np.linalg.norm(profile.m0)) / units.moment
+    tiny = 1e-9 * max(n, m)
+    if n <= tiny:
+        n = m
+    if m <= tiny:
+        m = n
+    return (n or 1.0) * units.force, (m or 1.0) * units.moment
+
+
+def errors_of(found: Profile, true: Profile) -> dict[str, float]:
+    """Relative errors of n(0), m(0) and of u along s."""
+    sizes = load_sizes(true)
+    return {
+        "error_n0": float(np.linalg.norm(found.n0 - true.n0)) / sizes[0],
+        "error_m0": float(np.linalg.norm(found.m0 - true.m0)) / sizes[1],
+        "error_u": _relative(found.u - true.u, true.u),
+    }
+
+
+def _relative(difference: Array, whole: Array) -> float:
+    size = float(np.abs(whole).max())
+    largest = float(np.abs(difference).max())
+    return largest / size if size > 0 else largest
+
+
+def _failed(pair: Pair, mesh: Mesh, status: str, error: Exception) -> Measurement:
+    return Measurement(pair, mesh, status, _line(str(error)), False, {})
+
+
+def _line(text: str) -> str:
+    return " ".join(text.split())

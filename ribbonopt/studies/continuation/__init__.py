@@ -1,0 +1,1 @@
+"""Continuation: branches of equilibria as a number of the scene moves."""

@@ -1,0 +1,138 @@
+"""A parameter of a scene from one value to another: the line that a branch is followed along."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field, replace
+from functools import cached_property
+from itertools import pairwise
+
+import numpy as np
+
+from ribbonopt.arrays import Array
+from ribbonopt.problem import BoundaryValueProblem, theta_values
+from ribbonopt.scene import Continuation, Scene
+from ribbonopt.scene.lens import with_value
+from ribbonopt.scene.units import in_special_units
+from ribbonopt.solution.solution import Solution
+from ribbonopt.solvers.extended import Line
+
+STEPS = 20  # from one end to the other, where the stage says nothing of its steps
+SLOPE = 1e-5  # of the span: half the distance that derivatives by the position are taken over
+KEPT = 16  # scenes at recent positions
+
+
+@dataclass(frozen=True, eq=False)
+class Curve:
+    """One stage of a continuation; the position is the parameter or, for `log`, its logarithm.
+
+    Attributes
+    ----------
+    scene : Scene
+        The scene, in the user's units.
+    stage : Continuation
+        What is continued; `from_` is given.
+    """
+
+    scene: Scene
+    stage: Continuation
+    _scenes: dict[float, tuple[Scene, Array]] = field(default_factory=dict)
+
+    @property
+    def start(self) -> float:
+        """Position where the stage begins."""
+        assert self.stage.from_ is not None
+        return self.position(self.stage.from_)
+
+    @property
+    def goals(self) -> tuple[float, ...]:
+        """Positions that must be met exactly, in order; the last is the end."""
+        values = self.stage.values or (self.stage.to,)
+        return tuple(self.position(value) for value in values if value is not None)
+
+    @property
+    def span(self) -> float:
+        """Distance from the start to the end."""
+        return abs(self.goals[-1] - self.start)
+
+    @property
+    def largest(self) -> float:
+        """Largest change of the position in a step."""
+        if self.stage.largest or not self.stage.values:
+            return self.stage.largest or max(self.span / STEPS, self.stage.first or 0.0)
+        places = (self.start, *self.goals)
+        return max(abs(b - a) for a, b in pairwise(places))
+
+    @property
+    def first(self) -> float:
+        """Change of the position in the first step."""
+        return self.stage.first or self.largest
+
+    @property
+    def smallest(self) -> float:
+        """Change of the position below which a step is not tried."""
+        return self.stage.smallest or 1e-6 * min(self.span, self.first)
+
+    def moves(self, problem: BoundaryValueProblem) -> bool:
+        """Whether the equations of the scene contain the parameter."""
+        first, last = (self._at(position)[1] for position in (self.start, self.goals[-1]))
+        moving = [int(i) for i in np.flatnonzero(first != last)]
+        return any(problem.contains(i) for i in moving)
+
+    def position(self, value: float) -> float:
+        """Position of a value of the parameter."""
+        return float(np.log10(value)) if self.stage.scale == "log" else value
+
+    def value(self, position: float) -> float:
+        """Value of the parameter, exactly that of the scene file where it names one."""
+        named = (self.stage.from_, self.stage.to, *(self.stage.values or ()))
+        for value in named:
+            if value is not None and self.position(value) == position:
+                return value
+        return float(10**position) if self.stage.scale == "log" else position
+
+    def scene_at(self, position: float) -> Scene:
+        """Return the scene with the parameter's value at a position."""
+        return self._at(position)[0]
+
+    def line(self, solution: Solution) -> Line:
+        """Return the equations of a solution along this curve, on its mesh and in its phases."""
+        widths = solution.mesh.widths
+        return Line(
+            solution.dense.blocks,
+            lambda position: np.concatenate([self._theta(position), widths]),
+            SLOPE * self.span,
+        )
+
+    def _theta(self, position: float) -> Array:
+        """Parameters theta at a position."""
+        if self._direct is None:
+            return self._at(position)[1]
+        first, entry, scale = self._direct
+        theta: Array = first.copy()
+        theta[entry] = scale * self.value(position)
+        return theta
+
+    @cached_property
+    def _direct(self) -> tuple[Array, int, float] | None:
+        """Parameters, and which of them is the value times what; None if it is not so simple."""
+        ends = self.start, self.goals[-1]
+        places = [*ends, 0.3 * ends[0] + 0.7 * ends[1], 0.6 * ends[0] + 0.4 * ends[1]]
+        found = np.array([self._at(place)[1] for place in places])
+        values = np.array([self.value(place) for place in places])
+        moving = np.flatnonzero((found != found[0]).any(axis=0))
+        if len(moving) != 1:
+            return None
+        entry = int(moving[0])
+        largest = int(np.abs(values).argmax())
+        scale = float(found[largest, entry] / values[largest])
+        return (found[0], entry, scale) if bool((found[:, entry] == scale * values).all()) else None
+
+    def _at(self, position: float) -> tuple[Scene, Array]:
+        """Scene and parameters theta at a position."""
+        if position not in self._scenes:
+            if len(self._scenes) >= KEPT:
+                self._scenes.pop(next(iter(self._scenes)))
+            scene = with_value(self.scene, self.stage.parameter, self.value(position))
+            scene = replace(scene, continuation=None)
+            self._scenes[position] = scene, theta_values(in_special_units(scene))
+        return self._scenes[position]

@@ -1,0 +1,192 @@
+"""Branches on disk: every accepted point is appended at once, so that nothing accepted is lost.
+
+`branch.jsonl` holds one JSON object in a line: a point (`row`: what is recorded; `state`: what it
+takes to go on from there, arrays as base64 of their bytes), or how a stage has ended. A line that
+was cut short is not read. `branch.csv` has the rows as a table.
+"""
+
+from __future__ import annotations
+
+import csv
+import json
+from collections.abc import Iterator
+from pathlib import Path
+from typing import Any
+
+from ribbonopt.errors import OutputError
+from ribbonopt.output.staging import beside, replacing, unwritable
+from ribbonopt.scene import Scene, dump_scene, load_scene
+from ribbonopt.studies.lines import whole_lines
+
+from .branches import Key
+from .continuation import Continuation
+from .points import POINT, Point
+from .stored import Stored, state_of
+
+FILE, TABLE, SCENE = "branch.jsonl", "branch.csv", "scene.yaml"
+FIGURES = ("branch.png", "ribbons.png")
+
+
+class BranchFolder:
+    """A folder that a branch is written to, point by point."""
+
+    def __init__(self, folder: str | Path, scene: Scene, *, resume: bool) -> None:
+        """Claim the folder.
+
+        Raises
+        ------
+        OutputError
+            If it cannot be written, holds other files, holds a branch that is not to be resumed,
+            or one of another scene.
+        """
+        self.folder, self.scene = Path(folder), scene
+        self.lines: list[dict[str, Any]] = []
+        files = (FILE, SCENE)
+        own = {TABLE, *FIGURES, *files, *(beside(Path(name)).name for name in files)}
+        try:
+            self.folder.mkdir(parents=True, exist_ok=True)
+            found = sorted(path.name for path in self.folder.iterdir())
+            foreign = [name for name in found if name not in own]
+            if foreign:
+                raise OutputError(
+                    f"{folder}: holds files that are no branch ({', '.join(foreign[:3])}); choose "
+                    "a new or an empty folder"
+                )
+            if FILE in found and not resume:
+                raise OutputError(
+                    f"{folder}: holds a branch already; go on with it by --resume, or choose "
+                    "another folder"
+                )
+            text = dump_scene(scene)
+            if FILE in found:
+                self._same(text)
+                self.lines = _read(self.folder / FILE)
+            if SCENE not in found:
+                self._replace(SCENE, text)
+            self._replace(FILE, "".join(_line(line) for line in self.lines))
+            self._file = open(self.folder / FILE, "a", encoding="utf-8")
+        except OutputError:  # an OSError too, but one that says what to do
+            raise
+        except OSError as error:
+            raise unwritable(self.folder, error) from error
+
+    @property
+    def rows(self) -> list[dict[str, Any]]:
+        """Rows of all points."""
+        return rows_of(self.lines)
+
+    def follow(self, continuation: Continuation) -> Iterator[Point]:
+        """Points of a continuation from where the folder's end, each written before it is given."""
+        history = Stored(continuation, self.lines)
+        known = set(history.endings)
+        try:
+            for point in continuation.resume(history):
+                known = self._note_endings(continuation, known)
+                self._append({"row": dict(point.row), "state": state_of(point)})
+                yield point
+            self._note_endings(continuation, known)
+        finally:
+            self.close()
+
+    def close(self) -> None:
+        """Write the table and close the branch file; OutputError if the disk is full."""
+        try:
+            self._file.close()
+            if self.lines:
+                self.write_table()
+                return
+            # Nothing was found, and so nothing stays.
+            for name in (FILE, SCENE):
+                (self.folder / name).unlink(missing_ok=True)
+            if not any(self.folder.iterdir()):
+                self.folder.rmdir()
+        except OSError as error:
+            raise unwritable(self.folder, error) from error
+
+    def write_table(self) -> None:
+        """Write the rows as CSV."""
+        rows = self.rows
+        names = list(rows[0]) if rows else []
+        with open(self.folder / TABLE, "w", newline="", encoding="utf-8") as file:
+            writer = csv.writer(file)
+            writer.writerow(names)
+            for row in rows:
+                writer.writerow([_cell(row[name]) for name in names])
+
+    def _note_endings(self, continuation: Continuation, known: set[Key]) -> set[Key]:
+        for key, ending in continuation.endings.items():
+            if key not in known:
+                stage, branch = key
+                self._append(
+                    {
+                        "ending": {
+                            "stage": stage,
+                            "branch": branch,
+                            "reached": ending.reached,
+                            "reason": ending.reason,
+                        }
+                    }
+                )
+        return set(continuation.endings)
+
+    def _append(self, line: dict[str, Any]) -> None:
+        self.lines.append(line)
+        try:
+            self._file.write(_line(line))
+            self._file.flush()
+        except OSError as error:
+            raise unwritable(self.folder, error) from error
+
+    def _same(self, text: str) -> None:
+        scene = self.folder / SCENE
+        if not scene.exists() or scene.read_text(encoding="utf-8") != text:
+            raise OutputError(
+                f"{self.folder}: holds a branch of another scene; resume with the scene (and "
+                "--set) it was begun with, or choose another folder"
+            )
+
+    def _replace(self, name: str, text: str) -> None:
+        with replacing(self.folder / name) as file:
+            file.write(text)
+
+
+def load_branch(folder: str | Path) -> tuple[Scene, list[dict[str, Any]]]:
+    """Return the scene and the lines of a branch folder; OutputError if it holds none."""
+    folder = Path(folder)
+    if not ((folder / FILE).is_file() and (folder / SCENE).is_file()):
+        raise OutputError(f"{folder}: no branch; expected a folder written by ribbonopt continue")
+    return load_scene(folder / SCENE), _read(folder / FILE)
+
+
+def rows_of(lines: list[dict[str, Any]]) -> list[dict[str, Any]]:
+    """Rows of all points."""
+    return [line["row"] for line in lines if "row" in line]
+
+
+def _read(path: Path) -> list[dict[str, Any]]:
+    """Whole lines; special points after the last regular one will be found again."""
+    lines = whole_lines(path, _sound)
+    while lines and "row" in lines[-1] and lines[-1]["row"]["kind"] != POINT:
+        lines.pop()
+    return lines
+
+
+def _sound(line: Any) -> bool:
+    """Whether a line holds what `BranchFolder` writes."""
+    if not isinstance(line, dict):
+        return False
+    row, ending = line.get("row"), line.get("ending")
+    if isinstance(ending, dict):
+        return {"stage", "branch", "reached", "reason"} <= ending.keys()
+    keys = {"number", "stage", "branch", "kind"}
+    return isinstance(row, dict) and keys <= row.keys() and isinstance(line.get("state"), dict)
+
+
+def _line(value: dict[str, Any]) -> str:
+    return json.dumps(value) + "\n"
+
+
+def _cell(value: Any) -> Any:
+    if isinstance(value, list):
+        return " ".join(repr(item) for item in value)
+    return "" if value is None else value

@@ -1,0 +1,144 @@
+"""What is recorded of the points of a branch, and the conditions that end it."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable, Mapping
+from typing import Any
+
+import numpy as np
+
+from ribbonopt.accuracy.estimate import relative_error
+from ribbonopt.errors import ModelError
+from ribbonopt.plain import finite
+from ribbonopt.scene import Continuation, Scene
+from ribbonopt.scene.checks.continuation import parse_record, parse_stop, stages_of, words_of
+from ribbonopt.solution.sampling import evaluate_formula
+from ribbonopt.solution.solution import Solution
+
+from .curve import Curve
+from .points import POINT, Point
+
+Row = Mapping[str, Any]
+
+
+#: numbers that every row has, besides what the scene records
+NUMBERS = (
+    *("value", "error", "energy", "H0", "n0x", "n0y", "n0z", "m0x", "m0y", "m0z", "u2", "u3"),
+    *("number", "stage", "branch", "negative", "intervals", "iterations"),
+)
+
+
+WORDS = ("parameter", "kind", "switches")
+
+
+class Recorder:
+    """Rows of plain numbers: loads and strains at the start, energy, and what the scene records."""
+
+    def __init__(self, scene: Scene) -> None:
+        """Read the formulas of a scene.
+
+        Raises
+        ------
+        ModelError
+            If a condition of a stage names what is not recorded.
+        """
+        self.formulas = {name: parse_record(text, scene) for name, text in scene.record.items()}
+        for name in self.formulas:
+            if name in (*NUMBERS, *WORDS):
+                raise ModelError(
+                    f"record.{name}: every row has {name!r} already; choose another name",
+                    f"record.{name}",
+                )
+        for stage in stages_of(scene):
+            for text in stage.stop:
+                left, _, right = parse_stop(text)
+                for side in (left, right):
+                    self.known(words_of(side), f"continuation.stop: {text!r}", "continuation")
+
+    @property
+    def names(self) -> tuple[str, ...]:
+        """Names of all numbers of a row."""
+        return (*NUMBERS, *self.formulas)
+
+    def known(self, words: Iterable[str], where: str, key: str = "") -> None:
+        """Raise a ModelError where a word is none of the names of a row."""
+        for word in words:
+            if word not in self.names:
+                raise ModelError(
+                    f"{where}: found {word!r}, expected a recorded quantity: "
+                    f"{', '.join(self.names)}; add others under `record`",
+                    key,
+                )
+
+    def row(self, point: Point, curve: Curve) -> dict[str, Any]:
+        """Return what is recorded of a point, in the units of the scene."""
+        solution, stage = point.solution, curve.stage
+        row: dict[str, Any] = {
+            "number": point.number,
+            "stage": point.stage,
+            "branch": point.branch,
+            "parameter": stage.parameter,
+            "value": curve.value(point.position),
+            "kind": point.kind,
+            "negative": _negative(solution) if stage.stability and point.kind == POINT else None,
+            # At a fold the equations at a given parameter are singular: so is their estimate.
+            "error": error_of(solution) if point.kind == POINT else None,
+            **numbers_of(solution),
+        }
+        row |= sampled(solution, self.formulas)
+        row["switches"] = solution.switch_points.tolist()
+        row["intervals"] = solution.dense.blocks.layout.element_count
+        row["iterations"] = solution.iterations
+        return row
+
+
+def error_of(solution: Solution) -> float | None:
+    """Relative error of the answer; None for minima and singular equations."""
+    if solution.problem.recovered:
+        return None
+    try:
+        return relative_error(solution)[0]
+    except np.linalg.LinAlgError:
+        return None
+
+
+def sampled(
+    solution: Solution, formulas: Mapping[str, tuple[str, float]]
+) -> dict[str, float | None]:
+    """Return the values of formulas at arclengths; None for what is not finite."""
+    with np.errstate(all="ignore"):
+        values = {name: float(solution.sample(s, text)) for name, (text, s) in formulas.items()}
+    found: dict[str, float | None] = finite(values)
+    return found
+
+
+def numbers_of(solution: Solution) -> dict[str, float]:
+    """Return energy, invariant, loads (lab frame) and strains at the start, in scene units."""
+    row = {"energy": solution.energy, "H0": float(solution.start["H"])}
+    for name, vector in (("n0", solution.n0), ("m0", solution.m0)):
+        row |= {f"{name}{axis}": float(vector[i]) for i, axis in enumerate("xyz")}
+    return row | {"u2": float(solution.u0[1]), "u3": float(solution.u0[2])}
+
+
+def stopped(row: Row, stage: Continuation) -> str:
+    """Return the condition of a stage that a row meets, "" if none."""
+    values = {
+        name: np.array([float(value)])
+        for name, value in row.items()
+        if isinstance(value, int | float)
+    }
+    for text in stage.stop:
+        left, sign, right = parse_stop(text)
+        if any(word not in values for word in (*words_of(left), *words_of(right))):
+            continue  # not known here
+        with np.errstate(all="ignore"):  # what is not a number meets no condition
+            a, b = (float(evaluate_formula(side, values)[0]) for side in (left, right))
+        if a > b if sign == ">" else a < b:
+            return text
+    return ""
+
+
+def _negative(solution: Solution) -> int | None:
+    from ribbonopt.checks.stability import negative_directions  # builds second derivatives
+
+    return negative_directions(solution)

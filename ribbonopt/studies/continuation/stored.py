@@ -1,0 +1,102 @@
+"""Points as plain data and back: what it takes to go on from there, bit for bit."""
+
+from __future__ import annotations
+
+import base64
+from typing import Any
+
+import numpy as np
+
+from ribbonopt.arrays import Array
+from ribbonopt.solution.solution import Solution
+from ribbonopt.transcription import Mesh
+
+from .branches import Key
+from .continuation import Continuation
+from .curve import Curve
+from .points import POINT, Point
+from .walk import Ending
+
+
+class Stored:
+    """What a branch file holds: the history that a continuation goes on from."""
+
+    def __init__(self, continuation: Continuation, lines: list[dict[str, Any]]) -> None:
+        """Read parsed lines."""
+        self.endings: dict[Key, Ending] = {}
+        self._lines: dict[Key, list[dict[str, Any]]] = {}
+        self._prepared, scene = continuation.prepared, continuation.scene
+        self._curves: list[Curve] = []
+        for line in lines:
+            if "ending" in line:
+                ending = line["ending"]
+                key = ending["stage"], ending["branch"]
+                self.endings[key] = Ending(ending["reached"], ending["reason"])
+            else:
+                row = line["row"]
+                self._lines.setdefault((row["stage"], row["branch"]), []).append(line)
+        for i in range(len(continuation.stages)):
+            self._curves.append(continuation.curve(i, scene))
+            regular = [x for x in self._lines.get((i, 0), []) if x["row"]["kind"] == POINT]
+            if regular:  # where a stage ended, at its goal or before
+                scene = self._curves[-1].scene_at(regular[-1]["state"]["position"])
+
+    def points(self, stage: int, branch: int, kind: str) -> list[Point]:
+        """Points of a kind, in order."""
+        lines = self._lines.get((stage, branch), [])
+        return [self.point(line) for line in lines if line["row"]["kind"] == kind]
+
+    def point(self, line: dict[str, Any]) -> Point:
+        """Return the point of a line."""
+        row, state = line["row"], line["state"]
+        curve = self._curves[row["stage"]]
+        arrays = {name: _array(state[name]) for name in ("w", "widths", "tangent")}
+        mesh = Mesh(tuple(np.split(arrays["widths"], np.cumsum(state["elements"])[:-1])))
+        search = self._prepared.search(curve.scene_at(state["position"]))
+        solution = search.on_mesh(tuple(state["sheets"]), mesh).restored(arrays["w"])
+        return Point(
+            solution,
+            state["position"],
+            arrays["tangent"],
+            state["sign"],
+            state["step"],
+            row["number"],
+            row["stage"],
+            row["branch"],
+            row["kind"],
+            row,
+        )
+
+
+def spread(
+    continuation: Continuation, lines: list[dict[str, Any]], count: int
+) -> list[tuple[dict[str, Any], Solution]]:
+    """Rows and solutions of a few points, spread over all branches."""
+    regular = [line for line in lines if "row" in line and line["row"]["kind"] == POINT]
+    history = Stored(continuation, lines)
+    places = np.linspace(0, len(regular) - 1, min(count, len(regular))).round()
+    chosen = [regular[int(i)] for i in places]
+    return [(line["row"], history.point(line).solution) for line in chosen]
+
+
+def state_of(point: Point) -> dict[str, Any]:
+    """Return what a point is beside its row; arrays as base64 of their bytes."""
+    solution = point.solution
+    return {
+        "position": point.position,
+        "step": point.step,
+        "sign": point.sign,
+        "sheets": list(solution.sheets),
+        "elements": list(solution.dense.blocks.layout.elements),
+        "w": _bytes(solution.dense.w),
+        "widths": _bytes(solution.mesh.widths),
+        "tangent": _bytes(point.tangent),
+    }
+
+
+def _bytes(array: Array) -> str:
+    return base64.b64encode(np.asarray(array, dtype="<f8").tobytes()).decode("ascii")
+
+
+def _array(text: str) -> Array:
+    return np.array(np.frombuffer(base64.b64decode(text), dtype="<f8"), dtype=float)

@@ -1,0 +1,1 @@
+"""Collocation: polynomials on elements, their equations at stages."""

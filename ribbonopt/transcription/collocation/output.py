@@ -1,0 +1,221 @@
+"""Dense output: states and algebraic variables anywhere on a collocation solution.
+
+In an element the collocation polynomial x_0 + h sum_j F_j integral(l_j) has order K + 1, the nodes
+2K (Gauss) or 2K - 1 (Radau). For ordinary differential equations the missing orders are won back:
+the same scheme is applied to the substep from the node to the wanted point, its stages started on
+the polynomial and improved by fixed-point sweeps, each worth one order, until they stand still.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from functools import cached_property
+
+import numpy as np
+
+from ribbonopt.arrays import Array
+from ribbonopt.transcription.buffered import mapped
+from ribbonopt.transcription.layout import Index
+
+from .blocks import ElementBlocks
+
+MOST_SWEEPS = 40  # of a substep's stages
+
+
+@dataclass(frozen=True, eq=False)
+class DenseOutput:
+    """Numbers of one solution; positions are relative to their phase.
+
+    Attributes
+    ----------
+    blocks : ElementBlocks
+        The discretised equations.
+    w, p : arrays
+        Unknowns, and parameters [theta, relative widths].
+    """
+
+    blocks: ElementBlocks
+    w: Array
+    p: Array
+
+    @property
+    def order(self) -> int:
+        """Order of the error of `states` between the nodes."""
+        tableau, lay = self.blocks.tableau, self.blocks.layout
+        return tableau.order if lay.nz == lay.ng else tableau.dense_order
+
+    @property
+    def theta(self) -> Array:
+        """Parameters of the problem."""
+        return self.blocks.layout.theta(self.p)
+
+    @property
+    def constants(self) -> Array:
+        """Unknown constants c."""
+        return self._parts[2]
+
+    @property
+    def at_nodes(self) -> Array:
+        """States (N + 1, nx) at the nodes of all phases."""
+        return self._parts[0]
+
+    def nodes(self, phase: int) -> Array:
+        """Relative positions (n + 1,) of the nodes of a phase."""
+        return self.blocks.layout.phase_nodes(self.p, phase)
+
+    def states(self, phase: int, sigma: Array) -> Array:
+        """States x (k, nx) at the relative positions sigma (k,), to the order of the scheme."""
+        element, t, h = self.blocks.layout.locate(self.p, phase, sigma)
+        x = self._polynomial(element, t, h)
+        # Nodes are known already; every other point is the end of a substep.
+        inside = (t > 0) & (t < 1)
+        if self.order > self.blocks.tableau.dense_order and inside.any():
+            x[inside] = self._substeps(phase, element[inside], t[inside], h[inside])
+        return x
+
+    def approximate(self, phase: int, sigma: Array) -> Array:
+        """Unknowns v (k, nv) at relative positions sigma (k,): the collocation polynomials."""
+        element, t, h = self.blocks.layout.locate(self.p, phase, sigma)
+        return np.hstack([self._polynomial(element, t, h), self._interpolated(element, t)])
+
+    def refined(self) -> tuple[ElementBlocks, Array, Array, int]:
+        """Return the next better scheme, this output as its unknowns w, p, parts per element."""
+        blocks, split = self.blocks.finer
+        widths = np.repeat(self.blocks.widths(self.p) / split, split)
+        p = np.concatenate([self.theta, widths])
+        if split == 1:
+            stages = self._everywhere(blocks.tableau.nodes)
+            w = blocks.layout.pack(self.at_nodes, stages, self.constants)
+        else:
+            w = blocks.sampled(self, p)
+        return blocks, w, p, split
+
+    def _substeps(self, phase: int, element: Index, t: Array, h: Array) -> Array:
+        """States (k, nx) after steps of t h from the first nodes of elements."""
+        nodes = self.at_nodes
+        tableau = self.blocks.tableau
+        e, count, K = element, len(element), tableau.degree
+        stage_t = t[:, None] * tableau.nodes
+        repeated = np.repeat(e, K)
+        X = self._polynomial(repeated, stage_t.ravel(), np.repeat(h, K)).reshape(count, K, -1)
+        positions = self.blocks.layout.starts(self.p)[e][:, None] + h[:, None] * stage_t
+        lay = self.blocks.layout
+        z = self._interpolated(repeated, stage_t.ravel())
+        equations = mapped(self.blocks.phases[phase].values)
+        step = (h * t)[:, None]
+        before = np.inf
+        for _ in range(MOST_SWEEPS):
+            x = X.reshape(count * K, -1)
+            z = self._solved(phase, x, z, positions.ravel())
+            values = equations(np.hstack([x, z]), self.constants, self.theta, positions)[0]
+            F = values.reshape(count, K, -1)[:, :, : lay.nx]
+            improved = nodes[e][:, None] + step[:, None] * (tableau.matrix @ F)
+            change = float(np.abs(improved - X).max())
+            if change >= before:  # rounding, or steps too long to converge
+                break
+            X, before = improved, change
+        after: Array = nodes[e] + step * (tableau.weights @ F)
+        return after
+
+    def algebraic(self, phase: int, sigma: Array) -> Array:
+        """Algebraic variables z (k, nz): from their equations at the states.
+
+        Controls, for which there are none, are the polynomial through the stages.
+        """
+        element, t, _ = self.blocks.layout.locate(self.p, phase, sigma)
+        z = self._interpolated(element, t)
+        return self._solved(phase, self.states(phase, sigma), z, sigma) if z.size else z
+
+    def stages(self, phase: int) -> tuple[Array, Array, Array]:
+        """Stage values v (k, nv), relative positions (k,) and quadrature weights (k,)."""
+        lay = self.blocks.layout
+        s = lay.phase_slices[phase]
+        stages = self._parts[1]
+        positions = self.blocks.stage_positions(self.p)[s]
+        weights = self.blocks.widths(self.p)[s, None] * self.blocks.tableau.weights
+        return stages[s].reshape(-1, lay.nv), positions.ravel(), weights.ravel()
+
+    def decay(self) -> Array:
+        """Sizes (N, K) of the Legendre coefficients of x' in every element.
+
+        Each state relative to its largest derivative along the solution; the largest of all.
+        """
+        coefficients = np.abs(self.blocks.tableau.legendre @ self._rates)
+        scale = np.maximum(np.abs(self._rates).max(axis=(0, 1)), np.finfo(float).tiny)
+        return np.asarray((coefficients / scale).max(axis=2))
+
+    def residual_between_nodes(self, per_element: int | None = None) -> Array:
+        """Defects (N, k) of the differential equations between the stages of every element.
+
+        Largest entry of |x' - F(x)| over the largest entry of |F| in the solution, x being the
+        collocation polynomial: independent of what the solver made zero.
+        """
+        lay, tableau = self.blocks.layout, self.blocks.tableau
+        count = per_element or tableau.degree + 1
+        t = (np.arange(count) + 0.5) / count
+        found = tableau.basis(t) @ self._rates  # (N, k, nx)
+        everywhere = self._everywhere(t)
+        positions = lay.starts(self.p)[:, None] + lay.widths(self.p)[:, None] * t
+        result = np.empty((lay.element_count, count))
+        for phase, s in enumerate(lay.phase_slices):
+            v, sigma = everywhere[s].reshape(-1, lay.nv), positions[s].ravel()
+            x = v[:, : lay.nx]
+            v = np.hstack([x, self._solved(phase, x, v[:, lay.nx :], sigma)])
+            equations = mapped(self.blocks.phases[phase].values)
+            values = equations(v, self.constants, self.theta, sigma)[0]
+            F = values.reshape(-1, count, values.size // len(v))[:, :, : lay.nx]
+            result[s] = np.abs(found[s] - F).max(axis=2)
+        return np.asarray(result / np.abs(self._rates).max())
+
+    @cached_property
+    def _parts(self) -> tuple[Array, Array, Array]:
+        """Nodes, stages and constants."""
+        return self.blocks.layout.unpack(self.w)
+
+    @cached_property
+    def _rates(self) -> Array:
+        """Derivatives (N, K, nx) at the stages, per relative position."""
+        return self.blocks.rates(self.w, self.p)
+
+    def _everywhere(self, t: Array) -> Array:
+        """Polynomials v (N, k, nv) at the same places t (k,) of all elements."""
+        lay, tableau = self.blocks.layout, self.blocks.tableau
+        v = np.empty((lay.element_count, len(t), lay.nv))
+        increments = tableau.integrals(t) @ self._rates
+        v[:, :, : lay.nx] = self.at_nodes[:-1, None]
+        v[:, :, : lay.nx] += lay.widths(self.p)[:, None, None] * increments
+        v[:, t == 1, : lay.nx] = self.at_nodes[1:, None]
+        if lay.nz:
+            v[:, :, lay.nx :] = tableau.basis(t) @ self._parts[1][:, :, lay.nx :]
+        return v
+
+    def _interpolated(self, element: Index, t: Array) -> Array:
+        """Polynomials (k, nz) through the stages of z."""
+        lay = self.blocks.layout
+        if not lay.nz:
+            return np.empty((len(t), 0))
+        basis = self.blocks.tableau.basis(t)
+        z: Array = np.einsum("kj,kjz->kz", basis, self._parts[1][element][:, :, lay.nx :])
+        return z
+
+    def _solved(self, phase: int, x: Array, z: Array, sigma: Array) -> Array:
+        """Algebraic variables (k, nz) that solve their equations at the states x, from z."""
+        lay = self.blocks.layout
+        if not lay.nz or lay.nz != lay.ng:
+            return z
+        dense = mapped(self.blocks.phases[phase].dense)
+        rows, columns = slice(lay.nx, lay.nx + lay.ng), slice(lay.nx, lay.nv)
+        for _ in range(3):  # from the accuracy of the polynomial to rounding
+            values, jacobian = dense(np.hstack([x, z]), self.constants, self.theta, sigma)
+            g = values.reshape(len(x), -1)[:, rows]
+            slope = jacobian.reshape(len(x), lay.nv + lay.nc, -1).swapaxes(1, 2)[:, rows, columns]
+            z = z - np.linalg.solve(slope, g[:, :, None])[:, :, 0]
+        return z
+
+    def _polynomial(self, element: Index, t: Array, h: Array) -> Array:
+        nodes = self.at_nodes
+        integrals = self.blocks.tableau.integrals(t)
+        increments = (integrals[:, None, :] @ self._rates[element])[:, 0]
+        x: Array = nodes[element] + h[:, None] * increments
+        x[t == 1] = nodes[element[t == 1] + 1]
+        return x

@@ -1,0 +1,1 @@
+"""Multiple shooting: intervals integrated by Runge-Kutta steps."""

@@ -1,0 +1,141 @@
+"""From ribbon to ribbon: kept factors and continued unknowns change the cost, not the answer."""
+
+from collections.abc import Iterator
+from dataclasses import replace
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from ribbonopt.accuracy import estimate
+from ribbonopt.accuracy.estimate import analyse, relative_error
+from ribbonopt.pipeline.prepared import Prepared, prepare
+from ribbonopt.scene import Scene, load_scene
+from ribbonopt.solvers.newton import Newton
+from ribbonopt.studies.batch.neighbour import Neighbour
+
+CONFIGS = Path(__file__).parents[3] / "configs"
+
+
+def half(epsilon: float, *more: str) -> Scene:
+    law = f"law={{type: regularized, epsilon: {epsilon}}}"
+    return load_scene(CONFIGS / "moebius_half.yaml", [law, "tolerance=1e-9", *more])
+
+
+@pytest.fixture(scope="module")
+def prepared() -> Prepared:
+    return prepare(half(0.05))
+
+
+@pytest.fixture
+def counted(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[tuple[int, int]]]:
+    """Count iterations and factorisations of every Newton solve."""
+    found: list[tuple[int, int]] = []
+    whole = Newton.solve
+
+    def solve(self: Newton, *arguments: object, **options: object) -> object:
+        report = whole(self, *arguments, **options)  # type: ignore[arg-type]
+        found.append((report.iterations, report.factorizations))
+        return report
+
+    monkeypatch.setattr(Newton, "solve", solve)
+    yield found
+
+
+def walk(prepared: Prepared, epsilons: list[float], *more: str) -> list[Neighbour]:
+    first = Neighbour(prepared, prepared.solve(half(epsilons[0], *more)))
+    found = [first]
+    for epsilon in epsilons[1:]:
+        beside = found[-1].solve(half(epsilon, *more))
+        assert beside is not None
+        found.append(beside)
+    return found
+
+
+def test_neighbours_are_the_solutions_of_their_scenes(prepared: Prepared) -> None:
+    for beside in walk(prepared, [0.05, 0.048, 0.046, 0.044, 0.042])[1:]:
+        epsilon = beside.solution.scene.law.epsilon  # type: ignore[union-attr]
+        alone = prepared.solve(half(epsilon, "tolerance=1e-12"))
+        assert beside.solution.verified
+        assert np.allclose(beside.solution.n0, alone.n0, rtol=1e-9, atol=0)
+        assert beside.solution.energy == pytest.approx(alone.energy, rel=1e-9)
+
+
+def test_factors_are_made_once_for_many(prepared: Prepared, counted: list[tuple[int, int]]) -> None:
+    walk(prepared, np.linspace(0.05, 0.045, 12).tolist())
+    counted = counted[-11:]
+    assert sum(factorizations for _, factorizations in counted) <= 2
+
+
+def test_continued_unknowns_save_iterations(
+    prepared: Prepared, counted: list[tuple[int, int]]
+) -> None:
+    near = walk(prepared, [0.05, 0.049, 0.048])[-1]
+    assert near.before is not None
+    for source in (near, replace(near, before=None)):
+        assert source.solve(half(0.047)) is not None
+    (continued, _), (plain, _) = counted[-2:]
+    assert continued < plain
+
+
+def test_far_neighbours_need_factors_of_their_own(
+    prepared: Prepared, counted: list[tuple[int, int]]
+) -> None:
+    near = walk(prepared, [0.05, 0.049])[-1]
+    far = near.solve(half(2.0))
+    assert far is not None
+    assert counted[-1][1] >= 1
+    alone = prepared.solve(half(2.0, "tolerance=1e-12"))
+    assert np.allclose(far.solution.n0, alone.n0, rtol=1e-9, atol=0)
+
+
+def test_a_mesh_too_coarse_is_refined(prepared: Prepared) -> None:
+    rough = Neighbour(prepared, prepared.solve(half(0.05, "tolerance=1e-4")))
+    beside = rough.solve(half(0.049, "tolerance=1e-12"))
+    assert beside is not None
+    error, _ = relative_error(beside.solution)
+    assert error <= 1e-12
+    # What was kept belongs to the mesh before.
+    assert beside.finer is None
+    assert beside.before is None
+
+
+def test_another_point_of_reference_is_minded(prepared: Prepared) -> None:
+    first = Neighbour(prepared, prepared.solve(half(0.05)))
+    moved = "boundary.start.position=[1, 0, 0]"
+    beside = first.solve(half(0.049, moved))
+    assert beside is not None
+    assert beside.solution.start["r"].tolist() == pytest.approx([1, 0, 0])
+    alone = prepared.solve(half(0.049, "tolerance=1e-12"))
+    # The ribbon may start anywhere on the x axis: the same loads.
+    assert np.allclose(beside.solution.n0, alone.n0, rtol=1e-8, atol=1e-8)
+
+
+def test_estimate_by_factors_of_a_neighbour(
+    prepared: Prepared, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    with_factors = walk(prepared, [0.05, 0.0499, 0.0498, 0.0497], "tolerance=1e-6")[-1].solution
+    errors = analyse(with_factors).errors
+    estimate._latest.clear()
+    exact = analyse(with_factors).errors
+    for name, error in exact.items():
+        assert errors[name] == pytest.approx(error, rel=0.45), name  # q / (1 - q), q = 0.3
+
+
+def test_factors_that_do_not_fit_are_given_up(prepared: Prepared) -> None:
+    newton = Newton(prepared.nlp)
+    w, p = prepared.start()
+    good = newton.solve(w, p)
+
+    class Wrong:
+        def solve(self, residuals: object) -> np.ndarray:
+            return np.full(len(w), np.nan)
+
+    for factors in (Wrong(), newton.solve(w + 0.5, p).factors):
+        found = newton.solve(w, p, factors=factors)
+        assert found.status.converged
+        assert np.allclose(found.w, good.w, rtol=0, atol=1e-9)
+    again = newton.solve(good.w + 1e-4, p, factors=good.factors)
+    assert again.status.converged
+    assert again.factorizations == 0
+    assert np.allclose(again.w, good.w, rtol=0, atol=1e-9)

@@ -1,0 +1,245 @@
+"""Branches are drawn as they were found: stable and unstable, folds, stages, ribbons along them."""
+
+import math
+from functools import cache
+from pathlib import Path
+
+import numpy as np
+import pytest
+from matplotlib.collections import PolyCollection
+from matplotlib.image import imread
+
+from ribbonopt.errors import OutputError
+from ribbonopt.pipeline.prepared import solve
+from ribbonopt.scene import load_scene
+from ribbonopt.solution.solution import Solution
+from ribbonopt.views import plot_ribbon
+from ribbonopt.views.branch import COLOURS, plot_branch, plot_strip, save_branch_figures
+
+CONFIGS = Path(__file__).parents[3] / "configs"
+STATES = ("stable", "unstable", "stability unknown")
+TURN = math.sqrt(0.5)
+
+
+def row(number, value, negative=0, kind="point", **others):
+    point = {"stage": 1, "branch": 0, "parameter": "parameters.load", "error": 1e-9}
+    return {**point, "number": number, "value": value, "negative": negative, "kind": kind, **others}
+
+
+def fold():
+    """Two folds, unstable between; the rows of the folds say nothing of stability."""
+    rows = []
+    for i, t in enumerate(sorted([*np.linspace(-1.6, 1.6, 20), -TURN, TURN])):
+        special = math.isclose(abs(t), TURN)
+        negative = None if special else int(abs(t) < TURN)
+        kind = "fold" if special else "point"
+        rows.append(row(i, t**3 - 1.5 * t, negative, kind, energy=float(t), u2=t * t))
+    return rows
+
+
+def pitchfork():
+    rows = [
+        row(i, v, int(v > 1), "branch point" if v == 1 else "point", u2=0.0)
+        for i, v in enumerate(np.arange(0, 2.25, 0.25))
+    ]
+    for branch, sign in ((1, 1), (2, -1)):
+        for v in np.arange(1.25, 2.25, 0.25):
+            rows.append(row(len(rows), v, branch=branch, u2=sign * math.sqrt(v - 1)))
+    return rows
+
+
+def two_stages():
+    rows = [row(i, 0.1 * i, energy=float(i), parameter="parameters.shortening") for i in range(4)]
+    for i, epsilon in enumerate(np.geomspace(0.1, 1e-3, 5)):
+        rows.append(row(4 + i, epsilon, energy=3.0 + i, stage=2, parameter="law.epsilon"))
+    return rows
+
+
+def lines_of(axes, label):
+    return [line for line in axes.lines if line.get_label() == label]
+
+
+def data_of(axes, label):
+    return [line.get_xydata() for line in lines_of(axes, label)]
+
+
+def legend_of(figure):
+    return [text.get_text() for text in figure.legends[0].get_texts()]
+
+
+@cache
+def solved(name: str, *overrides: str) -> Solution:
+    return solve(load_scene(CONFIGS / f"{name}.yaml", list(overrides)))
+
+
+def test_unstable_stretches_are_dashed_and_folds_end_both():
+    rows = fold()
+    figure = plot_branch(rows, "value", "energy", title="arch")
+    (axes,) = figure.axes
+    first, last = (i for i, r in enumerate(rows) if r["kind"] == "fold")
+    xy = np.array([[r["value"], r["energy"]] for r in rows])
+    before, after = data_of(axes, "stable")
+    (between,) = data_of(axes, "unstable")
+    np.testing.assert_array_equal(before, xy[: first + 1])
+    np.testing.assert_array_equal(between, xy[first : last + 1])
+    np.testing.assert_array_equal(after, xy[last:])
+    assert {line.is_dashed() for line in lines_of(axes, "unstable")} == {True}
+    assert {line.is_dashed() for line in lines_of(axes, "stable")} == {False}
+    assert not lines_of(axes, "stability unknown")
+    assert (axes.get_xlabel(), axes.get_ylabel()) == ("parameters.load", "energy")
+    assert axes.get_title(loc="left") == "arch"
+
+
+def test_folds_are_squares_and_the_ends_are_marked():
+    rows = fold()
+    figure = plot_branch(rows, "value", "energy")
+    (axes,) = figure.axes
+    (folds,) = lines_of(axes, "fold")
+    assert folds.get_marker() == "s"
+    assert folds.get_linestyle() == "None"
+    np.testing.assert_allclose(folds.get_ydata(), [-TURN, TURN])
+    assert data_of(axes, "first point")[0].tolist() == [[rows[0]["value"], -1.6]]
+    assert data_of(axes, "last point")[0].tolist() == [[rows[-1]["value"], 1.6]]
+    assert legend_of(figure) == ["stable", "unstable", "first point", "last point", "fold (2)"]
+
+
+def test_branches_differ_in_colour_and_are_not_joined():
+    figure = plot_branch(pitchfork(), "value", "u2")
+    (axes,) = figure.axes
+    drawn = [line for line in axes.lines if line.get_label() in STATES]
+    assert [line.get_color() for line in drawn] == [COLOURS[k] for k in (0, 0, 1, 2)]
+    assert [len(line.get_xdata()) for line in drawn] == [5, 5, 4, 4]
+    (switch,) = lines_of(axes, "branch point")
+    assert (switch.get_marker(), switch.get_markerfacecolor()) == ("o", "w")
+    assert switch.get_xydata().tolist() == [[1, 0]]
+    assert {"branch 0", "branch 1", "branch 2", "branch point (1)"} < set(legend_of(figure))
+    assert len(data_of(axes, "last point")[0]) == 3
+
+
+def test_where_stability_changes_between_points_it_is_unknown():
+    rows = [row(i, i, negative, u2=0) for i, negative in enumerate([0, 0, 1, 2, None, None])]
+    axes = plot_branch(rows, "value", "u2").axes[0]
+    ends = {label: [xy[[0, -1], 0].tolist() for xy in data_of(axes, label)] for label in STATES}
+    assert ends == {
+        "stable": [[0, 1]],
+        "unstable": [[2, 3]],
+        "stability unknown": [[1, 2], [3, 5]],
+    }
+    thin, thick = lines_of(axes, "stability unknown")[0], lines_of(axes, "stable")[0]
+    assert thin.get_linewidth() < thick.get_linewidth()
+
+
+def test_without_any_stability_lines_are_plain():
+    figure = plot_branch([row(i, i, None, u2=i) for i in range(3)], "value", "u2")
+    (line, *_) = figure.axes[0].lines
+    assert not line.is_dashed()
+    assert len(line.get_xdata()) == 3
+    assert legend_of(figure) == ["first point", "last point"]
+
+
+@pytest.mark.parametrize("log", [True, ["law.epsilon"]])
+def test_each_parameter_has_its_axis(log):
+    left, right = plot_branch(two_stages(), "value", "energy", log=log).axes
+    assert left.get_xlabel() == "parameters.shortening\nstage 1"
+    assert right.get_xlabel() == "law.epsilon\nstage 2"
+    assert (left.get_xscale(), right.get_xscale()) == ("linear", "log")  # the first is at 0
+    assert left.get_ylim() == right.get_ylim()
+    assert [len(axes.lines[0].get_xdata()) for axes in (left, right)] == [4, 5]
+    assert lines_of(left, "first point") and not lines_of(left, "last point")
+    assert lines_of(right, "last point") and not lines_of(right, "first point")
+
+
+def test_stages_share_an_axis_where_the_parameter_is_not_drawn():
+    (axes,) = plot_branch(two_stages(), "number", "energy", log=True).axes
+    assert axes.get_xlabel() == "point"
+    assert axes.get_xscale() == "linear"
+    assert [len(xy) for xy in data_of(axes, "stable")] == [4, 5]
+
+
+@pytest.mark.parametrize("high", [0.02, 0.5, 100.0])
+def test_a_logarithmic_axis_has_ticks(high):
+    rows = [row(i, v, u2=1) for i, v in enumerate(np.geomspace(0.011, high, 5))]
+    figure = plot_branch(rows, "value", "u2", log=True)
+    figure.canvas.draw()
+    (axes,) = figure.axes
+    low, high = axes.get_xlim()
+    shown = [tick for tick in axes.get_xticks() if low <= tick <= high]
+    assert axes.get_xscale() == "log"
+    assert 3 <= len(shown) <= 8
+
+
+def test_errors_are_drawn_on_a_logarithmic_axis():
+    (axes,) = plot_branch(fold(), "number", "error").axes
+    assert (axes.get_ylabel(), axes.get_yscale()) == ("estimated error", "log")
+
+
+@pytest.mark.parametrize("log", [False, True])
+def test_one_point(log):
+    figure = plot_branch([row(0, 0.5, u2=1)], "value", "u2", log=log)
+    figure.canvas.draw()
+    (axes,) = figure.axes
+    (line,) = lines_of(axes, "stable")
+    assert (line.get_xydata().tolist(), line.get_marker()) == ([[0.5, 1]], "o")
+    assert lines_of(axes, "first point") and not lines_of(axes, "last point")
+
+
+def test_rows_without_values_are_skipped():
+    rows = [row(i, i, u2=u2) for i, u2 in enumerate([1, None, 2, math.nan, 3])] + [row(5, 5)]
+    (axes,) = plot_branch(rows, "value", "u2").axes
+    assert data_of(axes, "stable")[0].tolist() == [[0, 1], [2, 2], [4, 3]]
+    assert data_of(axes, "last point")[0].tolist() == [[4, 3]]
+
+
+@pytest.mark.parametrize("rows", [[], [row(0, 1)]])
+def test_nothing_to_draw(rows):
+    figure = plot_branch(rows, "value", "H0", log=True)
+    figure.canvas.draw()
+    assert [text.get_text() for text in figure.axes[0].texts] == ["nothing recorded"]
+
+
+def test_ribbons_are_drawn_to_one_scale():
+    shares = (0.1, 0.4)
+    ribbons = [solved("elastica_clamped", f"parameters.shortening={share}") for share in shares]
+    figure = plot_strip(ribbons, ["parameters.shortening = 0.1\nthe first", "the other"])
+    figure.canvas.draw()
+    one, other = figure.axes
+    assert one.get_xlim() == other.get_xlim() and one.get_ylim() == other.get_ylim()
+    assert one.get_window_extent().size == pytest.approx(other.get_window_extent().size)
+    assert other.get_xlabel() == "the other"
+    assert one.get_xlabel().endswith("\nthe first")
+    spans = []
+    for axes in (one, other):
+        (faces,) = axes.findobj(PolyCollection)
+        points = np.concatenate([path.vertices for path in faces.get_paths()])
+        low, high = points.min(axis=0), points.max(axis=0)
+        assert axes.get_xlim()[0] <= low[0] < high[0] <= axes.get_xlim()[1]
+        assert axes.get_ylim()[0] <= low[1] < high[1] <= axes.get_ylim()[1]
+        spans.append(high - low)
+    assert spans[0][0] > spans[1][0]  # shortened
+    assert spans[0][1] < spans[1][1]  # and buckled
+
+
+def test_bands_are_drawn_whole_and_said_to_be():
+    piece = solved("band_three")
+    figure = plot_strip([piece], ["three half twists"])
+    assert "by symmetry" in figure.get_supxlabel()
+    whole, part = plot_ribbon(piece), plot_ribbon(piece, complete=False)
+    count, expected, fewer = (
+        len(f.axes[0].findobj(PolyCollection)[0].get_paths()) for f in (figure, whole, part)
+    )
+    assert count == expected > 1.5 * fewer
+
+
+def test_files_are_written(tmp_path):
+    pairs = [("value", "energy"), ("value", "u2"), ("u2", "energy"), ("number", "error")]
+    paths = save_branch_figures(fold(), [solved("helix")], ["helix"], tmp_path, [*pairs, pairs[0]])
+    assert [path.name for path in paths] == ["branch.png", "ribbons.png"]
+    assert all(imread(path).std() > 0.02 for path in paths)
+    assert imread(paths[0]).shape[1] > 1500  # two panels wide
+    (only,) = save_branch_figures(fold(), [], [], tmp_path, pairs[:1])
+    assert only == tmp_path / "branch.png"
+
+
+def test_a_folder_that_is_not_there(tmp_path):
+    with pytest.raises(OutputError, match=r"branch\.png: cannot be written"):
+        save_branch_figures(fold(), [], [], tmp_path / "none", [("value", "energy")])
