@@ -14,7 +14,7 @@ from typing import Any
 from stopwatches import stopwatches
 
 from ribbonopt.accuracy.estimate import estimate_error, relative_error
-from ribbonopt.attempt import attempt as attempts
+from ribbonopt.attempt import attempt
 from ribbonopt.pipeline import refinement
 from ribbonopt.pipeline.prepared import Prepared, prepare
 from ribbonopt.scene import load_scene
@@ -31,9 +31,9 @@ CASES = {
 WATCHED = (
     (refinement, "relative_error", "estimate"),
     (refinement, "_better_mesh", "remesh"),
-    (attempts, "initial_unknowns", "unknowns"),
-    (attempts.Attempts, "run", "solve, its unknowns and verification included"),
-    (attempts, "verify", "verification"),
+    (attempt, "initial_unknowns", "unknowns"),
+    (attempt.Attempt, "run", "solve, its unknowns and verification included"),
+    (attempt, "verify", "verification"),
 )
 BUILD = 150.0  # target of building the structure, in ms
 

@@ -67,7 +67,7 @@ def attempt(prepared: Prepared, scene: Scene, *, fallback: bool) -> dict[str, An
     started, used = time.perf_counter(), time.process_time()
     solution = prepared.solve(scene, fallback=fallback)
     seconds, used = time.perf_counter() - started, time.process_time() - used
-    steps = [(step["step"], step.get("iterations", 0)) for step in solution.path]
+    steps = [(step["step"], step.get("iterations", 0)) for step in solution.steps]
     least = [name for name, _ in steps if name.startswith("least energy")]
     return {
         "ms": 1e3 * seconds,

@@ -8,9 +8,8 @@ solution is the estimate.
 
 from __future__ import annotations
 
-from collections import deque
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -46,10 +45,6 @@ class Analysis:
     factors: CondensedSystem | None = None
 
 
-# Refinement, rows and summaries ask for the same analysis one after the other.
-_latest: deque[tuple[Trajectory, Analysis]] = deque(maxlen=2)
-
-
 def analyse(
     solution: Solution, near: CondensedSystem | None = None, *, keep: bool = False
 ) -> Analysis:
@@ -59,12 +54,14 @@ def analyse(
     Newton's method contracted by q: the errors then come out with a relative error of q / (1 - q).
     Factors that are to be kept cost twice as much.
     """
-    for trajectory, found in _latest:
-        if trajectory is solution.trajectory:
-            return found
-    found = _analysed(solution.trajectory, near, keep)
-    _latest.append((solution.trajectory, found))
-    return found
+    known = solution.trajectory.found
+    if Analysis not in known:
+        # Refinement, rows and summaries ask one after the other; none but the first for factors.
+        found = _analysed(solution.trajectory, near, keep)
+        known[Analysis] = replace(found, factors=None)
+        return found
+    analysis: Analysis = known[Analysis]
+    return analysis
 
 
 def estimate_error(solution: Solution) -> dict[str, float]:

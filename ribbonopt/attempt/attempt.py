@@ -1,25 +1,22 @@
-"""Attempts at one scene, one guess after another: the best so far, and what all have cost."""
+"""An attempt at one scene on one mesh: from one guess after another, the best is kept."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import dataclass, field, replace
-from typing import TYPE_CHECKING, Any
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 from ribbonopt.arrays import Array
 from ribbonopt.checks.verify import verify
 from ribbonopt.guess import Guess, initial_unknowns
-from ribbonopt.problem import BoundaryValueProblem, Ribbon
-from ribbonopt.scene import Scene
-from ribbonopt.solution.from_report import solution_of
+from ribbonopt.problem import BoundaryValueProblem, Posed, Ribbon
+from ribbonopt.solution.made import solution_at, solution_of
 from ribbonopt.solution.solution import Solution
-from ribbonopt.solution.trajectory import Trajectory
-from ribbonopt.solution.verification import unverified
 from ribbonopt.solvers import SolveReport, Status
 from ribbonopt.solvers.auto import Auto
 from ribbonopt.solvers.newton import Newton
 from ribbonopt.transcription import NLP
 
+from .ledger import Ledger
 from .resistance import where_it_resists
 
 if TYPE_CHECKING:
@@ -32,12 +29,12 @@ LEAST = 1e-10  # what verification asks of the conditions is a hundred times tha
 
 
 @dataclass(eq=False)
-class Attempts:
-    """What has been tried on one scene.
+class Attempt:
+    """The means to solve one posed scene, and what has come of them.
 
     Attributes
     ----------
-    scene, p : Scene, (np,) array
+    posed, p : Posed, (np,) array
         What is asked, and its parameters [theta, widths].
     ribbon, problem, nlp, solver
         The structure that was built for it.
@@ -45,24 +42,24 @@ class Attempts:
         Kinds of the phases; empty for the law as it is.
     switches : (k,) array or None
         Fractions of the length where phases meet in the guesses.
-    path : list of mappings
-        Steps so far, with their cost.
+    ledger : Ledger
+        Where costs are entered.
     best : Solution or None
         The one nearest to what is asked.
     """
 
-    scene: Scene
+    posed: Posed
     p: Array
     ribbon: Ribbon
     problem: BoundaryValueProblem
     nlp: NLP
     solver: Solver
-    sheets: tuple[int, ...] = ()
-    switches: Array | None = None
-    path: list[Mapping[str, Any]] = field(default_factory=list)
+    sheets: tuple[int, ...]
+    switches: Array | None
+    ledger: Ledger
     best: Solution | None = None
     _unchecked: bool = False
-    _reports: list[SolveReport] = field(default_factory=list)
+    _last: SolveReport | None = None
 
     def run(self, guess: Guess, *, quick: bool = False, check: bool = True) -> bool:
         """Solve from one guess; return whether there is a verified solution now.
@@ -70,8 +67,12 @@ class Attempts:
         `quick` leaves it at Newton's method where the solver is `auto` and the equations square.
         Without `check`, what converges counts as verified: for steps on the way to a solution.
         """
+        return self.run_from(self.unknowns(guess), quick=quick, check=check)
+
+    def unknowns(self, guess: Guess) -> Array:
+        """Unknowns (nw,) of the program that stand for a guess."""
         parts = self.ribbon, self.problem, self.nlp.blocks, self.p, self.switches
-        return self.run_from(initial_unknowns(guess, *parts), quick=quick, check=check)
+        return initial_unknowns(guess, *parts)
 
     def run_from(
         self,
@@ -93,8 +94,10 @@ class Attempts:
 
     def take(self, report: SolveReport, *, check: bool = True) -> bool:
         """Take what a solver found; return whether there is a verified solution now."""
-        self.path += [self._step(attempt) for attempt in report.attempts]
-        self._reports += report.attempts
+        name, count = self.nlp.blocks.name, self.nlp.layout.element_count
+        phases = f" in {len(self.sheets)} phases" if self.sheets else ""
+        self.ledger.enter(report, f"{name} on {count} intervals{phases}")
+        self._last = report
         solution = self._solution(report, check)
         if self.best is None or _merit(solution) > _merit(self.best):
             self.best, self._unchecked = solution, not check
@@ -102,15 +105,8 @@ class Attempts:
 
     def restored(self, w: Array) -> Solution:
         """Return a solution from its unknowns w (nw,), which were verified when they were found."""
-        return Solution(
-            scene=self.scene,
-            trajectory=Trajectory(self.problem, self.nlp.blocks.dense(w, self.p)),
-            status=Status.CONVERGED,
-            message=Status.CONVERGED.value,
-            iterations=0,
-            verification=unverified(),
-            sheets=self.sheets,
-        )
+        parts = self.posed, self.problem, self.nlp
+        return solution_at(*parts, w, self.p, sheets=self.sheets)
 
     def check(self) -> bool:
         """Verify the best solution, if that was left out; return whether it is verified now."""
@@ -121,52 +117,31 @@ class Attempts:
     @property
     def enough(self) -> float:
         """Last step of Newton's method, relative, that does not show in the answer."""
-        tolerance = self.scene.tolerance
+        tolerance = self.posed.scene.tolerance
         return 0.0 if tolerance is None else min(UNSEEN * tolerance, LEAST)
 
     @property
     def factors(self) -> Factors | None:
         """Factors of the Jacobian at the last solution, or near it; None if they were not kept."""
-        return self._reports[-1].factors if self._reports else None
+        return None if self._last is None else self._last.factors
 
     @property
     def factorizations(self) -> int:
-        """Matrices factored by all attempts."""
-        return sum(report.factorizations for report in self._reports)
+        """Matrices factored by the last solver."""
+        return 0 if self._last is None else sum(r.factorizations for r in self._last.attempts)
 
     @property
     def iterations(self) -> int:
-        """Iterations of all attempts."""
-        return sum(report.iterations for report in self._reports)
-
-    @property
-    def solvers(self) -> tuple[str, ...]:
-        """Names of the solvers used."""
-        return tuple(report.solver for report in self._reports)
-
-    @property
-    def seconds(self) -> tuple[float, float]:
-        """Seconds of function evaluation and of linear algebra."""
-        reports = self._reports
-        return sum(r.evaluate for r in reports), sum(r.linear for r in reports)
+        """Iterations of the last solver."""
+        return 0 if self._last is None else sum(r.iterations for r in self._last.attempts)
 
     def _solution(self, report: SolveReport, check: bool) -> Solution:
-        parts = self.scene, self.problem, self.nlp, report, self.p, self.sheets
+        parts = self.posed, self.problem, self.nlp, report, self.p, self.sheets
         solution = solution_of(*parts)
         if not report.status.converged:
             where = where_it_resists(report.residuals, self.nlp.layout, solution)
             return replace(solution, message=f"{report.status.value}. {where}")
         return verified(solution, self.ribbon) if check else solution
-
-    def _step(self, attempt: SolveReport) -> dict[str, Any]:
-        name, count = self.nlp.blocks.name, self.nlp.layout.element_count
-        outcome = "" if attempt.status.converged else f" ({attempt.status.name.lower()})"
-        phases = f" in {len(self.sheets)} phases" if self.sheets else ""
-        return {
-            "step": f"{attempt.solver}, {name} on {count} intervals{phases}{outcome}",
-            "iterations": attempt.iterations,
-            "seconds": attempt.total,
-        }
 
 
 def verified(solution: Solution, ribbon: Ribbon) -> Solution:

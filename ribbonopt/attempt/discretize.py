@@ -4,10 +4,9 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from ribbonopt.problem import BoundaryValueProblem
 from ribbonopt.scene import Collocation as CollocationSettings
 from ribbonopt.scene import Scene
-from ribbonopt.transcription import NLP, Collocation
+from ribbonopt.transcription import Collocation
 
 if TYPE_CHECKING:
     from ribbonopt.transcription.shooting.shooting import MultipleShooting
@@ -21,8 +20,3 @@ def transcription_of(scene: Scene) -> Collocation | MultipleShooting:
     from ribbonopt.transcription.shooting.shooting import MultipleShooting  # few scenes need it
 
     return MultipleShooting.named(settings.scheme, settings.degree, settings.steps)
-
-
-def discretize(scene: Scene, problem: BoundaryValueProblem) -> NLP:
-    """Return the NLP of a scene's problem on its own number of intervals."""
-    return transcription_of(scene).transcribe(problem, (scene.transcription.intervals,))

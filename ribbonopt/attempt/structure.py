@@ -2,89 +2,114 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, fields
-from functools import cached_property
+from dataclasses import dataclass, field, fields
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ribbonopt.arrays import Array
 from ribbonopt.errors import ModelError
-from ribbonopt.problem import BoundaryValueProblem, Ribbon, theta_of
-from ribbonopt.scene import Scene
-from ribbonopt.scene.units import in_special_units
+from ribbonopt.problem import BoundaryValueProblem, Posed, Ribbon, formulate
 from ribbonopt.solvers import solver_named
 from ribbonopt.transcription import NLP, Mesh
 
-from .attempt import Attempts
+from .attempt import Attempt
 from .discretize import transcription_of
+from .ledger import Ledger
 
 if TYPE_CHECKING:
     from ribbonopt.solvers import Solver
 
 Elements = tuple[int, ...]
-SAME = ("formulation", "states", "transcription", "solver")
+Kinds = tuple[int, ...]
 
 
 @dataclass(frozen=True, eq=False)
-class Built:
-    """Mechanics and equations of a scene, in one phase or in several.
+class Structure:
+    """Mechanics and equations of scenes that differ in numbers only, in one phase or in several.
 
     Attributes
     ----------
-    scene : Scene
-        The scene it was built for.
+    posed : Posed
+        A scene that has this structure.
     ribbon, problem : Ribbon, BoundaryValueProblem
         Mechanics and equations.
     sheets : tuple of int
         Kinds of the phases, see `ribbonopt.problem.switched`; empty for the law as it is.
     """
 
-    scene: Scene
+    posed: Posed
     ribbon: Ribbon
     problem: BoundaryValueProblem
-    sheets: tuple[int, ...] = ()
+    sheets: Kinds = ()
+    _programs: dict[Elements, tuple[NLP, Solver]] = field(default_factory=dict)
+    _phased: dict[Kinds, Structure] = field(default_factory=dict)
+
+    @classmethod
+    def of(cls, posed: Posed) -> Structure:
+        """Build the equations of a posed scene in its formulation."""
+        return cls(posed, *formulate(posed))
+
+    @classmethod
+    def least_energy(cls, posed: Posed) -> Structure:
+        """Build the problem of least energy at the ends of a posed scene, loads there left out."""
+        from ribbonopt.problem.energy import minimum  # only where there is no guess
+
+        ribbon = Ribbon.of(posed)
+        return cls(posed, ribbon, minimum(ribbon))
+
+    def in_phases(self, kinds: Kinds) -> Structure:
+        """Return the same in phases of these kinds, built once; for none, this."""
+        if not kinds:
+            return self
+        if kinds not in self._phased:
+            from ribbonopt.problem.switched import switched  # most ribbons keep their sign
+
+            problem = switched(self.ribbon, kinds)
+            self._phased[kinds] = Structure(self.posed, self.ribbon, problem, kinds)
+        return self._phased[kinds]
 
     def on(self, elements: Elements) -> tuple[NLP, Solver]:
         """Return program and solver on numbers of elements in each phase, built once."""
-        if elements not in self._sizes:
-            nlp = transcription_of(self.scene).transcribe(self.problem, elements)
-            options = {
-                f.name: getattr(self.scene.solver, f.name) for f in fields(self.scene.solver)
-            }
-            self._sizes[elements] = nlp, solver_named(options.pop("type"), nlp, options)
-        return self._sizes[elements]
+        if elements not in self._programs:
+            scene = self.posed.scene
+            nlp = transcription_of(scene).transcribe(self.problem, elements)
+            options = {f.name: getattr(scene.solver, f.name) for f in fields(scene.solver)}
+            self._programs[elements] = nlp, solver_named(options.pop("type"), nlp, options)
+        return self._programs[elements]
 
-    @cached_property
-    def _sizes(self) -> dict[Elements, tuple[NLP, Solver]]:
-        return {}
+    def build(self) -> None:
+        """Build everything for the scene's own number of intervals now."""
+        self.on((self.posed.scene.transcription.intervals,))[1].build()
 
-    def attempts(
-        self, scene: Scene, mesh: Mesh | None = None, switches: Array | None = None
-    ) -> Attempts:
+    def attempt(
+        self,
+        posed: Posed,
+        ledger: Ledger | None = None,
+        mesh: Mesh | None = None,
+        switches: Array | None = None,
+    ) -> Attempt:
         """Return the means to solve a scene of this structure, on its own mesh unless given.
 
-        `switches` are the fractions of the length where the phases of the guesses meet.
+        What it costs is entered in a ledger. `switches` are the fractions of the length where the
+        phases of the guesses meet.
+
+        Raises
+        ------
+        ModelError
+            If the scene has another structure.
         """
-        if mesh is None:
-            mesh = self._mesh(scene, switches)
-        nlp, solver = self.on(mesh.elements)
-        p = np.append(self.theta(scene), mesh.widths)
-        return Attempts(scene, p, self.ribbon, self.problem, nlp, solver, self.sheets, switches)
-
-    def theta(self, scene: Scene) -> Array:
-        """Parameters (nt,) of a scene; ModelError if it has another structure."""
-        values = theta_of(in_special_units(scene))
-        same = tuple(values) == self.problem.parameter_names and all(
-            getattr(scene, name) == getattr(self.scene, name) for name in SAME
-        )
-        if not same or scene.law.type != self.scene.law.type:
+        if posed is not self.posed and posed.structure != self.posed.structure:
             raise ModelError("this scene differs from the prepared one in more than its numbers")
-        return np.array(list(values.values()))
+        mesh = mesh or self._mesh(switches)
+        nlp, solver = self.on(mesh.elements)
+        p = np.append(posed.values, mesh.widths)
+        parts = self.ribbon, self.problem, nlp, solver, self.sheets, switches
+        return Attempt(posed, p, *parts, ledger or Ledger())
 
-    def _mesh(self, scene: Scene, switches: Array | None) -> Mesh:
+    def _mesh(self, switches: Array | None) -> Mesh:
         """Uniform elements; in phases, of about the width they would have without."""
-        count = scene.transcription.intervals
+        count = self.posed.scene.transcription.intervals
         if switches is None or not len(switches):
             return Mesh.uniform(count)
         shares = np.diff(np.concatenate([[0.0], switches, [1.0]]))

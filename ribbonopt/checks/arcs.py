@@ -12,7 +12,9 @@ from itertools import pairwise
 import numpy as np
 
 from ribbonopt.arrays import Array
+from ribbonopt.problem import Ribbon
 from ribbonopt.solution.solution import Solution
+from ribbonopt.transcription.buffered import mapped
 
 NEGLIGIBLE = 1e-7  # m2 over the largest |m| that has no sign
 BEYOND = 1.05  # |eta| of a mixture
@@ -28,21 +30,21 @@ class Arcs:
 
 
 def sign_changes(solution: Solution) -> Arcs:
-    """Return the arcs between sign changes of m2, as far as the stages can tell.
+    """Return the arcs between sign changes of the law's switch, as far as the stages can tell.
 
-    Where m3 vanishes too (a planar ribbon) the law is smooth: such changes do not count.
+    Where nothing leaps there (a planar ribbon) the law is smooth: such changes do not count.
     """
-    f, m2, m3, _ = _sampled(solution)
-    scale = _scale(solution)
-    size = np.abs(m2) > NEGLIGIBLE * scale
-    f, m2, m3 = f[size], m2[size], m3[size]
-    if not len(m2):
+    o, f = solution.at_stages, solution.trajectory.stages[1]
+    value, leap, scale = o["switching"], o["leap"], _scale(solution)
+    size = np.abs(value) > NEGLIGIBLE * scale
+    f, value, leap = f[size], value[size], leap[size]
+    if not len(value):
         return Arcs((1,), np.empty(0))
-    signs = np.sign(m2).astype(int)
-    twisted = np.abs(m3) > NEGLIGIBLE * scale
-    at = np.flatnonzero((signs[1:] != signs[:-1]) & (twisted[1:] | twisted[:-1]))
-    # Between the two points m2 is straight, to the accuracy of a first guess.
-    switches = f[at] + (f[at + 1] - f[at]) * m2[at] / (m2[at] - m2[at + 1])
+    signs = np.sign(value).astype(int)
+    leaps = leap > NEGLIGIBLE * scale
+    at = np.flatnonzero((signs[1:] != signs[:-1]) & (leaps[1:] | leaps[:-1]))
+    # Between the two points the function is straight, to the accuracy of a first guess.
+    switches = f[at] + (f[at + 1] - f[at]) * value[at] / (value[at] - value[at + 1])
     kinds = (int(signs[0]), *(int(signs[i + 1]) for i in at))
     return Arcs(kinds, switches)
 
@@ -85,40 +87,35 @@ def _interleaved(arcs: Arcs, mixtures: list[tuple[float, float]]) -> Arcs:
 
 def _beyond(solution: Solution) -> list[tuple[float, float]]:
     """Fractions between which |eta| is beyond that of one sheet."""
-    f, _, _, eta = _sampled(solution)
+    f, eta = solution.trajectory.stages[1], solution.at_stages["eta"]
     beyond = np.concatenate([[False], np.abs(eta) > BEYOND, [False]])
     edges = np.flatnonzero(beyond[1:] != beyond[:-1])
     return [(f[a], f[b - 1]) for a, b in zip(edges[::2], edges[1::2], strict=True)]
-
-
-def _sampled(solution: Solution) -> tuple[Array, Array, Array, Array]:
-    """Fractions, m2, m3 and eta at the stages."""
-    o = solution.at_stages
-    return solution.trajectory.stages[1], o["m2"], o["m3"], o["eta"]
 
 
 def _scale(solution: Solution) -> float:
     return float(np.abs(solution.at_stages["m"]).max())
 
 
-def phase_problems(solution: Solution) -> list[str]:
-    """Say where a solution in phases is not one of the law: wrong sign of m2, or no mixture."""
+def phase_problems(solution: Solution, ribbon: Ribbon) -> list[str]:
+    """Say where a solution in phases is not one of the law: wrong side of its switch, no mixture.
+
+    Margins of a law are compared in units Dw = L = 1.
+    """
     problems = []
-    phase, units = solution.trajectory.stages[3], solution.units
-    # In units Dw = L = 1, in which forces, squares of moments and strains can be compared.
-    stages = {name: value / units.of(name) for name, value in solution.at_stages.items()}
-    tolerance = 1e-6 * float(np.abs(stages["m"]).max())
+    v, fraction, _, phase = solution.trajectory.stages
+    nodes, theta = v[:, : len(ribbon.states)], solution.dense.theta
+    tolerance = 1e-6 * float(np.abs(solution.trajectory.at_stages["m"]).max())
+    s = solution.posed.scene.interval[0] + solution.posed.length * fraction
     start, end = solution.scene.interval
     ends = start + (end - start) * solution.trajectory.ends
+    constants = solution.constants[: len(ribbon.constants)]
     for i, kind in enumerate(solution.sheets):
         rows = phase == i
         where = f"between s = {ends[i]:.4g} and {ends[i + 1]:.4g}"
-        if kind and (kind * stages["m2"][rows] < -tolerance).any():
-            problems.append(f"m2 has the wrong sign {where}: no equilibrium of Sadowsky's ribbon")
-        if not kind:
-            n3, m1, m3 = (stages[name][rows] for name in ("n3", "m1", "m3"))
-            if (n3 + m3**2 / 4 - m1**2 / 4 < -tolerance).any():
-                problems.append(f"the mixture {where} is unstable: K < 0")
-            if (np.abs(stages["u2"][rows]) > np.abs(stages["u3"][rows]) + tolerance).any():
-                problems.append(f"|u2| > |u3| {where}: not a mixture")
+        names, function = ribbon.margins_function(kind)
+        (values,) = mapped(function)(nodes[rows], constants, theta, s[rows])
+        least = values.reshape(-1, len(names)).min(axis=0)
+        short = zip(names, least, strict=True)
+        problems += [name.format(where=where) for name, value in short if value < -tolerance]
     return problems

@@ -12,7 +12,8 @@ import math
 import numpy as np
 
 from ribbonopt.arrays import Array
-from ribbonopt.scene import Homotopy, Kirchhoff, RibbonSizes
+from ribbonopt.mechanics.laws.catalogue import is_developable
+from ribbonopt.scene import RibbonSizes
 from ribbonopt.solution.solution import Solution
 
 SLENDER = 10.0  # least ratio of length to width, and of width to thickness
@@ -65,8 +66,7 @@ def _width_of_loop(solution: Solution, ribbon: RibbonSizes) -> list[str]:
 
 def _generatrices(solution: Solution, width: float) -> list[str]:
     """Compare with Wunderlich's energy where the generatrices turn fastest."""
-    law = solution.scene.law
-    if isinstance(law, Kirchhoff) or (isinstance(law, Homotopy) and law.rho < 1):
+    if not is_developable(solution.scene.law):
         return []
     s = np.linspace(*solution.scene.interval, ROWS)
     slopes = np.abs(generatrix_slopes(solution, s))

@@ -27,13 +27,7 @@ def verify(solution: Solution, ribbon: Ribbon) -> Verification:
         return replace(unverified(), problems=(problem,))
     worst_name, worst = _worst_condition(solution, ribbon)
     residual = float(solution.dense.residual_between_nodes().max())
-    nodes = solution.at_nodes
-    drift = {
-        "n": _drift(nodes["n"]),
-        "n_dot_m": _drift(nodes["n_dot_m"], np.linalg.norm(solution.n0) * _size(nodes["m"])),
-        "H": _drift(nodes["H"]),
-        "orthonormality": float(nodes["orthonormality"].max()),
-    }
+    nodes, drift = solution.at_nodes, _drifts(solution)
     problems = []
     # Gauss keeps orthonormality to rounding, other schemes only to their own accuracy; natural
     # conditions of a minimum hold to the accuracy of the mesh.
@@ -51,14 +45,12 @@ def verify(solution: Solution, ribbon: Ribbon) -> Verification:
     if solution.sheets:
         from .arcs import phase_problems  # few scenes have phases
 
-        problems += phase_problems(solution)
+        problems += phase_problems(solution, ribbon)
     if ribbon.law.bounds_eta and not solution.problem.recovered:
         eta = np.abs(nodes["eta"])
         if 0 in solution.sheets:
-            eta[
-                np.array(solution.sheets)[solution.trajectory.phase_of(solution.trajectory.nodes)]
-                == 0
-            ] = 0
+            phase = solution.trajectory.phase_of(solution.trajectory.nodes)
+            eta[np.array(solution.sheets)[phase] == 0] = 0
         if not eta.max() <= 1 + TOLERANCE + residual:
             s = solution.nodes[int(eta.argmax())]
             problems.append(
@@ -78,7 +70,7 @@ def verify(solution: Solution, ribbon: Ribbon) -> Verification:
 def _worst_condition(solution: Solution, ribbon: Ribbon) -> tuple[str, float]:
     """Name and size of the condition that is furthest from what was asked."""
     names, function = ribbon.verdicts_function
-    count, constants = len(ribbon.model.states), len(ribbon.model.constants)
+    count, constants = len(ribbon.states), len(ribbon.constants)
     nodes = solution.dense.at_nodes
     # Without further states, and without the lengths of phases.
     known = (
@@ -96,6 +88,22 @@ def _worst_condition(solution: Solution, ribbon: Ribbon) -> tuple[str, float]:
     sizes = np.where(np.isfinite(sizes), sizes / np.where(loads, scale, 1.0), np.inf)
     index = int(sizes.argmax())
     return names[index], float(sizes[index])
+
+
+def _drifts(solution: Solution) -> dict[str, float]:
+    """Drifts of what is conserved; under loads that is neither n nor n . m, maybe H with r."""
+    nodes, loads = solution.trajectory.at_nodes, solution.posed.loads
+    drift = {"orthonormality": float(nodes["orthonormality"].max())}
+    levels = [load.level(nodes["r"]) for load in loads]
+    if loads:
+        known = [level for level in levels if level is not None]
+        H = nodes["H"] + sum(known)
+        unknown = float("nan")
+        changes = _drift(H) if len(known) == len(levels) else unknown
+        return {"n": unknown, "n_dot_m": unknown, "H": changes} | drift
+    scale = float(np.linalg.norm(nodes["n"][0])) * _size(nodes["m"])
+    n_dot_m = _drift(nodes["n_dot_m"], scale)
+    return {"n": _drift(nodes["n"]), "n_dot_m": n_dot_m, "H": _drift(nodes["H"])} | drift
 
 
 def _drift(values: Array, scale: float | None = None) -> float:

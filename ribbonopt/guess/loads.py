@@ -3,16 +3,14 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import lru_cache
 
 import casadi as ca
 import numpy as np
 
 from ribbonopt.arrays import Array
-from ribbonopt.mechanics import RodFields
-from ribbonopt.mechanics.ends.boundary import start_frame, start_position
-from ribbonopt.problem import BoundaryValueProblem, Ribbon, theta_values
-from ribbonopt.scene import LoadGuess, Scene
+from ribbonopt.mechanics.section import RodFields
+from ribbonopt.problem import BoundaryValueProblem, Posed, Ribbon
+from ribbonopt.scene import LoadGuess
 from ribbonopt.transcription.buffered import Buffered, mapped
 
 STEPS = 32  # of one call
@@ -26,15 +24,17 @@ class IntegratedLoads:
     """
 
     ribbon: Ribbon
-    scene: Scene
+    posed: Posed
     loads: LoadGuess
     backwards: bool = False
 
     def fields(self, fraction: Array) -> RodFields:
         """Fields at fractions (k,) of the length, increasing from 0 to 1."""
         x, c = self._integrated(fraction)
-        section = mapped(self.ribbon.section_function)
-        parts = section(x, c, theta_values(self.scene))[:6]
+        section, start = mapped(self.ribbon.section_function), self.posed.scene.interval[0]
+        along = 1 - fraction if self.backwards else fraction
+        s = start + self.posed.length * along
+        parts = section(x, c, self.posed.values, s)[:6]
         r, d1, d2, d3, n, m = (part.reshape(-1, 3) for part in parts)
         return RodFields(r, np.stack([d1, d2, d3], axis=2), n, m)
 
@@ -42,57 +42,60 @@ class IntegratedLoads:
         self, problem: BoundaryValueProblem, theta: Array, fraction: Array
     ) -> tuple[Array, Array] | None:
         """Unknowns v (k, nx) and constants where these are the states of the rod alone."""
-        own = problem.state_names == self.ribbon.model.states and not problem.algebraic.numel()
+        own = problem.state_names == self.ribbon.states and not problem.algebraic.numel()
         return self._integrated(fraction) if own else None
 
     def _integrated(self, fraction: Array) -> tuple[Array, Array]:
         """States of the rod (k, nx), and its constants, moments about the start."""
-        model, boundary, parameters = self.ribbon.model, self.scene.boundary, self.scene.parameters
-        position = start_position(boundary, parameters)
-        frame = start_frame(boundary, parameters)
+        model, (position, frame) = self.ribbon.model, self.posed.start
         n, m = np.array(self.loads.force), np.array(self.loads.moment)
         start = RodFields(position[None], frame[None], n[None], m[None])
         states, c = model.pack(start, position)
-        length = self.scene.interval[1] - self.scene.interval[0]
+        states = np.hstack([states, np.zeros((1, len(self.ribbon.law.states)))])
+        length, s = self.posed.length, np.array(self.posed.scene.interval[:1])
         widths = np.diff(fraction) * (-length if self.backwards else length)
         # Steps short against the strains, which the loads bound.
         strain = np.abs(m).max() + length * np.abs(n).max()
         substeps = int(np.clip(np.ceil(np.abs(widths).max() * strain), 1, 100))
-        theta = theta_values(self.scene)
+        theta = self.posed.values
         widths = np.repeat(widths / substeps, substeps)
         steps, shared = _steps(self.ribbon), (np.tile(c, STEPS), np.tile(theta, STEPS))
         count = len(widths)
         widths = np.append(widths, np.zeros(-count % STEPS))  # steps of no width go nowhere
         parts = [states]
-        for part in widths.reshape(-1, STEPS):
-            (after,) = steps(parts[-1][-1], *shared, part)
+        at = s[0] + np.cumsum(widths) - widths + (length if self.backwards else 0.0)
+        for part, here in zip(widths.reshape(-1, STEPS), at.reshape(-1, STEPS), strict=True):
+            (after,) = steps(parts[-1][-1], *shared, part, here)
             parts.append(after.reshape(STEPS, -1))
         return np.vstack(parts)[: count + 1 : substeps], c
 
 
-@lru_cache(maxsize=8)
 def _steps(ribbon: Ribbon) -> Buffered:
-    """States after each of `STEPS` steps, from the first state and all c, theta and h."""
+    """Return the steps of a ribbon, built once."""
+    if _steps not in ribbon.kept:
+        ribbon.kept[_steps] = _built_steps(ribbon)
+    steps: Buffered = ribbon.kept[_steps]
+    return steps
+
+
+def _built_steps(ribbon: Ribbon) -> Buffered:
+    """States after each of `STEPS` steps, from the first state and all c, theta, h and s."""
     return Buffered(_step(ribbon).mapaccum("steps", STEPS))
 
 
-@lru_cache(maxsize=8)
 def _step(ribbon: Ribbon) -> ca.Function:
-    """One Runge-Kutta step (x, c, theta, h) -> x."""
-    model = ribbon.model
-    x = ca.SX.sym("x", len(model.states))
-    c = ca.SX.sym("c", len(model.constants))
-    theta = ca.vertcat(*ribbon.theta.values())
+    """One Runge-Kutta step (x, c, theta, h, s) -> x."""
+    x = ca.SX.sym("x", len(ribbon.states))
+    c = ca.SX.sym("c", len(ribbon.constants))
+    theta, s, h = ribbon.parameters, ribbon.position, ca.SX.sym("h")
     section = ribbon.section(x, c)
-    u = ca.vertcat(0, section.u2, section.u3)
-    rates = ca.Function("rates", [x, c, theta], [model.rates(x, section.rod, u)])
-    h = ca.SX.sym("h")
-    k1 = rates(x, c, theta)
-    k2 = rates(x + h / 2 * k1, c, theta)
-    k3 = rates(x + h / 2 * k2, c, theta)
-    k4 = rates(x + h * k3, c, theta)
+    rates = ca.Function("rates", [x, c, theta, s], [ribbon.rates(section, section.u)])
+    k1 = rates(x, c, theta, s)
+    k2 = rates(x + h / 2 * k1, c, theta, s + h / 2)
+    k3 = rates(x + h / 2 * k2, c, theta, s + h / 2)
+    k4 = rates(x + h * k3, c, theta, s + h)
     after = x + h / 6 * (k1 + 2 * k2 + 2 * k3 + k4)
-    return ca.Function("step", [x, c, theta, h], [after])
+    return ca.Function("step", [x, c, theta, h, s], [after])
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,23 +106,22 @@ class FollowerLoads:
     """
 
     ribbon: Ribbon
-    scene: Scene
+    posed: Posed
     force: Array
     moment: Array
 
     def fields(self, fraction: Array) -> RodFields:
         """Fields at fractions (k,) of the length, increasing from 0 to 1."""
-        boundary, parameters = self.scene.boundary, self.scene.parameters
-        frame = start_frame(boundary, parameters)
+        position, frame = self.posed.start
         x, y, z = frame @ self.force
         mx, my, mz = frame @ self.moment
         loads = LoadGuess((x, y, z), (mx, my, mz))
         whole = np.concatenate([[0.0], 1 - fraction[::-1], [1.0]])
-        found = IntegratedLoads(self.ribbon, self.scene, loads, backwards=True).fields(whole)
+        found = IntegratedLoads(self.ribbon, self.posed, loads, backwards=True).fields(whole)
         turn = frame @ found.frames[-1].T
         inner = slice(-2, 0, -1)
         return RodFields(
-            start_position(boundary, parameters) + (found.r[inner] - found.r[-1]) @ turn.T,
+            position + (found.r[inner] - found.r[-1]) @ turn.T,
             turn @ found.frames[inner],
             found.n[inner] @ turn.T,
             found.m[inner] @ turn.T,

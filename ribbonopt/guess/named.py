@@ -10,17 +10,15 @@ import numpy as np
 
 from ribbonopt.arrays import Array
 from ribbonopt.errors import ModelError
-from ribbonopt.mechanics import RodFields
-from ribbonopt.mechanics.ends.boundary import start_frame, start_position
 from ribbonopt.mechanics.ends.frames import number
-from ribbonopt.problem import Ribbon, theta_values
+from ribbonopt.mechanics.section import RodFields
+from ribbonopt.problem import Posed, Ribbon
 from ribbonopt.scene import (
     ArcGuess,
     HelixGuess,
     LoadGuess,
     Loop,
     MoebiusGuess,
-    Scene,
     SolutionGuess,
     StrainGuess,
 )
@@ -29,14 +27,14 @@ from .loads import IntegratedLoads
 from .shapes import Helical, Shape, TwistedCircle
 from .unknowns import Guess
 
-ROD = np.array([1.0, 2.0])  # moment over strain of a ribbon that is hardly twisted
+ROD = np.array([0.0, 1.0, 2.0])  # moment over strain of a ribbon that is hardly twisted
 
 
 @dataclass(frozen=True, eq=False)
 class ShapeGuess:
     """A shape without force: nothing to be known of loads.
 
-    The moment is that of `law` for its strains (k, 2), or of a rod of stiffness 1 and 2; it need
+    The moment is that of `law` for its strains (k, 3), or of a rod of stiffness 1 and 2; it need
     not be in equilibrium.
     """
 
@@ -46,32 +44,31 @@ class ShapeGuess:
     def fields(self, fraction: Array) -> RodFields:
         """Fields at fractions (k,) of the length."""
         r, frames = self.shape.positions(fraction), self.shape.frames(fraction)
-        strains = self.shape.strains(fraction)[:, 1:]
+        strains = self.shape.strains(fraction)
         moments = strains * ROD if self.law is None else self.law(strains)
-        m = np.einsum("kij,kj->ki", frames[:, :, 1:], moments)
+        m = np.einsum("kij,kj->ki", frames, moments)
         return RodFields(r, frames, np.zeros_like(r), m)
 
 
-def guess_of(scene: Scene, ribbon: Ribbon) -> Guess | None:
+def guess_of(posed: Posed, ribbon: Ribbon) -> Guess | None:
     """Return the guess that a scene names; None for `auto` and for saved solutions."""
-    guess = scene.guess
+    guess = posed.scene.guess
     if isinstance(guess, LoadGuess):
-        return IntegratedLoads(ribbon, scene, guess)
-    shape = shape_of(scene)
-    return None if shape is None else ShapeGuess(shape, _moments(scene, ribbon))
+        return IntegratedLoads(ribbon, posed, guess)
+    shape = shape_of(posed)
+    return None if shape is None else ShapeGuess(shape, _moments(posed, ribbon))
 
 
-def shape_of(scene: Scene) -> Shape | None:
+def shape_of(posed: Posed) -> Shape | None:
     """Return the shape that a scene's guess names, or None if it names none."""
+    scene, length, place = posed.scene, posed.length, posed.start
     guess, parameters = scene.guess, scene.parameters
-    length = scene.interval[1] - scene.interval[0]
-    place = start_position(scene.boundary, parameters), start_frame(scene.boundary, parameters)
     piece = "whole" if scene.boundary.loop is None else scene.boundary.loop.piece
     if guess == "circle":
-        return loop_shape(scene, Loop(0, piece), place)
+        return loop_shape(posed, Loop(0, piece))
     if isinstance(guess, MoebiusGuess):
         band = guess.moebius
-        return loop_shape(scene, Loop(band.half_twists, band.piece or piece), place)
+        return loop_shape(posed, Loop(band.half_twists, band.piece or piece))
     if isinstance(guess, StrainGuess):
         return Helical(*place, np.array([0.0, *guess.strains]), length)
     if isinstance(guess, ArcGuess):
@@ -85,15 +82,15 @@ def shape_of(scene: Scene) -> Shape | None:
     return None
 
 
-def loop_shape(scene: Scene, loop: Loop, place: tuple[Array, Array]) -> TwistedCircle:
-    """Return a twisted circle, or the piece of it that is solved, from a position and a frame.
+def loop_shape(posed: Posed, loop: Loop) -> TwistedCircle:
+    """Return a twisted circle, or the piece of it that is solved, from where a scene starts.
 
     The fundamental piece lies about the origin of the lab, as `mechanics.ends.loops` has it.
     """
     if loop.piece == "fundamental" and not loop.half_twists:
         raise ModelError("guess: a circle without half twists has no fundamental piece", "guess")
     pieces = {"whole": 1, "half": 2, "fundamental": 2 * abs(loop.half_twists)}[loop.piece]
-    length = scene.interval[1] - scene.interval[0]
+    length, place = posed.length, posed.start
     if loop.piece == "fundamental":
         radius = pieces * length / (2 * np.pi)
         place = np.array([-radius, 0.0, 0.0]), np.eye(3)
@@ -101,18 +98,23 @@ def loop_shape(scene: Scene, loop: Loop, place: tuple[Array, Array]) -> TwistedC
     return TwistedCircle(*place, 2 * np.pi * share, np.pi * loop.half_twists * share, length)
 
 
-def _moments(scene: Scene, ribbon: Ribbon) -> Callable[[Array], Array]:
-    u = ca.SX.sym("u", 2)
-    theta = ca.vertcat(*ribbon.theta.values())
-    moments = ca.Function("m", [u, theta], [ca.vertcat(*ribbon.law.moment(u[0], u[1]))])
-    values = theta_values(scene)
+def _moments(posed: Posed, ribbon: Ribbon) -> Callable[[Array], Array]:
+    """Return the moments (k, 3) of the law at strains (k, 3), components that it has none of zero.
 
-    def law(strains: Array) -> Array:
+    Where the law has numbers that depend on s, those at the start.
+    """
+    u, law = ca.SX.sym("u", 3), ribbon.law
+    inputs = [u, ribbon.parameters, ribbon.position]
+    moments = ca.Function("m", inputs, [law.whole(law.moment(u))])
+    values, start = posed.values, posed.scene.interval[0]
+
+    def moments_at(strains: Array) -> Array:
         count = len(strains)
         repeated = np.repeat(values[:, None], count, axis=1)
-        return np.asarray(np.array(moments.map(count)(strains.T, repeated)).T)
+        found = moments.map(count)(strains.T, repeated, np.full((1, count), start))
+        return np.asarray(np.array(found).T)
 
-    return law
+    return moments_at
 
 
 def words(guess: object) -> str:

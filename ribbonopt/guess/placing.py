@@ -2,38 +2,35 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import casadi as ca
 import numpy as np
 
 from ribbonopt.arrays import Array
-from ribbonopt.mechanics import MODELS, RodFields
-from ribbonopt.mechanics.ends.boundary import ENDS, start_position
+from ribbonopt.mechanics.ends.boundary import ENDS
 from ribbonopt.mechanics.ends.conditions import Component, Direction, EndName, Frame
 from ribbonopt.mechanics.rotations import matrix_of, turns_about
-from ribbonopt.problem import Ribbon
-from ribbonopt.scene import Scene
+from ribbonopt.mechanics.section import RodFields
+from ribbonopt.problem import Posed, Ribbon
+from ribbonopt.problem.posed import Place
 
-Place = tuple[Array, Array]  # position (3,) and frame (3, 3)
-
+KINEMATIC = 7  # states of position and unit quaternion, before all others
 SLACK = 0.8  # chord of a ribbon whose ends say nothing of it, over its length
 STEPS = 30
 CLOSE = 1e-10
 
 
-def place_ends(ribbon: Ribbon, scene: Scene, theta: Array) -> tuple[Place, Place]:
+def place_ends(ribbon: Ribbon, posed: Posed) -> tuple[Place, Place]:
     """Return position and frame (lab) of both ends.
 
     What is prescribed as a whole is taken as it is; the rest is what is nearest to a straight
     ribbon along d3, by Gauss-Newton steps of least change. Where these do not get there (conditions
     that the ends alone cannot meet), the last of them is returned.
     """
-    length = scene.interval[1] - scene.interval[0]
+    length = posed.length
     first, last = (_frame(ribbon, name) for name in ENDS)
     start, end = (_position(ribbon, name) for name in ENDS)
     if np.isnan(start).any() and np.isnan(end).all():
-        start = start_position(scene.boundary, scene.parameters)
+        start = posed.start[0]
     first, last = _completed(first, last, _known_chord(start, end))
     tangent = first[:, 2] + last[:, 2]
     tangent = tangent / max(float(np.linalg.norm(tangent)), 1.0)
@@ -44,16 +41,19 @@ def place_ends(ribbon: Ribbon, scene: Scene, theta: Array) -> tuple[Place, Place
     fields = RodFields(
         np.stack([start, end]), np.stack([first, last]), np.zeros((2, 3)), np.zeros((2, 3))
     )
-    return _met(ribbon, theta, fields)
+    return _met(ribbon, posed.values, fields)
 
 
 def _met(ribbon: Ribbon, theta: Array, fields: RodFields) -> tuple[Place, Place]:
     """Move both ends by Gauss-Newton steps of least norm until the conditions are met."""
-    reduced = replace(ribbon, model=MODELS["reduced"])
-    states, _ = reduced.model.pack(fields, np.zeros(3))
-    count = states.shape[1]
+    least = ribbon.least
+    states, _ = least.model.pack(fields, np.zeros(3))
+    states = states[:, :KINEMATIC]
+    count, rest = KINEMATIC, ca.SX.zeros(len(least.states) - KINEMATIC)
     x = ca.SX.sym("x", 2 * count)
-    named = reduced.residuals(x[:count], x[count:], ca.SX.zeros(6), kinematic_only=True)
+    ends = ca.vertcat(x[:count], rest), ca.vertcat(x[count:], rest)
+    constants = ca.SX.zeros(len(least.constants))
+    named = least.residuals(*ends, constants, kinematic_only=True)
     end_unit = ca.sumsqr(x[count + 3 :]) - 1
     residual = ca.vertcat(*named.values(), end_unit)
     inputs = [x, ca.vertcat(*ribbon.theta.values())]

@@ -8,7 +8,7 @@ import casadi as ca
 import numpy as np
 
 from ribbonopt.arrays import Array
-from ribbonopt.mechanics import RodFields
+from ribbonopt.mechanics.section import RodFields
 from ribbonopt.problem import BoundaryValueProblem, Ribbon
 
 if TYPE_CHECKING:
@@ -76,15 +76,19 @@ def _from_fields(
     fields = guess.fields(unique)
     reference = theta[[problem.parameter_names.index(f"reference.{axis}") for axis in "xyz"]]
     x, constants = ribbon.model.pack(fields, reference)
-    return np.hstack([x, _estimates(problem, fields, theta)])[where], constants
+    start, end = (problem.parameter_names.index(f"interval.{e}") for e in ("start", "end"))
+    s = theta[start] + (theta[end] - theta[start]) * unique
+    return np.hstack([x, _estimates(problem, fields, theta, s)])[where], constants
 
 
-def _estimates(problem: BoundaryValueProblem, fields: RodFields, theta: Array) -> Array:
-    """Last states and algebraic variables (k, ...) from the moments along d2 and d3."""
+def _estimates(problem: BoundaryValueProblem, fields: RodFields, theta: Array, s: Array) -> Array:
+    """Last states and algebraic variables (k, ...) from n and m along the directors."""
     count = len(fields.r)
     if not problem.estimate.numel():
         return np.empty((count, 0))
-    local = np.einsum("ki,kij->kj", fields.m, fields.frames)[:, 1:]
-    function = ca.Function("estimate", [problem.local, problem.parameters], [problem.estimate])
-    values = function.map(count)(local.T, np.repeat(theta[:, None], count, axis=1))
+    n, m = (np.einsum("ki,kij->kj", v, fields.frames) for v in (fields.n, fields.m))
+    inputs = [problem.local, problem.parameters, problem.position]
+    function = ca.Function("estimate", inputs, [problem.estimate])
+    repeated = np.repeat(theta[:, None], count, axis=1)
+    values = function.map(count)(np.hstack([n, m]).T, repeated, s[None])
     return np.asarray(np.array(values).T)

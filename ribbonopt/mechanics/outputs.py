@@ -1,9 +1,6 @@
 """Named outputs of a cross section and the quantities conserved along the ribbon (section 7).
 
-n and n . m are constant for any law without loads; H = W_Leg + n3 only where the law has an
-energy. The regularised laws have none: for them both energies are replaced by m . u / 2, to which
-W and W_Leg are equal for every 2-homogeneous energy, and the drift of H tells how far the law is
-from having one.
+Without loads n and n . m are constant for any law; H = W_Leg + n3 only where the law has an energy.
 """
 
 from __future__ import annotations
@@ -11,32 +8,35 @@ from __future__ import annotations
 import casadi as ca
 
 from .ends.conditions import CrossSection
-from .laws.catalogue import ConstitutiveLaw
-from .rod import RodState
+from .laws.law import ConstitutiveLaw
+from .section import Section
 
 
-def outputs(section: CrossSection, law: ConstitutiveLaw, u2: ca.SX, u3: ca.SX) -> dict[str, ca.SX]:
+def outputs(section: CrossSection, law: ConstitutiveLaw, u: ca.SX) -> dict[str, ca.SX]:
     """Expressions to sample on a solution, by name; vectors in the lab frame but u (directors).
 
-    `u2`, `u3` are the strains of the formulation, `section` holds those of the inverse law.
+    `u` (3,) are the strains of the formulation, `section` holds those of the inverse law.
     """
     rod = section.rod
-    n, m = rod.along(rod.n), rod.along(rod.m)
-    work = (m[1] * u2 + m[2] * u3) / 2
-    w_leg = law.complementary_energy(m[1], m[2])
+    stress = rod.stress
+    energy, complementary = law.densities(stress, u)
+    switch = law.switching(stress)
     result = {name: getattr(rod, name) for name in ("r", "d1", "d2", "d3", "n", "m")}
-    result["u"] = ca.vertcat(0, u2, u3)
-    result |= {"u2": u2, "u3": u3, "eta": u3 / ca.if_else(u2 == 0, ca.inf, u2)}
-    result |= {f"n{i + 1}": n[i] for i in range(3)} | {f"m{i + 1}": m[i] for i in range(3)}
-    result["energy"] = work
-    result["H"] = n[2] + (work if w_leg is None else w_leg)
+    result["u"] = u
+    result |= {f"u{i + 1}": u[i] for i in range(3)}
+    result["eta"] = u[2] / ca.if_else(u[1] == 0, ca.inf, u[1])
+    result |= {f"n{i + 1}": stress.n[i] for i in range(3)}
+    result |= {f"m{i + 1}": stress.m[i] for i in range(3)}
+    result["energy"] = energy
+    result["H"] = stress.n[2] + complementary
     result["n_dot_m"] = ca.dot(rod.n, rod.m)
-    result["law_residual"] = ca.norm_2(ca.vertcat(u2 - section.u2, u3 - section.u3))
+    result |= {"switching": switch.value, "leap": switch.leap}
+    result["law_residual"] = ca.norm_2(u - section.u)
     result["orthonormality"] = _gram_error(rod)
     return result
 
 
-def _gram_error(rod: RodState) -> ca.SX:
+def _gram_error(rod: Section) -> ca.SX:
     """Largest departure of the products d_i . d_j from those of an orthonormal frame."""
     d = ca.horzcat(rod.d1, rod.d2, rod.d3)
     gram = d.T @ d - ca.SX.eye(3)

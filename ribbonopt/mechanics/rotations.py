@@ -52,6 +52,12 @@ def turn_vector(turn: Array) -> Array:
     return np.asarray(2 * np.arctan2(sine, q[0]) * q[1:] / sine)
 
 
+def cross_matrix(v: Array) -> Array:
+    """Matrix (3, 3) of v x."""
+    x, y, z = v
+    return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+
+
 def product(p: Any, q: Any) -> list[Any]:
     """Components of the Hamilton product p q."""
     return [

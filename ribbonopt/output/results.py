@@ -9,14 +9,12 @@ from zipfile import BadZipFile
 
 import numpy as np
 
-from ribbonopt.attempt.discretize import transcription_of
+from ribbonopt.attempt.structure import Structure
 from ribbonopt.errors import OutputError
-from ribbonopt.problem import pose
-from ribbonopt.problem.switched import switched
+from ribbonopt.problem import Posed
 from ribbonopt.scene import dump_scene, load_scene
-from ribbonopt.scene.units import in_special_units
+from ribbonopt.solution.made import solution_at
 from ribbonopt.solution.solution import Solution
-from ribbonopt.solution.trajectory import Trajectory
 from ribbonopt.solution.verification import Verification
 from ribbonopt.solvers import Status
 
@@ -99,10 +97,9 @@ def load_solution(path: str | Path) -> Solution:
         status = Status[summary["status"].upper()]
     except (ValueError, KeyError, TypeError, OSError, EOFError, BadZipFile) as error:
         raise OutputError(f"{folder}: damaged result ({error}); solve the scene again") from error
-    ribbon, problem = pose(in_special_units(scene))
-    if sheets:
-        problem = switched(ribbon, sheets)
-    nlp = transcription_of(scene).transcribe(problem, elements)
+    posed = Posed.of(scene)
+    structure = Structure.of(posed).in_phases(sheets)
+    problem, (nlp, _) = structure.problem, structure.on(elements)
     if len(w) != nlp.unknowns or len(theta) != problem.parameters.numel():
         raise OutputError(
             f"{folder}: damaged result ({len(w)} unknowns, its scene has {nlp.unknowns}); "
@@ -113,15 +110,18 @@ def load_solution(path: str | Path) -> Solution:
     drift = {k: _number(v) for k, v in summary["invariant_drift"].items()}
     keys = ("worst_condition", "residual_between_nodes", "law_residual")
     worst, between, law = (_number(summary[key]) for key in keys)
-    return Solution(
-        scene=scene,
-        trajectory=Trajectory(problem, nlp.blocks.dense(w, p)),
+    return solution_at(
+        posed,
+        problem,
+        nlp,
+        w,
+        p,
         status=status,
         message=summary["message"],
         iterations=summary["iterations"],
         multipliers=multipliers,
         timings=summary["timings"],
-        path=tuple(summary["path"]),
+        steps=tuple(summary["path"]),
         skipped=tuple(summary["skipped"]),
         verification=Verification((), worst, between, law, drift),
         sheets=sheets,

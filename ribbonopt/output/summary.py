@@ -59,7 +59,7 @@ def summarize(solution: Solution) -> dict[str, Any]:
         "degree": dense.blocks.degree,
         "iterations": solution.iterations,
         "equilibria": [_equilibrium(found) for found in (solution, *solution.others)],
-        "path": [dict(step) for step in solution.path],
+        "path": [dict(step) for step in solution.steps],
         "skipped": list(solution.skipped),
         "timings": dict(solution.timings),
         "versions": versions(),

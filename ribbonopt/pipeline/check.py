@@ -4,11 +4,10 @@ from __future__ import annotations
 
 from typing import Any
 
-from ribbonopt.attempt.discretize import discretize
-from ribbonopt.problem import pose, theta_values
-from ribbonopt.problem.wellposed.examine import examine, refuse_unreachable, unknown_names
+from ribbonopt.attempt.structure import Structure
+from ribbonopt.problem import Posed
+from ribbonopt.problem.wellposed.examine import examine, refuse_unreachable, unknown_counts
 from ribbonopt.scene import Scene
-from ribbonopt.scene.units import in_special_units
 
 from .skipped import skipped
 
@@ -23,15 +22,15 @@ def check_scene(scene: Scene) -> dict[str, Any]:
     ConvergenceError
         If the prescribed ends cannot be reached.
     """
-    posed = in_special_units(scene)
-    ribbon, problem = pose(posed)
-    examine(ribbon, problem, theta_values(posed))
-    refuse_unreachable(scene)
-    nlp = discretize(scene, problem)
+    posed = Posed.of(scene)
+    structure = Structure.of(posed)
+    examine(structure.ribbon, structure.problem, posed)
+    refuse_unreachable(posed)
+    nlp, _ = structure.on((scene.transcription.intervals,))
     return {
         "name": scene.name,
-        "unknowns": unknown_names(ribbon.model),
-        "conditions": list(problem.conditions),
+        "unknowns": unknown_counts(structure.ribbon),
+        "conditions": list(structure.problem.conditions),
         "size": nlp.unknowns,
-        "skipped": list(skipped(scene, problem)),
+        "skipped": list(skipped(posed, structure.problem)),
     }

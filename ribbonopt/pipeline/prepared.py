@@ -7,19 +7,17 @@ so that other numbers (epsilon, loads, prescribed values, meshes) are solved wit
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from typing import TYPE_CHECKING
 
-import numpy as np
-
-from ribbonopt.attempt.structure import Built
+from ribbonopt.arrays import Array
+from ribbonopt.attempt.structure import Structure
 from ribbonopt.errors import ConvergenceError
-from ribbonopt.guess import Guess, guess_of, initial_unknowns, words
-from ribbonopt.problem import BoundaryValueProblem, Ribbon, pose, theta_values
+from ribbonopt.guess import Guess, guess_of, words
+from ribbonopt.problem import BoundaryValueProblem, Posed, Ribbon
 from ribbonopt.problem.wellposed.examine import examine, refuse_idle_settings, refuse_unreachable
 from ribbonopt.scene import Scene, SolutionGuess, validate_scene
-from ribbonopt.scene.units import in_special_units
 from ribbonopt.solution.solution import Solution
 from ribbonopt.solvers import Status
 from ribbonopt.transcription import NLP
@@ -36,41 +34,47 @@ if TYPE_CHECKING:
 class Prepared:
     """A scene's structure, built: solves any scene that differs from it in numbers only.
 
-    Scenes are in the user's units; what is built of them in units Dw = L = 1.
+    Scenes are in the user's units here; `posed` of them may be given in their place, so that one is
+    posed once. What is built is in units Dw = L = 1.
     """
 
-    built: Built
+    structure: Structure
     seconds: float
-    _phased: dict[tuple[int, ...], Built] = field(default_factory=dict)
 
     @property
     def scene(self) -> Scene:
         """The scene it was built for."""
-        return self.built.scene
+        return self.structure.posed.given
 
     @property
     def ribbon(self) -> Ribbon:
         """Mechanics."""
-        return self.built.ribbon
+        return self.structure.ribbon
 
     @property
     def problem(self) -> BoundaryValueProblem:
         """Equations, in one phase."""
-        return self.built.problem
+        return self.structure.problem
 
     @property
     def nlp(self) -> NLP:
         """The program on the scene's own number of intervals."""
-        return self.built.on((self.scene.transcription.intervals,))[0]
+        return self.structure.on((self.scene.transcription.intervals,))[0]
 
     @property
     def solver(self) -> Solver:
         """The solver of `nlp`."""
-        return self.built.on((self.scene.transcription.intervals,))[1]
+        return self.structure.on((self.scene.transcription.intervals,))[1]
+
+    def posed(self, scene: Scene | Posed | None = None) -> Posed:
+        """Return a scene (default: the prepared one) posed."""
+        if scene is None or scene is self.scene:
+            return self.structure.posed
+        return scene if isinstance(scene, Posed) else Posed.of(scene)
 
     def solve(
         self,
-        scene: Scene | None = None,
+        scene: Scene | Posed | None = None,
         guess: Guess | None = None,
         *,
         fallback: bool = True,
@@ -89,25 +93,29 @@ class Prepared:
         ConvergenceError
             If the prescribed ends are further apart than the ribbon is long.
         """
-        scene = scene or self.scene
-        refuse_unreachable(scene)
-        found = self._once(scene, guess, fallback, quick)
+        posed = self.posed(scene)
+        refuse_unreachable(posed)
+        found = self._once(posed, guess, fallback, quick)
         if found.status is Status.TOLERANCE_MISSED and guess is None:
-            from .refinement import on_finer_mesh  # after a failure only
+            from ribbonopt.pipeline.refinement import on_finer_mesh  # after a failure only
 
-            found = on_finer_mesh(found, lambda s: prepare(s)._once(s, None, True, False))
+            found = on_finer_mesh(found, lambda s: prepare(s).solve_once())
         return found
 
-    def polish(self, guess: Guess, scene: Scene | None = None) -> Solution:
+    def solve_once(self) -> Solution:
+        """Solve the prepared scene on its own number of intervals, and on no finer mesh anew."""
+        return self._once(self.structure.posed, None, fallback=True, quick=False)
+
+    def polish(self, guess: Guess, scene: Scene | Posed | None = None) -> Solution:
         """Solve a scene (default: the prepared one) from one guess that is thought to be near."""
         started = time.perf_counter()
-        search = self.search(scene or self.scene)
+        search = self.search(scene)
         _ = search.run_smooth(guess) if isinstance(guess, Solution) else search.run(guess)
         return self._with_costs(search, time.perf_counter() - started)
 
-    def search(self, scene: Scene) -> Search:
+    def search(self, scene: Scene | Posed | None = None) -> Search:
         """Return a search for solutions of a scene of this structure; nothing is solved yet."""
-        return Search(scene, self.built, self._phased)
+        return Search(self.posed(scene), self.structure)
 
     def refined(
         self, solution: Solution, spare: float = 1.0, search: Search | None = None
@@ -117,26 +125,26 @@ class Prepared:
         A new mesh is fine enough for `spare` times the usual aim. A search for the solution's
         scene, if given, remembers what it took.
         """
-        scene = solution.scene
-        if scene.tolerance is None or not solution.verified:
+        tolerance = solution.scene.tolerance
+        if tolerance is None or not solution.verified:
             return solution
-        from .refinement import AIM, refine  # for scenes with a tolerance
+        from ribbonopt.pipeline.refinement import AIM, refine  # for scenes with a tolerance
 
-        on_mesh = partial((search or self.search(scene)).on_mesh, solution.sheets)
-        return refine(solution, scene.tolerance, self.ribbon, on_mesh, spare * AIM)
+        on_mesh = partial((search or self.search(solution.posed)).on_mesh, solution.sheets)
+        return refine(solution, tolerance, self.ribbon, on_mesh, spare * AIM)
 
-    def start(self, guess: Guess | None = None) -> tuple[np.ndarray, np.ndarray]:
-        """Return the unknowns w of a guess for the scene and its parameters p = [theta, widths]."""
-        p = self.built.attempts(self.scene).p
-        source = guess or self.guess()
-        return initial_unknowns(source, self.ribbon, self.problem, self.nlp.blocks, p), p
+    def start(self, guess: Guess | None = None) -> tuple[Array, Array]:
+        """Return the unknowns w of a guess for the prepared scene, and its parameters p."""
+        attempt = self.structure.attempt(self.structure.posed)
+        return attempt.unknowns(guess or self.guess()), attempt.p
 
-    def guess(self, scene: Scene | None = None) -> Guess:
+    def guess(self, scene: Scene | Posed | None = None) -> Guess:
         """Return the first guess for a scene: its own, or the first of the automatic start."""
-        scene = in_special_units(scene or self.scene)
-        own = self._own_guess(scene) or next(self.automatic.guesses(scene, []), None)
+        search = self.search(scene)
+        own = self._own_guess(search.posed)
+        own = own or next(self.automatic.guesses(search.posed, search.ledger), None)
         if own is None:
-            raise ConvergenceError(Status.NO_START.value, Status.NO_START.name.lower())
+            raise _no_start()
         return own
 
     @cached_property
@@ -144,74 +152,40 @@ class Prepared:
         """What is built for the automatic start, when it is first needed."""
         from ribbonopt.starts.automatic import Automatic  # IPOPT, which many scenes do without
 
-        return Automatic(in_special_units(self.scene))
+        return Automatic(self.structure.posed)
 
-    def _once(self, scene: Scene, guess: Guess | None, fallback: bool, quick: bool) -> Solution:
+    def _once(self, posed: Posed, guess: Guess | None, fallback: bool, quick: bool) -> Solution:
         started = time.perf_counter()
-        search = self.search(scene)
-        self._try_all(search, guess, fallback, quick)
-        return self._with_costs(search, time.perf_counter() - started)
-
-    def _try_all(self, search: Search, given: Guess | None, fallback: bool, quick: bool) -> None:
-        """Try the guess given or the scene's, then the automatic ones, until one leads on."""
-        scene = in_special_units(search.scene)
-        started = time.perf_counter()
-        own = given or self._own_guess(scene)
+        search = self.search(posed)
+        own = guess or self._own_guess(posed)
         if own is not None:
-            step = "guess: given" if given else f"guess: {words(scene.guess)}"
-            search.path.append({"step": step, "seconds": time.perf_counter() - started})
-            if search.run(own, quick=quick) or not fallback:
-                return
-        first: Guess | None = None
-        for guess in self.automatic.guesses(scene, search.path):
-            if isinstance(guess, Solution):
-                done = search.run_smooth(guess)
-            else:
-                done = search.run(guess, quick=True)
-            if done:
-                return
-            first = first or guess
-        if first is not None and not search.needs_phases:
-            search.run(first)  # all that was spared to be quick
-
-    def _finished(self, search: Search) -> Solution | None:
-        """Return the best solution found, on a mesh that meets the scene's tolerance."""
-        best = search.best
-        if best is None:
-            return None
-        best = replace(best, path=tuple(search.path))
-        wrong = not best.verified or (search.jumps(best) and not best.sheets)
-        if wrong and search.needs_phases and search.smooth:
-            return self._regularized(best, search.smooth[-1]) or best
-        return self.refined(best)
+            step = "guess: given" if guess else f"guess: {words(posed.scene.guess)}"
+            search.ledger.note(step, time.perf_counter() - started)
+        if own is None or (not search.run(own, quick=quick) and fallback):
+            search.run_all(self.automatic.guesses(posed, search.ledger))
+        return self._with_costs(search, time.perf_counter() - started)
 
     def _with_costs(self, search: Search, seconds: float) -> Solution:
         """Return the best solution found, with what it has cost."""
-        best = self._finished(search)
+        ledger, best = search.ledger, search.best
         if best is None:
-            raise ConvergenceError(Status.NO_START.value, Status.NO_START.name.lower())
+            raise _no_start()
+        best = replace(best, steps=tuple(ledger.steps))
+        smooth = search.smooth_instead
+        best = self.refined(best) if smooth is None else _regularized(best, smooth) or best
         return replace(
             best,
-            timings=search.timings(self.seconds, seconds),
-            iterations=search.iterations,
-            skipped=skipped(search.scene, self.problem, search.solvers, best.sheets),
+            timings=ledger.timings(self.seconds, seconds),
+            iterations=ledger.iterations,
+            skipped=skipped(search.posed, self.problem, ledger.solvers, best.sheets),
         )
 
-    def _regularized(self, best: Solution, smooth: Solution) -> Solution | None:
-        """Return the equilibrium of the smooth law, labelled: none was found of the exact one."""
-        scene = replace(best.scene, law=smooth.scene.law, switching="off", guess="auto", starts=1)
-        found = prepare(scene).solve(guess=smooth, fallback=False)
-        if not found.verified:
-            return None
-        path, status = (*best.path, *found.path), Status.REGULARIZED
-        return replace(found, status=status, message=status.value, path=path)
-
-    def _own_guess(self, scene: Scene) -> Guess | None:
-        if isinstance(scene.guess, SolutionGuess):
+    def _own_guess(self, posed: Posed) -> Guess | None:
+        if isinstance(posed.scene.guess, SolutionGuess):
             from ribbonopt.output.results import load_solution  # reading files costs imports
 
-            return load_solution(scene.guess.solution)
-        return guess_of(scene, self.ribbon)
+            return load_solution(posed.scene.guess.solution)
+        return guess_of(posed, self.ribbon)
 
 
 def solve(scene: Scene) -> Solution:
@@ -233,19 +207,29 @@ def solve(scene: Scene) -> Solution:
         return solution
     from ribbonopt.starts.equilibria import equilibria  # few scenes ask for it
 
-    return equilibria(
-        in_special_units(prepared.scene), solution, prepared.automatic, prepared.polish
-    )
+    return equilibria(prepared.posed(), solution, prepared.automatic, prepared.polish)
 
 
 def prepare(scene: Scene) -> Prepared:
     """Build everything of a scene that does not depend on its numbers."""
     started = time.perf_counter()
-    scene = validate_scene(scene)
-    posed = in_special_units(scene)
-    ribbon, problem = pose(posed)
-    refuse_idle_settings(scene, ribbon, problem)
-    examine(ribbon, problem, theta_values(posed))
-    prepared = Prepared(Built(scene, ribbon, problem), time.perf_counter() - started)
-    prepared.solver.build()
-    return replace(prepared, seconds=time.perf_counter() - started)
+    posed = Posed.of(validate_scene(scene))
+    structure = Structure.of(posed)
+    refuse_idle_settings(posed, structure.ribbon, structure.problem)
+    examine(structure.ribbon, structure.problem, posed)
+    structure.build()
+    return Prepared(structure, time.perf_counter() - started)
+
+
+def _regularized(best: Solution, smooth: Solution) -> Solution | None:
+    """Return the equilibrium of the smooth law, labelled: none was found of the exact one."""
+    scene = replace(best.scene, law=smooth.scene.law, switching="off", guess="auto", starts=1)
+    found = prepare(scene).solve(guess=smooth, fallback=False)
+    if not found.verified:
+        return None
+    steps, status = (*best.steps, *found.steps), Status.REGULARIZED
+    return replace(found, status=status, message=status.value, steps=steps)
+
+
+def _no_start() -> ConvergenceError:
+    return ConvergenceError(Status.NO_START.value, Status.NO_START.name.lower())

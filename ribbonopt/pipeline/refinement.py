@@ -30,7 +30,7 @@ from ribbonopt.solvers import Status
 from ribbonopt.transcription import Mesh
 
 if TYPE_CHECKING:
-    from ribbonopt.attempt.attempt import Attempts
+    from ribbonopt.attempt.attempt import Attempt
     from ribbonopt.problem import Ribbon
     from ribbonopt.scene import Scene
 
@@ -45,7 +45,7 @@ def refine(
     solution: Solution,
     tolerance: float,
     ribbon: Ribbon,
-    attempts_on: Callable[[Mesh, Array], Attempts],
+    attempt_on: Callable[[Mesh, Array], Attempt],
     aim: float = AIM,
 ) -> Solution:
     """Return a verified solution whose error, relative to the sizes of the answer, is small enough.
@@ -58,7 +58,7 @@ def refine(
         Relative error wanted, see `ribbonopt.accuracy.estimate.relative_error`.
     ribbon
         Mechanics, to verify what comes out.
-    attempts_on
+    attempt_on
         Gives the means to solve on a mesh, phases meeting at given fractions of the length.
     aim
         Share of the tolerance that a new mesh aims at.
@@ -68,33 +68,33 @@ def refine(
     Solution
         With a status that says so where the tolerance could not be met.
     """
-    first, path, before = solution, list(solution.path), np.inf
+    first, steps, before = solution, list(solution.steps), np.inf
     for _ in range(ROUNDS):
         try:
             error, _ = relative_error(solution)
         except np.linalg.LinAlgError:
             status = Status.SINGULAR
-            return replace(solution, status=status, message=status.value, path=tuple(path))
+            return replace(solution, status=status, message=status.value, steps=tuple(steps))
         if error <= SAFE * tolerance:
             done = solution if solution is first else verified(solution, ribbon)
-            return replace(done, path=tuple(path))
+            return replace(done, steps=tuple(steps))
         started = time.perf_counter()
         mesh, short = _better_mesh(solution, aim * tolerance / error, error > SLOW * before)
         before = error
-        attempts = attempts_on(mesh, solution.trajectory.ends[1:-1])
-        if not attempts.run(solution, quick=True, check=False) or attempts.best is None:
+        attempt = attempt_on(mesh, solution.trajectory.ends[1:-1])
+        if not attempt.run(solution, quick=True, check=False) or attempt.best is None:
             break
-        solution = attempts.best
-        path.append(
+        solution = attempt.best
+        steps.append(
             {
                 "step": f"mesh of {sum(mesh.elements)} intervals for an error of {error:.0e}",
-                "iterations": attempts.iterations,
+                "iterations": attempt.iterations,
                 "seconds": time.perf_counter() - started,
             }
         )
         if short:
             break
-    solution = verified(replace(solution, path=tuple(path)), ribbon)
+    solution = verified(replace(solution, steps=tuple(steps)), ribbon)
     return _missed(solution, tolerance) if solution.verified else solution
 
 
@@ -110,9 +110,10 @@ def on_finer_mesh(missed: Solution, solve: Callable[[Scene], Solution]) -> Solut
     found = solve(replace(scene, transcription=finer))
     if not found.verified:
         return missed
-    path, iterations = (*missed.path, *found.path), missed.iterations + found.iterations
+    steps, iterations = (*missed.steps, *found.steps), missed.iterations + found.iterations
     spent = {name: missed.timings[name] + seconds for name, seconds in found.timings.items()}
-    return replace(found, scene=scene, path=path, iterations=iterations, timings=spent)
+    found = replace(found, posed=missed.posed, steps=steps)
+    return replace(found, iterations=iterations, timings=spent)
 
 
 def _better_mesh(solution: Solution, reduction: float, surprised: bool) -> tuple[Mesh, bool]:

@@ -9,24 +9,22 @@ phase assumes.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ribbonopt.arrays import Array
-from ribbonopt.attempt.attempt import Attempts
-from ribbonopt.attempt.structure import Built
+from ribbonopt.attempt.attempt import Attempt
+from ribbonopt.attempt.ledger import Ledger
+from ribbonopt.attempt.structure import Structure
 from ribbonopt.checks.arcs import Arcs, sign_changes, with_mixtures
 from ribbonopt.guess import Guess
+from ribbonopt.problem import Posed
 from ribbonopt.scene import Scene
 from ribbonopt.solution.solution import Solution
 from ribbonopt.transcription import Mesh
-
-if TYPE_CHECKING:
-    from ribbonopt.solvers.protocols import Factors
 
 
 @dataclass(eq=False)
@@ -35,27 +33,26 @@ class Search:
 
     Attributes
     ----------
-    scene : Scene
+    posed : Posed
         What is asked.
-    built, phased : Built, mapping of kinds to Built
-        Its structure in one phase, and those in several, made when needed and kept.
-    path : list of mappings
+    structure : Structure
+        Its structure, which keeps those in several phases.
+    ledger : Ledger
         Steps so far, with their cost.
     smooth : list of Solution
         Equilibria of the smooth law met on the way, delta decreasing.
     """
 
-    scene: Scene
-    built: Built
-    phased: dict[tuple[int, ...], Built]
-    path: list[Mapping[str, Any]] = field(default_factory=list)
+    posed: Posed
+    structure: Structure
+    ledger: Ledger = field(default_factory=Ledger)
     smooth: list[Solution] = field(default_factory=list)
-    _all: list[Attempts] = field(default_factory=list)
+    last: Attempt | None = None
 
     @cached_property
-    def plain(self) -> Attempts:
-        """Attempts without phases."""
-        return self._kept(self.built.attempts(self.scene))
+    def plain(self) -> Attempt:
+        """The attempt without phases."""
+        return self._kept(self.structure.attempt(self.posed, self.ledger))
 
     def run(self, guess: Guess, *, quick: bool = False) -> bool:
         """Try a guess without phases, and in phases if m2 changes sign in what comes out.
@@ -88,6 +85,29 @@ class Search:
                 return self._run_phases(arcs, sharp)
         return self.run(guess, quick=True)
 
+    def run_all(self, guesses: Iterable[Guess]) -> bool:
+        """Try the guesses of an automatic start, equilibria of the smooth law among them."""
+        first: Guess | None = None
+        for guess in guesses:
+            if isinstance(guess, Solution):
+                done = self.run_smooth(guess)
+            else:
+                done = self.run(guess, quick=True)
+            if done:
+                return True
+            first = first or guess
+        # All that was spared to be quick.
+        return first is not None and not self.needs_phases and self.run(first)
+
+    @property
+    def smooth_instead(self) -> Solution | None:
+        """The smooth law's sharpest equilibrium where none of a law that needs phases was found."""
+        best = self.best
+        if best is None or not (self.needs_phases and self.smooth):
+            return None
+        wrong = not best.verified or (self.jumps(best) and not best.sheets)
+        return self.smooth[-1] if wrong else None
+
     def changes_sign(self, solution: Solution) -> bool:
         """Whether m2 changes sign along a solution."""
         return len(sign_changes(solution).kinds) > 1
@@ -99,81 +119,46 @@ class Search:
     @property
     def needs_phases(self) -> bool:
         """Whether no solver can be trusted without phases: the law's strains jump."""
-        return self.phases_help and not self.built.ribbon.law.smooth
+        return self.phases_help and not self.structure.ribbon.law.smooth
 
     @property
     def best(self) -> Solution | None:
         """The solution in phases, or the best without."""
-        last = self._all[-1] if self._all else self.plain
+        last = self.last or self.plain
         return last.best if last.sheets and last.best and last.best.verified else self.plain.best
-
-    @property
-    def factors(self) -> Factors | None:
-        """Factors of the Jacobian that the last attempts ended with, if they were kept."""
-        return self._all[-1].factors if self._all else None
-
-    @property
-    def iterations(self) -> int:
-        """Iterations of all attempts."""
-        return sum(attempts.iterations for attempts in self._all)
-
-    @property
-    def solvers(self) -> tuple[str, ...]:
-        """Names of the solvers used, IPOPT of the automatic start among them."""
-        named = tuple(name for attempts in self._all for name in attempts.solvers)
-        return (*named, "ipopt") if any("ipopt" in step["step"] for step in self.path) else named
-
-    def timings(self, build: float, seconds: float) -> dict[str, float]:
-        """Seconds to build, of functions, of linear algebra, the rest of the search, and in all."""
-        each = [attempts.seconds for attempts in self._all]
-        evaluate, linear = (sum(times[i] for times in each) for i in range(2))
-        rest = seconds - evaluate - linear
-        spent = {"build": build, "evaluate": evaluate, "linear": linear, "rest": rest}
-        return spent | {"total": seconds + build}
 
     @property
     def phases_help(self) -> bool:
         """Whether phases are of use: not for smooth laws, nor in other formulations."""
-        scene = self.scene
+        scene = self.posed.scene
         allowed = scene.formulation == "inverted" and scene.switching != "off"
-        return allowed and self.built.ribbon.law.kinked
+        return allowed and self.structure.ribbon.law.kinked
 
     def on_mesh(
         self, sheets: tuple[int, ...], mesh: Mesh, switches: Array | None = None
-    ) -> Attempts:
+    ) -> Attempt:
         """Return the means to solve on a mesh, in the phases of a solution."""
-        return self._kept(self.structure(sheets).attempts(self.scene, mesh, switches))
-
-    def structure(self, sheets: tuple[int, ...]) -> Built:
-        """Return what is built for phases of these kinds; for none, without phases."""
-        if not sheets:
-            return self.built
-        if sheets not in self.phased:
-            from ribbonopt.problem.switched import switched  # most ribbons keep their sign
-
-            problem = switched(self.built.ribbon, sheets)
-            built = Built(self.built.scene, self.built.ribbon, problem, sheets)
-            self.phased[sheets] = built
-        return self.phased[sheets]
+        structure = self.structure.in_phases(sheets)
+        return self._kept(structure.attempt(self.posed, self.ledger, mesh, switches))
 
     def _in_given_phases(self, source: Solution) -> bool:
         """Try the phases that a solution shows or the scene names; whether that succeeds."""
         if not self.phases_help:
             return False
-        if isinstance(self.scene.switching, tuple):
-            if self._run_phases(_given(source, self.scene), source):
+        if isinstance(self.posed.scene.switching, tuple):
+            if self._run_phases(_given(source, self.posed.scene), source):
                 return True
         arcs = sign_changes(source)
         return len(arcs.kinds) > 1 and self._run_phases(arcs, source)
 
     def _run_phases(self, arcs: Arcs, source: Solution) -> bool:
-        attempts = self.structure(arcs.kinds).attempts(self.scene, switches=arcs.switches)
-        return self._kept(attempts).run(source, quick=True)
+        structure = self.structure.in_phases(arcs.kinds)
+        attempt = structure.attempt(self.posed, self.ledger, switches=arcs.switches)
+        return self._kept(attempt).run(source, quick=True)
 
-    def _kept(self, attempts: Attempts) -> Attempts:
-        attempts.path = self.path
-        self._all.append(attempts)
-        return attempts
+    def _kept(self, attempt: Attempt) -> Attempt:
+        self.last = attempt
+        return attempt
 
 
 def _given(source: Solution, scene: Scene) -> Arcs:

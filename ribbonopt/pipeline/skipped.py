@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-from ribbonopt.problem import BoundaryValueProblem
-from ribbonopt.scene import Scene
+from ribbonopt.problem import BoundaryValueProblem, Posed
 
 
 def skipped(
-    scene: Scene,
+    posed: Posed,
     problem: BoundaryValueProblem,
     solvers: tuple[str, ...] = (),
     sheets: tuple[int, ...] = (),
@@ -16,9 +15,10 @@ def skipped(
 
     `solvers` are those that were used, `sheets` the phases; before a solve, none.
     """
-    result = []
-    if scene.states == "reduced":
-        result.append("force and moment as states (no loads: n is constant, m follows from r)")
+    result, scene = [], posed.given
+    if scene.states != "full":
+        if not posed.loads:
+            result.append("force and moment as states (no loads: n is constant, m follows from r)")
         result.append("nine director components (a unit quaternion carries the frame)")
     if all(phase.cost is None for phase in problem.phases):
         result.append("second derivatives (nothing is minimised)")

@@ -1,4 +1,4 @@
-"""Problem: the contract `BoundaryValueProblem` and the formulations that fulfil it."""
+"""Problem: a posed scene, the contract `BoundaryValueProblem`, formulations that fulfil it."""
 
 from collections.abc import Callable
 from importlib import import_module
@@ -6,16 +6,17 @@ from importlib import import_module
 from ribbonopt.scene import Algebraic, Scene
 
 from .contract import BoundaryValueProblem, Phase
-from .ribbon import Ribbon, ribbon_of, structure_of, theta_of, theta_values
+from .posed import Posed
+from .ribbon import Ribbon
 
-Formulation = Callable[[Ribbon, Scene], BoundaryValueProblem]
+Formulation = Callable[[Ribbon, Posed], BoundaryValueProblem]
 
 #: formulations by the name a scene gives them: each a function of its module of that name, which
 #: is imported when a scene asks for it
 FORMULATIONS = ("inverted", "algebraic", "differentiated", "energy")
 
 
-def pose(scene: Scene) -> tuple[Ribbon, BoundaryValueProblem]:
+def formulate(posed: Posed) -> tuple[Ribbon, BoundaryValueProblem]:
     """Return a scene's mechanics and, in its formulation, its boundary-value problem.
 
     Raises
@@ -23,9 +24,9 @@ def pose(scene: Scene) -> tuple[Ribbon, BoundaryValueProblem]:
     ModelError
         If the formulation does not suit the law, the states or the loads.
     """
-    ribbon, name = ribbon_of(scene), formulation_name(scene)
+    ribbon, name = Ribbon.of(posed), formulation_name(posed.scene)
     formulation: Formulation = getattr(import_module(f"{__name__}.{name}"), name)
-    return ribbon, formulation(ribbon, scene)
+    return ribbon, formulation(ribbon, posed)
 
 
 def formulation_name(scene: Scene) -> str:
@@ -37,11 +38,8 @@ __all__ = [
     "FORMULATIONS",
     "BoundaryValueProblem",
     "Phase",
+    "Posed",
     "Ribbon",
+    "formulate",
     "formulation_name",
-    "pose",
-    "ribbon_of",
-    "structure_of",
-    "theta_of",
-    "theta_values",
 ]

@@ -1,4 +1,4 @@
-"""The differential-algebraic formulation, eq. (3.1): u2 and u3 are unknowns along the ribbon.
+"""The differential-algebraic formulation, eq. (3.1): the strains are unknowns along the ribbon.
 
 The law is the algebraic equation, with |eta| <= 1 as a path inequality where it is needed to keep
 the solution on the allowed branch; `formulation: {type: algebraic, bounds: false}` leaves it out
@@ -9,28 +9,31 @@ from __future__ import annotations
 
 import casadi as ca
 
-from ribbonopt.scene import Algebraic, Scene
+from ribbonopt.mechanics.laws.law import Stress
+from ribbonopt.scene import Algebraic
 
 from .contract import BoundaryValueProblem
 from .equilibrium import Unknowns, equilibrium
+from .posed import Posed
 from .ribbon import Ribbon
 
 
-def algebraic(ribbon: Ribbon, scene: Scene) -> BoundaryValueProblem:
+def algebraic(ribbon: Ribbon, posed: Posed) -> BoundaryValueProblem:
     """Return the semi-explicit DAE x' = f(x, u), 0 = g(x, u) of a ribbon."""
-    unknowns = Unknowns.of(ribbon)
-    law = ribbon.law.implicit(unknowns.m2, unknowns.m3)
-    local = ca.SX.sym("m", 2)
-    bounded = not isinstance(scene.formulation, Algebraic) or scene.formulation.bounds
-    u2, u3 = law.unknowns[0], law.unknowns[1]
+    unknowns, formulation = Unknowns.of(ribbon), posed.scene.formulation
+    law = ribbon.law.implicit(unknowns.stress)
+    bounded = not isinstance(formulation, Algebraic) or formulation.bounds
+
+    def estimate(stress: Stress) -> ca.SX:
+        return ribbon.law.implicit(stress).estimate
+
     return equilibrium(
         ribbon,
         unknowns,
-        (u2, u3),
-        ribbon.model.rates(unknowns.x, unknowns.section.rod, ca.vertcat(0, u2, u3)),
+        ribbon.law.whole(law.unknowns[: len(ribbon.law.components)]),
         algebraic=law.unknowns,
         equations=law.equations,
         path=law.bounds if bounded else None,
         algebraic_start=law.estimate,
-        estimate=(local, ribbon.law.implicit(local[0], local[1]).estimate),
+        estimate=estimate,
     )

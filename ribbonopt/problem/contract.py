@@ -16,6 +16,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Any
 
 import casadi as ca
 
@@ -73,6 +74,8 @@ class BoundaryValueProblem:
     costate, recovered : SX symbols (nx,), mapping of str to SX
         Costates at the start, and parameters whose values follow from them once a problem with a
         cost is solved; until then they enter outputs only.
+    kept : dict
+        What others have built for this problem, by who did; it goes with it.
     """
 
     position: ca.SX
@@ -92,6 +95,7 @@ class BoundaryValueProblem:
     algebraic_start: ca.SX = field(default_factory=lambda: ca.SX(0, 1))
     costate: ca.SX = field(default_factory=lambda: ca.SX(0, 1))
     recovered: Mapping[str, ca.SX] = field(default_factory=dict)
+    kept: dict[object, Any] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         """Refuse a problem whose parts do not fit together."""

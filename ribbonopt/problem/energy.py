@@ -4,14 +4,14 @@ States r and the unit quaternion; conditions on positions and directors only. Wh
 forces and moments must be natural (zero work): it is not imposed but verified on the costates, from
 which n and m(0) are recovered. Controls:
 
-- smooth laws: (m2, m3), u = dW_Leg/dm, cost m . u - W_Leg;
+- smooth laws: the moments, u = dW_Leg/dm, cost m . u - W_Leg;
 - Sadowsky: (u2, u3, k) with -k <= u2 <= k and cost (k + u3^2 / k)^2 / 2, whose minimum over k is
   the convexified energy W_F.
 
 Sign: with equations x_{e+1} - x_e - ... = 0 and the Lagrangian cost + lambda . equations, lambda is
 the derivative of the energy with respect to a shift of the rest of the ribbon, which is n; a turn
-by dt of the rest changes q by dt q / 2, hence m . e_k = lambda_q . (e_k q) / 2. With the dead
-force in the cost, the costate of r is n - F.
+by dt of the rest changes q by dt q / 2, hence m . e_k = lambda_q . (e_k q) / 2. With dead forces in
+the cost, -Q . d3 with Q(s) all that acts beyond s, the costate of r is the constant n - Q.
 """
 
 from __future__ import annotations
@@ -23,15 +23,17 @@ import casadi as ca
 from ribbonopt.errors import ModelError
 from ribbonopt.mechanics.ends.conditions import Component
 from ribbonopt.mechanics.ends.placement import LoadAlong
+from ribbonopt.mechanics.laws.law import ConstitutiveLaw, Stress
 from ribbonopt.mechanics.outputs import outputs
 from ribbonopt.mechanics.rotations import product
-from ribbonopt.scene import Scene
 
 from .contract import BoundaryValueProblem, Phase
-from .ribbon import RECOVERED, Ribbon
+from .equilibrium import local_stress
+from .posed import RECOVERED, Posed
+from .ribbon import Ribbon
 
 
-def energy(ribbon: Ribbon, scene: Scene) -> BoundaryValueProblem:
+def energy(ribbon: Ribbon, posed: Posed) -> BoundaryValueProblem:
     """Return the optimal-control problem of a ribbon.
 
     Raises
@@ -40,7 +42,7 @@ def energy(ribbon: Ribbon, scene: Scene) -> BoundaryValueProblem:
         If the law has no energy, loads are prescribed that are not natural, or the states are not
         reduced.
     """
-    refused = refusal(ribbon, scene)
+    refused = refusal(ribbon, posed)
     if refused is not None:
         raise ModelError(f"formulation energy: {refused.reason}; {refused.remedy}", refused.key)
     return minimum(ribbon)
@@ -51,52 +53,65 @@ def minimum(ribbon: Ribbon) -> BoundaryValueProblem:
 
     All other conditions but dead forces are left out, natural or not.
     """
-    theta, model = ribbon.theta, ribbon.model
-    x = ca.SX.sym("x", len(model.states))
+    x = ca.SX.sym("x", len(ribbon.states))
     # Force and moment for outputs and verification only: they follow from the costates.
-    loads = ca.vertcat(*(theta[name] for name in RECOVERED))
-    section = ribbon.section(x, loads)
-    dead = dead_force(ribbon)
-    local = ca.SX.sym("m", 2)
-    strain = ribbon.law.strain(local[0], local[1])
-    if ribbon.law.smooth:
-        z = ca.SX.sym("m", 2)
-        u2, u3 = ribbon.law.strain(z[0], z[1])
-        cost = z[0] * u2 + z[1] * u3 - _legendre(ribbon, z)
-        path, estimate = ca.SX(0, 1), local
-    else:
-        z = ca.SX.sym("u", 3)
-        u2, u3, k = z[0], z[1], z[2]
-        cost = (k + u3**2 / k) ** 2 / 2
-        path = ca.vertcat(u2 - k, -u2 - k)
-        estimate = ca.vertcat(*strain, ca.fmax(ca.fabs(strain[0]), ca.fabs(strain[1])))
+    loads = ca.vertcat(*(ribbon.theta[name] for name in RECOVERED))
+    section, (start, end) = ribbon.section(x, loads), ribbon.interval
+    beyond = dead_force(ribbon) + ribbon.model.balance.beyond(ribbon.position, end)
+    program = _program(ribbon.law, section.rod.own)
     phase = Phase(
-        dynamics=model.rates(x, section.rod, ca.vertcat(0, u2, u3)),
-        length=theta["interval.end"] - theta["interval.start"],
-        outputs=outputs(section, ribbon.law, u2, u3),
-        path=path,
-        cost=cost - ca.dot(dead, section.rod.d3),
+        dynamics=ribbon.rates(section, program.u),
+        length=end - start,
+        outputs=outputs(section, ribbon.law, program.u),
+        path=program.path,
+        cost=program.cost - ca.dot(beyond, section.rod.d3),
     )
     points = ca.SX.sym("start", x.numel()), ca.SX.sym("end", x.numel())
     costate = ca.SX.sym("costate", x.numel())
+    at_start = ca.substitute(beyond, ribbon.position, start)
     return BoundaryValueProblem(
-        position=ca.SX.sym("s"),
+        position=ribbon.position,
         state=x,
-        algebraic=z,
+        algebraic=program.controls,
         constants=ca.SX(0, 1),
-        parameters=ca.vertcat(*theta.values()),
-        start=theta["interval.start"],
+        parameters=ribbon.parameters,
+        start=start,
         phases=(phase,),
         points=points,
         conditions=ribbon.residuals(*points, loads, kinematic_only=True),
-        state_names=model.states,
+        state_names=ribbon.states,
         constant_names=(),
-        parameter_names=tuple(theta),
-        local=local,
-        estimate=estimate,
+        parameter_names=tuple(ribbon.theta),
+        local=program.local,
+        estimate=program.estimate,
         costate=costate,
-        recovered=dict(zip(RECOVERED, _loads(points[0], costate, dead, ribbon), strict=True)),
+        recovered=dict(zip(RECOVERED, _loads(points[0], costate, at_start, ribbon), strict=True)),
     )
+
+
+class _Program(NamedTuple):
+    """Controls along the ribbon, and strains, cost and inequalities as expressions of them."""
+
+    controls: ca.SX
+    u: ca.SX
+    cost: ca.SX
+    path: ca.SX
+    local: ca.SX
+    estimate: ca.SX
+
+
+def _program(law: ConstitutiveLaw, own: ca.SX) -> _Program:
+    local, known = local_stress()
+    relaxed = law.relaxed(known)
+    if relaxed is not None:
+        r = relaxed
+        return _Program(r.controls, r.u, r.cost, r.path, local, r.estimate)
+    z = ca.SX.sym("m", len(law.components))
+    stress = Stress(ca.SX.zeros(3), law.whole(z), own)
+    u = law.strain(stress)
+    cost, _ = law.densities(stress, u)
+    free = [3 + i for i in law.components]
+    return _Program(z, u, cost, ca.SX(0, 1), local, local[free])
 
 
 def dead_force(ribbon: Ribbon) -> ca.SX:
@@ -122,12 +137,6 @@ def _is_dead_force(ribbon: Ribbon, condition: Component) -> bool:
     return condition.quantity == "force" and condition.axis in "xyz" and len(held) < 2
 
 
-def _legendre(ribbon: Ribbon, z: ca.SX) -> ca.SX:
-    value = ribbon.law.complementary_energy(z[0], z[1])
-    assert value is not None  # `refusal` let only laws with an energy pass
-    return value
-
-
 def _loads(start: ca.SX, costate: ca.SX, dead: ca.SX, ribbon: Ribbon) -> list[ca.SX]:
     """Force and moment about the reference (lab frame) from the costates at the start."""
     n, q = costate[:3] + dead, ca.vertsplit(start[3:7])
@@ -144,20 +153,43 @@ class Refusal(NamedTuple):
     key: str
 
 
-def refusal(ribbon: Ribbon, scene: Scene) -> Refusal | None:
+def refusal(ribbon: Ribbon, posed: Posed) -> Refusal | None:
     """Return why a scene's equilibrium cannot be stated as a minimum; None if it can."""
     if not ribbon.law.variational:
         return Refusal(
-            f"the law {scene.law.type} has no energy",
+            f"the law {posed.scene.law.type} has no energy",
             "use law variational (smooth, with an energy) or another formulation",
             "formulation",
         )
-    if scene.states != "reduced":
+    if posed.scene.states == "full":
         return Refusal(
             "costates of nine director components are not unique",
             "use states: reduced",
             "formulation",
         )
+    return _load_without_potential(ribbon) or _end_without_potential(ribbon)
+
+
+def _load_without_potential(ribbon: Ribbon) -> Refusal | None:
+    held = {c.axis for c in ribbon.conditions if isinstance(c, Component) and _holds_start(c)}
+    for load in ribbon.loads:
+        key = next(iter(load.numbers())).rpartition(".")[0]
+        if not load.dead:
+            return Refusal(f"{key} follows the ribbon", "use another formulation", key)
+        if held < set("xyz"):
+            return Refusal(
+                f"{key} does work on the start, which is free to move",
+                "prescribe the position of the start, or use another formulation",
+                key,
+            )
+    return None
+
+
+def _holds_start(condition: Component) -> bool:
+    return (condition.end, condition.quantity) == ("start", "position")
+
+
+def _end_without_potential(ribbon: Ribbon) -> Refusal | None:
     for condition in ribbon.conditions:
         if not isinstance(condition, Component) or condition.kinematic or not condition.value:
             continue

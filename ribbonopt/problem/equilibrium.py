@@ -2,84 +2,88 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass
 
 import casadi as ca
 
 from ribbonopt.mechanics.ends.conditions import CrossSection
+from ribbonopt.mechanics.laws.law import Stress
 from ribbonopt.mechanics.outputs import outputs
 
 from .contract import BoundaryValueProblem, Phase
 from .ribbon import Ribbon
 
-Pair = tuple[ca.SX, ca.SX]
-
 
 @dataclass(frozen=True, eq=False)
 class Unknowns:
-    """States x and constants c of a rod, its cross section, and the moments along d2 and d3."""
+    """States x of rod and law, constants c, their cross section, and what a law may read of it."""
 
     x: ca.SX
     c: ca.SX
     section: CrossSection
-    m2: ca.SX
-    m3: ca.SX
+    stress: Stress
 
     @classmethod
     def of(cls, ribbon: Ribbon) -> Unknowns:
         """Return fresh symbols for a ribbon."""
-        x = ca.SX.sym("x", len(ribbon.model.states))
-        c = ca.SX.sym("c", len(ribbon.model.constants))
+        x = ca.SX.sym("x", len(ribbon.states))
+        c = ca.SX.sym("c", len(ribbon.constants))
         section = ribbon.section(x, c)
-        m = section.rod.along(section.rod.m)
-        return cls(x, c, section, m[1], m[2])
+        return cls(x, c, section, section.rod.stress)
+
+
+def local_stress() -> tuple[ca.SX, Stress]:
+    """Return symbols of what any guess knows at a point: n and m (6,) along the directors."""
+    local = ca.SX.sym("local", 6)
+    return local, Stress(local[:3], local[3:], ca.SX(0, 1))
 
 
 def equilibrium(
     ribbon: Ribbon,
     unknowns: Unknowns,
-    strains: Pair,
-    rates: ca.SX,
+    u: ca.SX,
     *,
-    more_states: ca.SX | None = None,
+    more_states: Mapping[str, ca.SX] | None = None,
+    more_rates: ca.SX | None = None,
     algebraic: ca.SX | None = None,
     equations: ca.SX | None = None,
     path: ca.SX | None = None,
     algebraic_start: ca.SX | None = None,
-    estimate: tuple[ca.SX, ca.SX] | None = None,
+    estimate: Callable[[Stress], ca.SX] | None = None,
     start_conditions: Mapping[str, ca.SX] | None = None,
 ) -> BoundaryValueProblem:
-    """Return the square problem of one phase with these strains and rates.
+    """Return the square problem of one phase with these strains.
 
     Parameters
     ----------
     ribbon, unknowns
         The mechanics and its symbols.
-    strains
-        Expressions u2, u3.
-    rates
-        Derivatives of the rod's states and of `more_states` along s.
-    more_states, algebraic
-        Symbols of further states, after those of the rod, and of algebraic variables.
+    u
+        Strains (3,) as expressions.
+    more_states, more_rates
+        Symbols by name of further states, after those of rod and law, and their derivatives.
+    algebraic
+        Symbols of algebraic variables.
     equations, path
         Algebraic equations (zero) and inequalities (not positive) along the ribbon.
     algebraic_start
         The algebraic variables as an explicit expression of `unknowns`.
     estimate
-        Symbols (m2, m3), and further states and algebraic variables as expressions of them.
+        Further states and algebraic variables as expressions of a stress, where any guess starts.
     start_conditions
         Further conditions, in terms of `unknowns` and `more_states`, to hold at the start.
     """
-    theta, empty = ribbon.theta, ca.SX(0, 1)
-    more = empty if more_states is None else more_states
-    z = empty if algebraic is None else algebraic
-    x = ca.vertcat(unknowns.x, more)
-    section = unknowns.section
+    empty = ca.SX(0, 1)
+    more = more_states or {}
+    x = ca.vertcat(unknowns.x, *more.values())
+    slopes = empty if more_rates is None else more_rates
+    rates = ca.vertcat(ribbon.rates(unknowns.section, u), slopes)
+    start, end = ribbon.interval
     phase = Phase(
         dynamics=rates,
-        length=theta["interval.end"] - theta["interval.start"],
-        outputs=outputs(section, ribbon.law, *strains),
+        length=end - start,
+        outputs=outputs(unknowns.section, ribbon.law, u),
         algebraic=empty if equations is None else equations,
         path=empty if path is None else path,
     )
@@ -88,21 +92,23 @@ def equilibrium(
     conditions = ribbon.residuals(points[0][:count], points[1][:count], unknowns.c)
     for name, expression in (start_conditions or {}).items():
         conditions[name] = ca.substitute(expression, x, points[0])
-    local, estimated = (empty, empty) if estimate is None else estimate
-    more_names = tuple(f"u{i + 2}" for i in range(more.numel()))
+    local, stress = local_stress()
+    estimated = ca.vertcat(
+        ribbon.law.own_guess(stress), empty if estimate is None else estimate(stress)
+    )
     return BoundaryValueProblem(
-        position=ca.SX.sym("s"),
+        position=ribbon.position,
         state=x,
-        algebraic=z,
+        algebraic=empty if algebraic is None else algebraic,
         constants=unknowns.c,
-        parameters=ca.vertcat(*theta.values()),
-        start=theta["interval.start"],
+        parameters=ribbon.parameters,
+        start=start,
         phases=(phase,),
         points=points,
         conditions=conditions,
-        state_names=(*ribbon.model.states, *more_names),
-        constant_names=ribbon.model.constants,
-        parameter_names=tuple(theta),
+        state_names=(*ribbon.states, *more),
+        constant_names=ribbon.constants,
+        parameter_names=tuple(ribbon.theta),
         local=local,
         estimate=estimated,
         algebraic_start=empty if algebraic_start is None else algebraic_start,

@@ -1,4 +1,4 @@
-"""A scene's mechanics as CasADi expressions: what every formulation starts from.
+"""A posed scene's mechanics as CasADi expressions: what every formulation starts from.
 
 All numbers of the scene become parameters theta of the problem, by name, so that another scene of
 the same structure is another theta, not another problem.
@@ -7,74 +7,135 @@ the same structure is another theta, not another problem.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, fields
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Any
 
 import casadi as ca
-import numpy as np
 
-from ribbonopt.arrays import Array
-from ribbonopt.errors import ModelError
-from ribbonopt.mechanics.ends.boundary import conditions_of, start_position
 from ribbonopt.mechanics.ends.conditions import Condition, Context, CrossSection, EndName
-from ribbonopt.mechanics.laws.catalogue import LAWS, ConstitutiveLaw
-from ribbonopt.mechanics.rod import MODELS, RodModel, RodState
-from ribbonopt.scene import Scene
+from ribbonopt.mechanics.laws.catalogue import law_of, numbers_of
+from ribbonopt.mechanics.laws.law import ConstitutiveLaw
+from ribbonopt.mechanics.loads.load import Load
+from ribbonopt.mechanics.model import MODELS, RodModel, least_model
+from ribbonopt.mechanics.section import Section
 
-#: force and moment at the start where they are not unknowns but follow from costates
-RECOVERED = tuple(f"recovered.{name}" for name in MODELS["reduced"].constants)
+from .posed import Posed
 
 
 @dataclass(frozen=True, eq=False)
 class Ribbon:
-    """Model, law, conditions and parameters of one scene.
+    """Model, law, conditions, loads and parameters of one structure of scenes.
 
     Attributes
     ----------
     model, law : RodModel, ConstitutiveLaw
-        The mechanics, the numbers of the law being symbols.
-    conditions : tuple of Condition
-        What the scene prescribes.
+        The mechanics, all numbers being symbols.
+    conditions, loads : tuples
+        What scenes prescribe at the ends, and what acts between them.
     theta : mapping of str to SX
         Symbol of every parameter by name.
+    position : SX symbol
+        Arclength s, on which laws and loads may depend.
+    kept : dict
+        What others have built for these mechanics, by who did; it goes with them.
     """
 
     model: RodModel
     law: ConstitutiveLaw
     conditions: tuple[Condition, ...]
+    loads: tuple[Load, ...]
     theta: Mapping[str, ca.SX]
+    position: ca.SX
+    kept: dict[object, Any] = field(default_factory=dict)
+
+    @classmethod
+    def of(cls, posed: Posed) -> Ribbon:
+        """Return the mechanics of a posed scene, its numbers as symbols."""
+        theta, position = {name: ca.SX.sym(name) for name in posed.theta}, ca.SX.sym("s")
+        numbers = {name: theta[f"law.{name}"] for name in numbers_of(posed.scene.law)}
+        law = law_of(posed.scene.law, numbers, position)
+        model = MODELS[posed.scene.states](posed.loads, theta.__getitem__)
+        return cls(model, law, posed.conditions, posed.loads, theta, position)
+
+    @property
+    def least(self) -> Ribbon:
+        """The same with the fewest unknowns."""
+        model = least_model(self.loads, self.theta.__getitem__)
+        if model.states == self.model.states:
+            return self
+        return replace(self, model=model, kept={})
+
+    @property
+    def parameters(self) -> ca.SX:
+        """All parameters theta in one column."""
+        return ca.vertcat(*self.theta.values())
 
     @property
     def reference(self) -> ca.SX:
         """Point (3,) on which the constant moment acts, in the lab frame."""
         return ca.vertcat(*(self.theta[f"reference.{axis}"] for axis in "xyz"))
 
-    def section(self, x: ca.SX, c: ca.SX) -> CrossSection:
-        """Cross section at states x and constants c, with the strains of the inverse law."""
-        *rod, u2, u3 = self.section_function(x, c, ca.vertcat(*self.theta.values()))
-        return CrossSection(self.model, x, RodState(*rod), u2, u3)
+    @property
+    def interval(self) -> tuple[ca.SX, ca.SX]:
+        """Arclengths of both ends."""
+        return self.theta["interval.start"], self.theta["interval.end"]
+
+    @property
+    def states(self) -> tuple[str, ...]:
+        """Names of the states along s: those of the model, then those of the law."""
+        return (*self.model.states, *self.law.states)
+
+    @property
+    def constants(self) -> tuple[str, ...]:
+        """Names of the unknown constants."""
+        return self.model.constants
+
+    def section(self, x: ca.SX, c: ca.SX, s: ca.SX | None = None) -> CrossSection:
+        """Cross section at states x, constants c and an arclength (the position unless given).
+
+        With the strains of the inverse law.
+        """
+        s = self.position if s is None else s
+        count = len(self.model.states)
+        r, d1, d2, d3, n, m, own, u = self.section_function(x, c, self.parameters, s)
+        return CrossSection(self.model, x[:count], Section(r, d1, d2, d3, n, m, s, own), u)
 
     @cached_property
     def section_function(self) -> ca.Function:
-        """Function (x, c, theta) of r, d1, d2, d3, n, m, u2, u3; calling it beats rebuilding it."""
-        x = ca.SX.sym("x", len(self.model.states))
-        c = ca.SX.sym("c", len(self.model.constants))
-        rod = self.model.rod(x, c, self.reference)
-        m = rod.along(rod.m)
-        outputs = [rod.r, rod.d1, rod.d2, rod.d3, rod.n, rod.m, *self.law.strain(m[1], m[2])]
-        return ca.Function("section", [x, c, ca.vertcat(*self.theta.values())], outputs)
+        """Function (x, c, theta, s) of r, d1, d2, d3, n, m, own states and strains u (3,).
+
+        Calling it beats rebuilding it.
+        """
+        x, c = ca.SX.sym("x", len(self.states)), ca.SX.sym("c", len(self.constants))
+        count = len(self.model.states)
+        rod = self.model.section(x[:count], c, self.position, self.reference, x[count:])
+        u = ca.densify(self.law.strain(rod.stress))
+        outputs = [rod.r, rod.d1, rod.d2, rod.d3, rod.n, rod.m, rod.own, u]
+        return ca.Function("section", [x, c, self.parameters, self.position], outputs)
+
+    def rates(self, section: CrossSection, u: ca.SX) -> ca.SX:
+        """Return dx/ds of the states of model and law for strains u (3,)."""
+        model = self.model.rates(section.x, section.rod, u)
+        return ca.vertcat(model, self.law.rates(section.rod.stress, u))
 
     def residuals(
         self, start: ca.SX, end: ca.SX, c: ca.SX, *, kinematic_only: bool = False
     ) -> dict[str, ca.SX]:
-        """All conditions by name, those that make the start's directors a frame included."""
+        """All conditions by name, those that give states of model and law their meaning included.
+
+        `kinematic_only` leaves out what is prescribed of loads.
+        """
         context = self.context(start, end, c)
-        normalisation = {
-            f"start: {name}": value for name, value in self.model.normalisation(start).items()
-        }
+        sections = context.ends
+        own = self.model.start_conditions(sections["start"].x)
+        meaning = {f"start: {name}": value for name, value in own.items()}
+        laws = [
+            {f"{end}: {name}": v for name, v in self.law.end_conditions(end, s.rod.stress).items()}
+            for end, s in sections.items()
+        ]
         chosen = [c for c in self.conditions if c.kinematic or not kinematic_only]
-        return _merge(normalisation, *(condition.residuals(context) for condition in chosen))
+        return _merge(meaning, *laws, *(condition.residuals(context) for condition in chosen))
 
     def verdicts(self, start: ca.SX, end: ca.SX, c: ca.SX) -> dict[str, ca.SX]:
         """Return what to verify on a solution, by name."""
@@ -84,83 +145,37 @@ class Ribbon:
     @cached_property
     def verdicts_function(self) -> tuple[tuple[str, ...], ca.Function]:
         """Names, and function (start, end, c, theta) of what to verify, built once."""
-        start, end = (ca.SX.sym(name, len(self.model.states)) for name in ("start", "end"))
-        c = ca.SX.sym("c", len(self.model.constants))
+        start, end = (ca.SX.sym(name, len(self.states)) for name in ("start", "end"))
+        c = ca.SX.sym("c", len(self.constants))
         verdicts = self.verdicts(start, end, c)
-        inputs = [start, end, c, ca.vertcat(*self.theta.values())]
+        inputs = [start, end, c, self.parameters]
         return tuple(verdicts), ca.Function("verdicts", inputs, [ca.vertcat(*verdicts.values())])
+
+    def margins_function(self, kind: int) -> tuple[tuple[str, ...], ca.Function]:
+        """Names, and function (x, c, theta, s), of the margins of a phase of a kind."""
+        key = "margins", kind
+        if key not in self.kept:
+            self.kept[key] = self._margins(kind)
+        found: tuple[tuple[str, ...], ca.Function] = self.kept[key]
+        return found
+
+    def _margins(self, kind: int) -> tuple[tuple[str, ...], ca.Function]:
+        x, c = ca.SX.sym("x", len(self.states)), ca.SX.sym("c", len(self.constants))
+        stress = self.section(x, c).rod.stress
+        margins = self.law.margins(kind, stress, self.law.branch(kind).strain(stress))
+        column = ca.densify(ca.vertcat(*margins.values()))
+        inputs = [x, c, self.parameters, self.position]
+        return tuple(margins), ca.Function("margins", inputs, [column])
 
     def context(self, start: ca.SX, end: ca.SX, c: ca.SX) -> Context:
         """Both ends, for conditions."""
-        sections: dict[EndName, CrossSection] = {
-            "start": self.section(start, c),
-            "end": self.section(end, c),
-        }
-        return Context(sections, lambda name: self.theta[name])
+        names: tuple[EndName, EndName] = ("start", "end")
+        states = zip(names, (start, end), self.interval, strict=True)
+        sections = {name: self.section(x, c, s) for name, x, s in states}
+        return Context(sections, self.theta.__getitem__)
 
 
-def ribbon_of(scene: Scene) -> Ribbon:
-    """Return the mechanics of a scene, its numbers as symbols."""
-    symbols = {name: ca.SX.sym(name) for name in theta_of(scene)}
-    kind = LAWS[scene.law.type]
-    names = [f.name for f in fields(scene.law) if f.name != "type"]
-    law = kind(**{name: symbols[f"law.{name}"] for name in names})
-    return Ribbon(MODELS[scene.states], law, conditions_of(scene), symbols)
-
-
-# One solve asks for the numbers of one scene again and again. Scenes do not change.
-_latest: list[Any] = []
-
-
-def theta_of(scene: Scene) -> dict[str, float]:
-    """Return every number of a scene, in units Dw = L = 1, by name and in the order of theta."""
-    return dict(_read(scene)[1])
-
-
-def _read(scene: Scene) -> tuple[tuple[Condition, ...], dict[str, float]]:
-    """Conditions and numbers of a scene."""
-    if not _latest or _latest[0] is not scene:
-        conditions = conditions_of(scene)
-        _latest[:] = scene, (conditions, _theta_of(scene, conditions))
-    found: tuple[tuple[Condition, ...], dict[str, float]] = _latest[1]
-    return found
-
-
-def _theta_of(scene: Scene, conditions: tuple[Condition, ...]) -> dict[str, float]:
-    if scene.ribbon is not None:
-        raise ModelError("this scene is in SI; convert it by `in_special_units` first", "ribbon")
-    values = {
-        f"law.{f.name}": float(getattr(scene.law, f.name))
-        for f in fields(scene.law)
-        if f.name != "type"
-    }
-    values |= {"interval.start": scene.interval[0], "interval.end": scene.interval[1]}
-    reference = start_position(scene.boundary, scene.parameters)
-    values |= {f"reference.{axis}": float(reference[i]) for i, axis in enumerate("xyz")}
-    values |= {f"parameters.{name}": value for name, value in scene.parameters.items()}
-    for condition in conditions:
-        values |= condition.theta()
-    if scene.formulation == "energy":
-        values |= dict.fromkeys(RECOVERED, 0.0)
-    return values
-
-
-def structure_of(scene: Scene) -> tuple[object, ...]:
-    """Return what scenes share that differ in numbers only, which serve one built problem."""
-    posed, values = _read(scene)
-    conditions = tuple(
-        (type(c).__name__, *(v for v in vars(c).values() if isinstance(v, str))) for c in posed
-    )
-    settings = scene.law.type, scene.formulation, scene.states, scene.transcription, scene.solver
-    return (*settings, tuple(values), conditions, scene.boundary.also)
-
-
-def theta_values(scene: Scene) -> Array:
-    """Return the parameters theta (nt,) of a scene."""
-    return np.array(list(theta_of(scene).values()))
-
-
-def _merge(*parts: dict[str, ca.SX]) -> dict[str, ca.SX]:
+def _merge(*parts: Mapping[str, ca.SX]) -> dict[str, ca.SX]:
     """Join named expressions; a name that returns is numbered, so that none is lost."""
     result: dict[str, ca.SX] = {}
     for part in parts:

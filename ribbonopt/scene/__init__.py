@@ -19,6 +19,7 @@ from .ends import (
     Value,
 )
 from .laws import Homotopy, Kirchhoff, Law, Regularized, Sadowsky, SingleSheet, Variational
+from .loads import Loads
 from .model import (
     Algebraic,
     ArcGuess,
@@ -61,6 +62,7 @@ __all__ = [
     "LabVector",
     "Law",
     "LoadGuess",
+    "Loads",
     "Loop",
     "MoebiusGuess",
     "Newton",

@@ -28,6 +28,7 @@ _ROOTS: tuple[Path, ...] = (
     ("parameters",),
     ("boundary", "start"),
     ("boundary", "end"),
+    ("loads",),
     ("ribbon",),
 )
 _ITEMS = {2: ("start", "end"), 3: ("x", "y", "z")}

@@ -13,6 +13,7 @@ from typing import Annotated, Literal
 from .continuation import Continuation
 from .ends import Boundary, Value
 from .laws import Law
+from .loads import Loads
 from .schema.bounds import Bounds
 
 Numbers3 = tuple[float, float, float]
@@ -181,7 +182,7 @@ class Scene:
     formulation: Literal["inverted", "algebraic", "differentiated", "energy"] | Algebraic = (
         "inverted"
     )
-    states: Literal["reduced", "full"] = "reduced"
+    states: Literal["auto", "reduced", "full"] = "reduced"
     interval: tuple[float, float] = (0.0, 1.0)
     parameters: dict[str, float] = field(default_factory=dict)
     transcription: Collocation | Shooting = Collocation()
@@ -192,3 +193,4 @@ class Scene:
     ribbon: RibbonSizes | None = None
     record: dict[str, str] = field(default_factory=dict)
     continuation: Continuation | tuple[Continuation, ...] | None = None
+    loads: Loads = field(default_factory=Loads)

@@ -15,6 +15,7 @@ from dataclasses import dataclass, fields, is_dataclass, replace
 from typing import Any
 
 from .ends import Boundary, End
+from .loads import Loads
 from .model import Guess, LoadGuess, Reference, Scene, StrainGuess
 
 UNIT_LENGTH, UNIT_FORCE = "units.length", "units.force"
@@ -23,8 +24,8 @@ UNIT_LENGTH, UNIT_FORCE = "units.length", "units.force"
 DIMENSIONS: Mapping[str, tuple[int, int]] = {
     "r": (1, 0),
     **dict.fromkeys(("n", "n1", "n2", "n3", "energy", "H"), (0, 1)),
-    **dict.fromkeys(("m", "m1", "m2", "m3"), (1, 1)),
-    **dict.fromkeys(("u", "u2", "u3", "law_residual"), (-1, 0)),
+    **dict.fromkeys(("m", "m1", "m2", "m3", "switching", "leap"), (1, 1)),
+    **dict.fromkeys(("u", "u1", "u2", "u3", "law_residual"), (-1, 0)),
     "n_dot_m": (1, 2),
 }
 
@@ -82,6 +83,7 @@ def in_special_units(scene: Scene) -> Scene:
         interval=(start / units.length, end / units.length),
         parameters=parameters | own,
         boundary=_boundary(boundary, units, parameters),
+        loads=_loads(scene.loads, units, parameters),
         guess=_guess(scene.guess, units),
         reference=_reference(scene.reference, units),
         switching=switches if isinstance(switches, str) else _over(switches, units.length),
@@ -94,6 +96,10 @@ def in_special_units(scene: Scene) -> Scene:
 def _boundary(boundary: Boundary, units: Units, parameters: Mapping[str, float]) -> Boundary:
     start, end = (_end(end, units, parameters) for end in (boundary.start, boundary.end))
     return replace(boundary, start=start, end=end)
+
+
+def _loads(loads: Loads, units: Units, parameters: Mapping[str, float]) -> Loads:
+    return Loads(force=_over(loads.force, units.force / units.length, parameters))
 
 
 def _end(end: End, units: Units, parameters: Mapping[str, float]) -> End:

@@ -10,10 +10,10 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ribbonopt.arrays import Array
-from ribbonopt.mechanics import RodFields
-from ribbonopt.problem import BoundaryValueProblem
+from ribbonopt.mechanics.section import RodFields
+from ribbonopt.problem import BoundaryValueProblem, Posed
 from ribbonopt.scene import Scene
-from ribbonopt.scene.units import Units, units_of
+from ribbonopt.scene.units import Units
 from ribbonopt.solvers import Status
 from ribbonopt.transcription import Mesh
 
@@ -34,7 +34,7 @@ class Solution:
 
     Attributes
     ----------
-    scene : Scene
+    posed : Posed
         What was asked.
     trajectory : Trajectory
         The equations that were solved and the numbers, all phases read as one.
@@ -46,7 +46,7 @@ class Solution:
         Iterations of the solver.
     timings : mapping of str to float
         Seconds by kind of work.
-    path : tuple of mappings
+    steps : tuple of mappings
         The steps that led here, with their cost.
     skipped : tuple of str
         What this scene did not need.
@@ -60,7 +60,7 @@ class Solution:
         Kinds of the phases: sign of m2, or 0 for a mixture of both sheets; empty for one phase.
     """
 
-    scene: Scene
+    posed: Posed
     trajectory: Trajectory
     status: Status
     message: str
@@ -68,11 +68,16 @@ class Solution:
     verification: Verification
     multipliers: Array = field(default_factory=lambda: np.empty(0))
     timings: Mapping[str, float] = field(default_factory=dict)
-    path: tuple[Mapping[str, Any], ...] = ()
+    steps: tuple[Mapping[str, Any], ...] = ()
     skipped: tuple[str, ...] = ()
     others: tuple[Solution, ...] = ()
     times: int = 1
     sheets: tuple[int, ...] = ()
+
+    @property
+    def scene(self) -> Scene:
+        """The scene as it was given."""
+        return self.posed.given
 
     @property
     def problem(self) -> BoundaryValueProblem:
@@ -89,10 +94,10 @@ class Solution:
         """Whether the solve converged and everything checked is as the scene asked."""
         return self.status is Status.CONVERGED
 
-    @cached_property
+    @property
     def units(self) -> Units:
         """Units of everything that is sampled."""
-        return units_of(self.scene)
+        return self.posed.units
 
     @cached_property
     def nodes(self) -> Array:

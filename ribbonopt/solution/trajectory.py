@@ -7,9 +7,9 @@ estimate of the error and the summary read the same numbers.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from functools import cached_property
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 from numpy.typing import NDArray
@@ -27,10 +27,14 @@ Phases = NDArray[np.intp]
 
 @dataclass(frozen=True, eq=False)
 class Trajectory:
-    """The phases of an output, one after another; fractions (k,) run from 0 to 1."""
+    """The phases of an output, one after another; fractions (k,) run from 0 to 1.
+
+    `found` is what others have found out about it, by who did, so that none asks twice.
+    """
 
     problem: BoundaryValueProblem
     dense: Output
+    found: dict[type, Any] = field(default_factory=dict)
 
     @cached_property
     def ends(self) -> Array:

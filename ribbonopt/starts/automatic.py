@@ -9,84 +9,88 @@ Where the path is lost the energy is minimised again further down, and other sha
 from __future__ import annotations
 
 import time
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterator
 from dataclasses import dataclass
 from functools import cached_property
-from typing import Any
 
+from ribbonopt.attempt.ledger import Ledger
+from ribbonopt.attempt.structure import Structure
 from ribbonopt.errors import ConvergenceError
 from ribbonopt.guess import Guess, ShapeGuess
 from ribbonopt.guess.shapes import Chord, Shape
-from ribbonopt.scene import Kirchhoff, Law, Scene, Variational
+from ribbonopt.mechanics.laws.smooth import ROD, first_law, in_family, sharpened, sharpness
+from ribbonopt.problem import Posed
+from ribbonopt.scene import Law
 from ribbonopt.solution.solution import Solution
-from ribbonopt.solvers import SolveReport
 
-from .energy import LeastEnergy
-from .first_shape import compresses, follower_loads, loaded, shapes_for, start_place
-from .homotopy import HomotopyPath, SmoothHomotopy
-from .loops import closed_scene, fundamental_scene
+from .energy import least_energy_of
+from .first_shape import compresses, follower_loads, loaded, shapes_for
+from .homotopy import HomotopyPath, follow, smooth_of
+from .loops import closed_posed, fundamental_scene
 from .unfold import Unfolded
 
 FIRST, LAST = 0.3, 0.01  # delta of the first solve, and of the last unless the scene's is smaller
-ROD = 1.0  # delta at which the law is linear: a straight ribbon without stress can be bent from it
 AGAIN = 2  # how often the energy is minimised again where the path is lost
-Path = list[Mapping[str, Any]]
 
 
 @dataclass(frozen=True, eq=False)
 class Automatic:
     """Everything that is built for the automatic start of one structure of scenes, when needed."""
 
-    scene: Scene
+    posed: Posed
 
-    def guesses(self, scene: Scene, path: Path, shape: Shape | None = None) -> Iterator[Guess]:
+    def guesses(self, posed: Posed, ledger: Ledger, shape: Shape | None = None) -> Iterator[Guess]:
         """Yield guesses for a scene of this structure, the best first; each is made when asked for.
 
-        `path` is told what was done, with its cost. `shape` is used instead of the scene's own.
+        What was done is noted in the ledger. `shape` is used instead of the scene's own.
         """
-        follower = follower_loads(scene) if shape is None else None
+        follower = follower_loads(posed) if shape is None else None
         if follower is not None:
-            path.append({"step": "integrated from the loads of the end", "seconds": 0.0})
+            ledger.note("integrated from the loads of the end", 0.0)
             yield follower
         if shape is None and self._piece is not None:
-            yield from self._unfolded(scene, path)
-        for start in [shape] if shape else shapes_for(scene):
-            points = self._points(scene, start, path)
+            yield from self._unfolded(posed, ledger)
+        for start in [shape] if shape else shapes_for(posed):
+            points = self._points(posed, start, ledger)
             # A law that is not smooth may refuse the last point and take an earlier one.
-            yield from reversed(points if not isinstance(scene.law, Variational) else points[-1:])
+            yield from reversed(points[-1:] if in_family(posed.scene.law) else points)
 
     @cached_property
-    def _energy(self) -> LeastEnergy:
-        return LeastEnergy.of(closed_scene(self.scene), _first_law(self.scene.law))
+    def _energy(self) -> Structure:
+        closed = closed_posed(self.posed)
+        return Structure.least_energy(
+            least_energy_of(closed, first_law(self.posed.scene.law, FIRST))
+        )
 
     @cached_property
-    def _homotopy(self) -> SmoothHomotopy:
-        return SmoothHomotopy.of(self.scene, _first_law(self.scene.law))
+    def _homotopy(self) -> Structure:
+        return Structure.of(smooth_of(self.posed, first_law(self.posed.scene.law, FIRST)))
 
     @cached_property
     def _piece(self) -> Automatic | None:
         """The fundamental piece of a band of several half twists, of which this is more."""
-        scene = fundamental_scene(self.scene)
-        return None if scene is None else Automatic(scene)
+        scene = fundamental_scene(self.posed.scene)
+        return None if scene is None else Automatic(Posed.of(scene))
 
-    def _unfolded(self, scene: Scene, path: Path) -> Iterator[Guess]:
+    def _unfolded(self, posed: Posed, ledger: Ledger) -> Iterator[Guess]:
         """Yield what unfolds from the fundamental piece: least energy would untwist the band."""
-        piece, loop = fundamental_scene(scene), scene.boundary.loop
+        piece, loop = fundamental_scene(posed.scene), posed.scene.boundary.loop
         assert self._piece is not None and piece is not None and loop is not None
         count = abs(loop.half_twists) * (2 if loop.piece == "whole" else 1)
-        place = start_place(scene)
-        for guess in self._piece.guesses(piece, path):
+        for guess in self._piece.guesses(Posed.of(piece), ledger):
             if isinstance(guess, Solution):
-                yield Unfolded(guess, loop.half_twists, count, *place)
+                yield Unfolded(guess, loop.half_twists, count, *posed.start)
 
-    def _points(self, scene: Scene, shape: Shape, path: Path) -> list[Solution]:
+    def _points(self, posed: Posed, shape: Shape, ledger: Ledger) -> list[Solution]:
         """Equilibria on the way down, the nearest to the scene's law last."""
-        law, guess = _first_law(scene.law), ShapeGuess(shape)
-        last = scene.law.delta if isinstance(scene.law, Variational) else LAST
-        if isinstance(shape, Chord) and shape.straight and not compresses(scene, shape):
-            rod = law if isinstance(law, Kirchhoff) else Variational(delta=ROD)
-            followed = self._follow(scene, rod, guess, last, path)
-            if not followed.points and not loaded(scene):
+        own = posed.scene.law
+        law, guess = first_law(own, FIRST), ShapeGuess(shape)
+        last = sharpness(own, LAST)
+        if isinstance(shape, Chord) and shape.straight and not _bends(posed, shape):
+            # At this delta the law is linear: it can be bent from a straight ribbon.
+            rod = sharpened(law, ROD)
+            followed = self._follow(posed, rod, guess, last, ledger)
+            if not followed.points and not loaded(posed):
                 raise ConvergenceError(
                     "the ribbon is straight and without stress: it cannot bend in its own plane, "
                     "so that the loads of its ends there are not determined; shorten or turn it, "
@@ -97,52 +101,45 @@ class Automatic:
         points: list[Solution] = []
         start: Guess = guess
         for _ in range(1 + AGAIN):
-            report, least = self._energy.solve(closed_scene(scene), law, start)
-            path.append(_solver_step(f"least energy{_delta(law)}, ipopt", report))
-            if not report.status.converged:
+            least = self._least(posed, law, start, ledger)
+            if not least.status.converged:
                 break
-            followed = self._follow(scene, law, least, last, path)
+            followed = self._follow(posed, law, least, last, ledger)
             points += followed.points
-            if followed.complete or not followed.points or not isinstance(law, Variational):
+            if followed.complete or not followed.points or not in_family(law):
                 break
             # The branch has an end here: the energy's minimum goes on elsewhere.
-            reached = followed.points[-1].scene.law
-            assert isinstance(reached, Variational)
-            law, start = Variational(delta=max(last, 0.6 * reached.delta)), followed.points[-1]
+            start = followed.points[-1]
+            law = sharpened(law, max(last, 0.6 * sharpness(start.scene.law, last)))
         return points
 
+    def _least(self, posed: Posed, law: Law, start: Guess, ledger: Ledger) -> Solution:
+        """Least energy from a guess; worth nothing unless converged."""
+        attempt = self._energy.attempt(least_energy_of(closed_posed(posed), law))
+        attempt.run(start, check=False)
+        assert attempt.best is not None  # whether converged or not
+        (report,) = attempt.ledger.reports
+        outcome = "" if report.status.converged else f" ({report.status.name.lower()})"
+        step = f"least energy{_delta(law)}, ipopt{outcome}"
+        ledger.note(step, report.total, report.iterations)
+        return attempt.best
+
     def _follow(
-        self, scene: Scene, law: Law, guess: Guess, last: float, path: Path
+        self, posed: Posed, law: Law, guess: Guess, last: float, ledger: Ledger
     ) -> HomotopyPath:
         started = time.perf_counter()
-        followed = self._homotopy.follow(scene, law, guess, last)
+        followed = follow(self._homotopy, posed, law, guess, last)
         reached = _delta(followed.points[-1].scene.law) if followed.points else " (lost at once)"
         lost = "" if followed.complete or not followed.points else " (lost there)"
-        path.append(
-            {
-                "step": f"newton in {followed.steps} steps{reached}{lost}",
-                "iterations": followed.iterations,
-                "seconds": time.perf_counter() - started,
-            }
-        )
+        step = f"newton in {followed.steps} steps{reached}{lost}"
+        ledger.note(step, time.perf_counter() - started, followed.iterations)
         return followed
 
 
-def _first_law(law: Law) -> Law:
-    """Return the smooth law of the first solve."""
-    if isinstance(law, Kirchhoff):
-        return law
-    return Variational(delta=max(FIRST, law.delta if isinstance(law, Variational) else 0.0))
-
-
-def _solver_step(step: str, report: SolveReport) -> Mapping[str, Any]:
-    outcome = "" if report.status.converged else f" ({report.status.name.lower()})"
-    return {
-        "step": step + outcome,
-        "iterations": report.iterations,
-        "seconds": report.total,
-    }
+def _bends(posed: Posed, chord: Chord) -> bool:
+    """Whether something bends a straight ribbon between its ends, so that it is no start."""
+    return bool(posed.loads) or compresses(posed, chord)
 
 
 def _delta(law: Law) -> str:
-    return f", delta = {law.delta:.3g}" if isinstance(law, Variational) else ""
+    return f", delta = {sharpness(law, 0.0):.3g}" if in_family(law) else ""

@@ -16,13 +16,14 @@ from itertools import islice, product
 import numpy as np
 
 from ribbonopt.arrays import Array
+from ribbonopt.attempt.ledger import Ledger
 from ribbonopt.guess import Guess
 from ribbonopt.guess.named import shape_of
 from ribbonopt.guess.shapes import Chord, Perturbed, Shape
-from ribbonopt.scene import Scene
+from ribbonopt.problem import Posed
 from ribbonopt.solution.solution import Solution
 
-from .automatic import Automatic, Path
+from .automatic import Automatic
 from .first_shape import dead_force_of, shapes_for
 
 SAME = 1e-3  # of strains over the largest strain (root mean square), and of invariants
@@ -56,13 +57,13 @@ class _Described:
 
 
 def equilibria(
-    scene: Scene, first: Solution, automatic: Automatic, attempt: Callable[[Guess], Solution]
+    posed: Posed, first: Solution, automatic: Automatic, attempt: Callable[[Guess], Solution]
 ) -> Solution:
     """Return the equilibrium of least energy, the other distinct ones as its `others`.
 
     Parameters
     ----------
-    scene
+    posed
         What is asked; `starts` and `seed` say how many starts, and which perturbations.
     first
         What the first start gave; returned as it is where no start leads anywhere.
@@ -73,7 +74,8 @@ def equilibria(
     """
     started = time.perf_counter()
     found = [first] if first.verified else []
-    found += more_starts(scene, automatic, attempt, range(1, scene.starts))
+    scene = posed.scene
+    found += more_starts(posed, automatic, attempt, range(1, scene.starts))
     if not found:
         return first
     lowest = least(found)
@@ -83,16 +85,16 @@ def equilibria(
     step = {"step": f"{scene.starts - 1} more starts: {words} in all", "seconds": seconds}
     spent = {name: first.timings.get(name, 0.0) + seconds for name in ("rest", "total")}
     timings = {**first.timings, **spent}
-    return replace(lowest, path=(*lowest.path, step), timings=timings)
+    return replace(lowest, steps=(*lowest.steps, step), timings=timings)
 
 
 def more_starts(
-    scene: Scene, automatic: Automatic, attempt: Callable[[Guess], Solution], numbers: range
+    posed: Posed, automatic: Automatic, attempt: Callable[[Guess], Solution], numbers: range
 ) -> Iterator[Solution]:
     """Yield a verified solution of each start that leads to one; number 0 is the scene's own."""
-    path: Path = []
-    for shape in islice(_variants(scene), numbers.start - 1, numbers.stop - 1):
-        for guess in islice(automatic.guesses(scene, path, shape), TRIES):
+    ledger = Ledger()
+    for shape in islice(_variants(posed), numbers.start - 1, numbers.stop - 1):
+        for guess in islice(automatic.guesses(posed, ledger, shape), TRIES):
             solution = attempt(guess)
             if solution.verified:
                 yield solution
@@ -132,22 +134,26 @@ def distinct(solutions: Sequence[Solution]) -> Kinds:
 
 
 def potential(solution: Solution) -> float:
-    """Strain energy less the work of dead forces, in the units of the solution."""
+    """Strain energy less the work of dead loads, in the units of the solution."""
     s = np.array(solution.scene.interval)
     ends = solution.outputs(s)
     chord = ends["r"][1] - ends["r"][0]
-    work = float(dead_force_of(solution.scene) @ chord)
+    work = float(dead_force_of(solution.posed) @ chord) * solution.units.force
+    trajectory = solution.trajectory
+    for load in solution.posed.loads:
+        weights = solution.posed.length * trajectory.stages[2]
+        work += load.work(trajectory.at_stages["r"], weights) * solution.units.moment
     return float(solution.energy - work)
 
 
-def _variants(scene: Scene) -> Iterator[Shape]:
+def _variants(posed: Posed) -> Iterator[Shape]:
     """Yield shapes other than the first one: twisted, then perturbed without end."""
-    base = shape_of(scene) or next(shapes_for(scene))
+    base = shape_of(posed) or next(shapes_for(posed))
     if isinstance(base, Chord):
         yield replace(base, bow=-base.bow)
         for turns in (1.0, -1.0):
             yield replace(base, turns=turns)
-    rng = np.random.default_rng(scene.seed)
+    rng = np.random.default_rng(posed.scene.seed)
     while True:
         yield Perturbed.at_random(base, AMPLITUDE, rng)
 

@@ -10,35 +10,31 @@ import numpy as np
 from ribbonopt.arrays import Array
 from ribbonopt.guess import FollowerLoads
 from ribbonopt.guess.named import loop_shape
-from ribbonopt.guess.placing import Place, place_ends
+from ribbonopt.guess.placing import place_ends
 from ribbonopt.guess.shapes import Chord, Shape
-from ribbonopt.mechanics.ends.boundary import conditions_of, start_frame, start_position
 from ribbonopt.mechanics.ends.conditions import Component, Frame
 from ribbonopt.mechanics.ends.frames import DIRECTORS
 from ribbonopt.mechanics.ends.placement import LoadAlong
-from ribbonopt.problem import ribbon_of, theta_values
-from ribbonopt.scene import Scene
+from ribbonopt.problem import Posed, Ribbon
 
 from .loops import loop_of
 
 SMALL_BOW = 0.3  # radians, for a strip that nothing shortens but a load
 
 
-def shapes_for(scene: Scene) -> Iterator[Shape]:
+def shapes_for(posed: Posed) -> Iterator[Shape]:
     """Yield shapes that fit the ends of a scene, the likeliest first."""
-    loop = loop_of(scene)
+    loop = loop_of(posed.scene)
     if loop is not None:
-        yield loop_shape(scene, loop, start_place(scene))
+        yield loop_shape(posed, loop)
         return
-    posed = replace(scene, formulation="energy", states="reduced")
-    theta = theta_values(posed)
-    start, end = place_ends(ribbon_of(posed), posed, theta)
-    length = scene.interval[1] - scene.interval[0]
+    start, end = place_ends(Ribbon.of(posed), posed)
+    length = posed.length
     chord = float(np.linalg.norm(end[0] - start[0]))
     # A strip that buckles: chord / length = 1 - bow^2 / 4.
     bow = 2 * np.sqrt(max(0.0, 1 - chord / length))
     plain = Chord(start, end, length)
-    if chord > length * (1 - 1e-9) and compresses(scene, plain):
+    if chord > length * (1 - 1e-9) and (posed.loads or compresses(posed, plain)):
         bow = SMALL_BOW
     yield replace(plain, bow=bow)
     if plain.straight and not bow:
@@ -49,28 +45,22 @@ def shapes_for(scene: Scene) -> Iterator[Shape]:
         yield replace(plain, bow=0.5 * bow, turns=turns)
 
 
-def start_place(scene: Scene) -> Place:
-    """Position and frame of the start, those of the lab where they are not prescribed."""
-    boundary, parameters = scene.boundary, scene.parameters
-    return start_position(boundary, parameters), start_frame(boundary, parameters)
-
-
-def loaded(scene: Scene) -> bool:
-    """Whether a component of a force or moment is prescribed to be other than zero."""
-    return any(
-        isinstance(c, Component) and not c.kinematic and c.value != 0 for c in conditions_of(scene)
+def loaded(posed: Posed) -> bool:
+    """Whether there are loads, or a force or moment prescribed to be other than zero."""
+    return bool(posed.loads) or any(
+        isinstance(c, Component) and not c.kinematic and c.value != 0 for c in posed.conditions
     )
 
 
-def compresses(scene: Scene, chord: Chord) -> bool:
+def compresses(posed: Posed, chord: Chord) -> bool:
     """Whether a dead force pushes the ends together: a straight strip may buckle under it."""
-    return bool(dead_force_of(scene) @ (chord.end[0] - chord.start[0]) < 0)
+    return bool(dead_force_of(posed) @ (chord.end[0] - chord.start[0]) < 0)
 
 
-def dead_force_of(scene: Scene) -> Array:
+def dead_force_of(posed: Posed) -> Array:
     """Dead force (3,) on an end, lab frame."""
     force = np.zeros(3)
-    for c in conditions_of(scene):
+    for c in posed.conditions:
         if isinstance(c, Component) and c.quantity == "force" and c.axis in "xyz":
             force["xyz".index(c.axis)] = c.value
         elif isinstance(c, LoadAlong):
@@ -78,12 +68,14 @@ def dead_force_of(scene: Scene) -> Array:
     return force
 
 
-def follower_loads(scene: Scene) -> FollowerLoads | None:
+def follower_loads(posed: Posed) -> FollowerLoads | None:
     """Return the ribbon that known loads along the end's directors bend, if the start is clamped.
 
     Loads that vanish are known in any frame.
     """
-    conditions = conditions_of(scene)
+    conditions = posed.conditions
+    if posed.loads:
+        return None  # what acts along the ribbon is known at its start only
     start = [c for c in conditions if getattr(c, "end", None) == "start"]
     clamped = any(isinstance(c, Frame) for c in start) and len(start) == 4
     found = {}
@@ -99,5 +91,5 @@ def follower_loads(scene: Scene) -> FollowerLoads | None:
         found[quantity] = np.array(list(given.values()))
     if not clamped or not any(v.any() for v in found.values()):
         return None
-    posed = replace(scene, formulation="inverted", states="reduced")
-    return FollowerLoads(ribbon_of(posed), posed, found["force"], found["moment"])
+    plain = posed.under(formulation="inverted", states="reduced")
+    return FollowerLoads(Ribbon.of(plain), plain, found["force"], found["moment"])

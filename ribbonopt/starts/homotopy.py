@@ -6,24 +6,23 @@ succeed grow. No IPOPT: each step costs one or two milliseconds.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 
 import numpy as np
 
 from ribbonopt.arrays import Array
-from ribbonopt.attempt.discretize import discretize
-from ribbonopt.guess import Guess, initial_unknowns
-from ribbonopt.problem import BoundaryValueProblem, Ribbon, pose, theta_values
-from ribbonopt.scene import Collocation, Law, Scene, Variational
+from ribbonopt.attempt.attempt import Attempt
+from ribbonopt.attempt.structure import Structure
+from ribbonopt.guess import Guess
+from ribbonopt.mechanics.laws.smooth import in_family, sharpened, sharpness
+from ribbonopt.problem import Posed
+from ribbonopt.scene import Collocation, Law, Newton
 from ribbonopt.solution.solution import Solution
-from ribbonopt.solution.trajectory import Trajectory
-from ribbonopt.solution.verification import unverified
+from ribbonopt.solvers import Newton as NewtonSolver
 from ribbonopt.solvers import Status
-from ribbonopt.solvers.newton import Newton
-from ribbonopt.transcription import NLP, Mesh
 
 MESH = Collocation(scheme="gauss", degree=3, intervals=30)
-TOLERANCE, MAX_ITERATIONS = 1e-8, 30
+SOLVER = Newton(tolerance=1e-8, max_iterations=30)
 NEAR = 0.05  # residual of the conditions, over 1 + size of the loads, that Newton may close at once
 LEAST_STEP = 1 / 64
 MOST_STEPS = 40
@@ -32,7 +31,7 @@ FACTOR, LEAST_FACTOR = 0.33, 0.95  # delta from one step to the next, first and 
 
 @dataclass(frozen=True, eq=False)
 class HomotopyPath:
-    """A path of equilibria: its last point and, for each that was kept, its law."""
+    """A path of equilibria, each with its law; whether it led to its end."""
 
     points: tuple[Solution, ...]
     steps: int
@@ -40,45 +39,40 @@ class HomotopyPath:
     complete: bool
 
 
-@dataclass(frozen=True, eq=False)
-class SmoothHomotopy:
-    """The equations of a scene's structure under a smooth law, built once."""
+def smooth_of(posed: Posed, law: Law) -> Posed:
+    """Return a scene under a smooth law, as these solves want it."""
+    settings = {"formulation": "inverted", "states": "reduced", "solver": SOLVER}
+    return posed.under(law=law, transcription=MESH, **settings)
 
-    ribbon: Ribbon
-    problem: BoundaryValueProblem
-    nlp: NLP
-    newton: Newton
 
-    @classmethod
-    def of(cls, scene: Scene, law: Law) -> SmoothHomotopy:
-        """Build for the conditions of a scene under a smooth law."""
-        scene = _posed(scene, law)
-        ribbon, problem = pose(scene)
-        nlp = discretize(scene, problem)
-        return cls(ribbon, problem, nlp, Newton(nlp, TOLERANCE, MAX_ITERATIONS))
+def follow(
+    structure: Structure, posed: Posed, law: Law, guess: Guess, delta: float
+) -> HomotopyPath:
+    """Follow from a guess at one law to all of the conditions, then down to a delta.
 
-    def follow(self, scene: Scene, law: Law, guess: Guess, delta: float) -> HomotopyPath:
-        """Follow from a guess at one law to all of the conditions, then down to a delta."""
-        run = _Tracking(self, scene, law, guess)
-        complete = run.bring_loads() and run.bring_down(delta)
-        return HomotopyPath(tuple(run.points), run.steps, run.iterations, complete)
+    `structure` is that of `smooth_of` for this kind of law, `posed` the scene itself.
+    """
+    run = _Tracking(structure, posed, law, guess)
+    complete = run.bring_loads() and run.bring_down(delta)
+    return HomotopyPath(tuple(run.points), run.steps, run.iterations, complete)
 
 
 class _Tracking:
     """One path: where it is, and what it has cost."""
 
-    def __init__(self, equations: SmoothHomotopy, scene: Scene, law: Law, guess: Guess) -> None:
-        self.equations, self.scene, self.law = equations, scene, law
+    def __init__(self, structure: Structure, posed: Posed, law: Law, guess: Guess) -> None:
+        self.structure, self.posed, self.law = structure, posed, law
         self.steps = self.iterations = 0
         self.points: list[Solution] = []
-        f = equations
-        self.w = initial_unknowns(guess, f.ribbon, f.problem, f.nlp.blocks, self._p(law))
+        self.attempt = self._attempt(law)
+        assert isinstance(self.attempt.solver, NewtonSolver)  # as SOLVER says
+        self.newton = self.attempt.solver
+        self.w = self.attempt.unknowns(guess)
 
     def bring_loads(self) -> bool:
         """Meet the conditions: at once where they nearly hold, else bit by bit."""
-        p = self._p(self.law)
-        residuals = self.equations.newton.system.residuals(self.w, p).conditions
-        _, _, constants = self.equations.nlp.layout.unpack(self.w)
+        residuals = self.newton.system.residuals(self.w, self.attempt.p).conditions
+        _, _, constants = self.attempt.nlp.layout.unpack(self.w)
         off = float(np.abs(residuals).max()) / (1 + float(np.abs(constants).max()))
         if off < NEAR and self._step(self.law, None):
             return self._keep()
@@ -96,10 +90,10 @@ class _Tracking:
         return self._keep()
 
     def bring_down(self, target: float) -> bool:
-        """Follow the variational law to a smaller delta; other laws stay as they are."""
+        """Follow the smooth family to a smaller delta; other laws stay as they are."""
         factor = FACTOR
-        while isinstance(self.law, Variational) and self.law.delta > target * (1 + 1e-9):
-            law = Variational(delta=max(target, self.law.delta * factor))
+        while in_family(self.law) and sharpness(self.law, 0.0) > target * (1 + 1e-9):
+            law = sharpened(self.law, max(target, sharpness(self.law, 0.0) * factor))
             if self._step(law, None):
                 self.law, factor = law, max(0.1, factor**2)
                 self._keep()
@@ -110,34 +104,18 @@ class _Tracking:
         return True
 
     def _step(self, law: Law, relaxed: Array | None) -> bool:
-        report = self.equations.newton.solve(self.w, self._p(law), relaxed)
+        attempt = self.attempt if law is self.law else self._attempt(law)
+        report = self.newton.solve(self.w, attempt.p, relaxed)
         self.steps += 1
         self.iterations += report.iterations
         if report.status is not Status.CONVERGED:
             return False
-        self.w = report.w
+        self.w, self.attempt = report.w, attempt
         return True
 
     def _keep(self) -> bool:
-        p = self._p(self.law)
-        self.points.append(
-            Solution(
-                scene=_posed(self.scene, self.law),
-                trajectory=Trajectory(
-                    self.equations.problem, self.equations.nlp.blocks.dense(self.w, p)
-                ),
-                status=Status.CONVERGED,
-                message=Status.CONVERGED.value,
-                iterations=self.iterations,
-                verification=unverified(),
-            )
-        )
+        self.points.append(self.attempt.restored(self.w))
         return True
 
-    def _p(self, law: Law) -> Array:
-        theta = theta_values(_posed(self.scene, law))
-        return np.concatenate([theta, Mesh.uniform(MESH.intervals).widths])
-
-
-def _posed(scene: Scene, law: Law) -> Scene:
-    return replace(scene, formulation="inverted", states="reduced", law=law, transcription=MESH)
+    def _attempt(self, law: Law) -> Attempt:
+        return self.structure.attempt(smooth_of(self.posed, law))

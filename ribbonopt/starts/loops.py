@@ -6,9 +6,9 @@ from dataclasses import replace
 
 import numpy as np
 
-from ribbonopt.mechanics.ends.boundary import start_position
 from ribbonopt.mechanics.ends.frames import DIRECTORS, components, frame_of
 from ribbonopt.mechanics.ends.loops import end_turn
+from ribbonopt.problem import Posed
 from ribbonopt.scene import Boundary, Loop, Scene
 
 CLOSE = 1e-9
@@ -42,17 +42,17 @@ def loop_of(scene: Scene) -> Loop | None:
     return None
 
 
-def closed_scene(scene: Scene) -> Scene:
+def closed_posed(posed: Posed) -> Posed:
     """Return a scene whose whole loop is closed in space too, as the least energy needs it.
 
     Equations of equilibrium may leave a component of the gap to symmetry, eq. (6.2).
     """
-    loop = loop_of(scene)
+    scene, loop = posed.scene, loop_of(posed.scene)
     if scene.boundary.loop is not None or loop is None or loop.piece != "whole":
-        return scene
-    x, y, z = start_position(scene.boundary, scene.parameters)
+        return posed
+    x, y, z = posed.start[0]
     end = replace(scene.boundary.end, position=(float(x), float(y), float(z)))
-    return replace(scene, boundary=replace(scene.boundary, end=end))
+    return Posed.of(replace(scene, boundary=replace(scene.boundary, end=end)))
 
 
 def fundamental_scene(scene: Scene) -> Scene | None:

@@ -11,8 +11,8 @@ from dataclasses import dataclass
 import numpy as np
 
 from ribbonopt.arrays import Array
-from ribbonopt.mechanics import RodFields
 from ribbonopt.mechanics.rotations import turns_about
+from ribbonopt.mechanics.section import RodFields
 from ribbonopt.solution.solution import Solution
 
 

@@ -18,9 +18,8 @@ from ribbonopt.output.summary import summarize
 from ribbonopt.pipeline.check import check_scene
 from ribbonopt.pipeline.prepared import Prepared, prepare
 from ribbonopt.scene import load_scene
+from ribbonopt.solution.made import solution_of
 from ribbonopt.solution.solution import Solution
-from ribbonopt.solution.trajectory import Trajectory
-from ribbonopt.solution.verification import unverified
 
 Solved = Callable[..., Solution]
 
@@ -165,14 +164,7 @@ class TestForbiddenRegion:
     def test_what_entered_is_not_called_a_solution(self, configs: Path) -> None:
         built, w, p = self.from_the_wrong_side(configs, FREE)
         report = built.solver.solve(w, p)
-        found = Solution(
-            scene=built.scene,
-            trajectory=Trajectory(built.problem, built.nlp.blocks.dense(report.w, p)),
-            status=report.status,
-            message="",
-            iterations=report.iterations,
-            verification=unverified(),
-        )
+        found = solution_of(built.posed(), built.problem, built.nlp, report, p)
         assert any("(4.1) forbids" in problem for problem in verify(found, built.ribbon).problems)
 
 

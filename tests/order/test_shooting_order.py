@@ -8,7 +8,7 @@ from analytic import by_newton, implicit, rational, rational_exact
 from references import HALF_MOEBIUS
 
 from ribbonopt.guess import IntegratedLoads, initial_unknowns
-from ribbonopt.problem import BoundaryValueProblem, pose, theta_of
+from ribbonopt.problem import BoundaryValueProblem, Posed, formulate
 from ribbonopt.scene import load_scene
 from ribbonopt.solvers import Newton, Status
 from ribbonopt.transcription import Mesh, MultipleShooting, Output, lobatto
@@ -113,14 +113,14 @@ def test_the_ribbon_converges_at_the_declared_order(
 ) -> None:
     # The analytic law: explicit methods have a stage where Sadowsky's law jumps, s = 1/2.
     scene = load_scene(configs / "moebius_half.yaml", ["law={type: single_sheet, chi: 1}"])
-    ribbon, problem = pose(scene)
+    posed = Posed.of(scene)
+    ribbon, problem = formulate(posed)
     reference = np.concatenate([HALF_MOEBIUS["n0"], HALF_MOEBIUS["m0"]])
     errors = []
     for intervals in RIBBON[method]:
         nlp = MultipleShooting.named(*method).transcribe(problem, (intervals,))
-        theta = np.array(list(theta_of(scene).values()))
-        p = np.concatenate([theta, Mesh.uniform(intervals).widths])
-        guess = IntegratedLoads(ribbon, scene, scene.guess)
+        p = np.concatenate([posed.values, Mesh.uniform(intervals).widths])
+        guess = IntegratedLoads(ribbon, posed, scene.guess)
         report = Newton(nlp).solve(initial_unknowns(guess, ribbon, problem, nlp.blocks, p), p)
         assert report.status is Status.CONVERGED
         # Reduced states: n, and m at the origin, are the constants.

@@ -14,7 +14,8 @@ import pytest
 from references import HALF_MOEBIUS, REGULARIZED
 from scipy.integrate import solve_ivp
 
-from ribbonopt.mechanics.laws.catalogue import RegularizedLaw
+from ribbonopt.mechanics.laws.blended import RegularizedLaw
+from ribbonopt.mechanics.laws.law import RibbonLaw
 from ribbonopt.pipeline.prepared import solve
 from ribbonopt.scene import load_scene
 from ribbonopt.solution.solution import Solution
@@ -150,7 +151,9 @@ def test_law_is_evaluated_to_rounding_for_any_epsilon(epsilon: float) -> None:
     # (6.1) with 40 digits: u2 = m2 (M + mu)^2 / (2 M (2 mu + epsilon (M + mu)))
     law = RegularizedLaw(ca.SX(epsilon))
     a, b = ca.SX.sym("a"), ca.SX.sym("b")
-    strain = ca.Function("u", [a, b], [*law.strain(a, b), *law.sheet_strain(a, b, 1)])
+    sheet = law.sheet(1)
+    assert isinstance(sheet, RibbonLaw)
+    strain = ca.Function("u", [a, b], [*law.strains(a, b), *sheet.strains(a, b)])
     for m2 in (3.0, 0.2, 1e-3, 1e-7, 1e-13, 1e-20):
         for m3 in (-7.0, 0.5, 1e-9):
             u2, u3, sheet2, sheet3 = (float(u) for u in strain(m2, m3))

@@ -61,7 +61,7 @@ def band(
         )
     )
     assert found.verified, found.message
-    assert found.path[0]["step"].startswith("least energy")  # no guess was given
+    assert found.steps[0]["step"].startswith("least energy")  # no guess was given
     return found
 
 

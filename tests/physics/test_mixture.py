@@ -16,7 +16,6 @@ from scipy.spatial.transform import Rotation
 from ribbonopt.checks.arcs import Arcs
 from ribbonopt.checks.verify import verify
 from ribbonopt.pipeline.prepared import prepare, solve
-from ribbonopt.pipeline.search import Search
 from ribbonopt.scene import Scene, loads_scene
 from ribbonopt.solution.solution import Solution
 from ribbonopt.solvers import Status
@@ -220,9 +219,10 @@ def test_jumps_in_place_of_a_mixture_are_refused(
     # The equations have a solution with these phases, in which m2 has signs that they exclude.
     prepared = prepare(clamp(*draw(number), tolerance=None))
     smooth = solve(clamp(*draw(number), law=VARIATIONAL, tolerance=None))
-    search = Search(prepared.scene, prepared.built, {})
+    search = prepared.search()
     assert not search._run_phases(Arcs(kinds, np.array(switches)), smooth)
-    best = search._all[-1].best
+    assert search.last is not None
+    best = search.last.best
     assert best is not None
     s = ends(best)
     wrong = [

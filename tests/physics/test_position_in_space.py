@@ -202,6 +202,6 @@ def test_strains_as_a_guess_are_of_the_start_that_is_given() -> None:
     Q, shift = motion(7)
     ends = ELASTIC.moved(Q, shift)
     found = solved(ends, SMOOTH, StrainGuess((1.5, 0.0)))
-    assert found.path[0]["step"] == "guess: constant strains"
+    assert found.steps[0]["step"] == "guess: constant strains"
     straight = solved(ELASTIC, SMOOTH, StrainGuess((1.5, 0.0)))
     assert_moved(found, straight, Q, shift, 1e-10)

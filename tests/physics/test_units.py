@@ -9,13 +9,13 @@ import numpy as np
 import pytest
 
 from ribbonopt.accuracy.estimate import estimate_error
-from ribbonopt.errors import ConvergenceError, ModelError
+from ribbonopt.errors import ConvergenceError
 from ribbonopt.output.report import report
 from ribbonopt.output.results import load_solution, save_solution
 from ribbonopt.output.summary import summarize
 from ribbonopt.pipeline.check import check_scene
 from ribbonopt.pipeline.prepared import prepare, solve
-from ribbonopt.problem import theta_of
+from ribbonopt.problem import Posed
 from ribbonopt.scene import Scene, loads_scene
 from ribbonopt.scene.units import in_special_units, units_of
 from ribbonopt.solution.solution import Solution
@@ -152,7 +152,7 @@ def test_equations_are_in_si(name: str) -> None:
     assert ours.sample(L, "dot(r, ez)") / L == pytest.approx(0.75, rel=1e-7)
     # What is solved is scaled, so that tolerances and iterations are.
     assert ours.iterations == theirs.iterations
-    assert {n for n in theta_of(in_special_units(si)) if "units." in n} == {
+    assert {n for n in Posed.of(si).theta if "units." in n} == {
         "parameters.units.length",
         "parameters.units.force",
     }
@@ -160,7 +160,7 @@ def test_equations_are_in_si(name: str) -> None:
 
 def test_scenes_without_equations_have_the_parameters_that_they_had() -> None:
     si, special = both(SCENES["moebius"])
-    assert list(theta_of(in_special_units(si))) == list(theta_of(special))
+    assert list(Posed.of(si).theta) == list(Posed.of(special).theta)
     assert si.parameters == in_special_units(si).parameters
 
 
@@ -173,9 +173,11 @@ def test_truth_by_hand() -> None:
     assert float(found.start["H"]) == pytest.approx(57.4495031138 * F, rel=1e-11)
 
 
-def test_a_scene_in_si_is_never_solved_as_it_stands() -> None:
-    with pytest.raises(ModelError, match="in_special_units"):
-        theta_of(both(SCENES["moebius"])[0])
+def test_numbers_are_those_of_the_special_units() -> None:
+    posed = Posed.of(both(SCENES["moebius"])[0])
+    assert posed.theta["interval.end"] == pytest.approx(0.5)
+    assert posed.given.interval[1] == pytest.approx(L / 2)
+    assert posed.units == units_of(posed.given)
 
 
 def test_errors_and_summary_are_in_si() -> None:

@@ -16,8 +16,9 @@ from typing import Literal
 import casadi as ca
 import numpy as np
 
-from ribbonopt.mechanics.rod import RodModel, RodState
+from ribbonopt.mechanics.model import RodModel
 from ribbonopt.mechanics.rotations import directors_of, quaternions_from
+from ribbonopt.mechanics.section import Section
 
 EndName = Literal["start", "end"]
 Named = dict[str, ca.SX]
@@ -25,13 +26,12 @@ Named = dict[str, ca.SX]
 
 @dataclass(frozen=True, eq=False)
 class CrossSection:
-    """The rod at one end: states x, cross section, and strains (u2, u3)."""
+    """The rod at one end: states x of the model, cross section, and strains u (3,)."""
 
     model: RodModel
     x: ca.SX
-    rod: RodState
-    u2: ca.SX
-    u3: ca.SX
+    rod: Section
+    u: ca.SX
 
 
 @dataclass(frozen=True, eq=False)

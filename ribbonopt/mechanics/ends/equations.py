@@ -60,8 +60,8 @@ class _SymbolicEnv:
     def quantity(self, name: str, end: EndName) -> ca.SX:
         section = self._context.ends[end]
         value: ca.SX
-        if name in ("u2", "u3"):
-            value = getattr(section, name)
+        if name[0] == "u" and name[1:]:
+            value = section.u[int(name[1]) - 1]
         elif name[0] in "nm" and name[1:]:
             value = section.rod.along(getattr(section.rod, name[0]))[int(name[1]) - 1]
         else:

@@ -24,7 +24,7 @@ class ImplicitLaw:
     Attributes
     ----------
     unknowns : SX (k,) symbols
-        u2, u3 and further unknowns.
+        The strains that the law leaves free, then further unknowns.
     equations : SX (k,)
         Zero where the law holds.
     bounds : SX (nb,)
@@ -39,21 +39,16 @@ class ImplicitLaw:
     estimate: ca.SX
 
 
-def gradient_form(
-    moment: Callable[[ca.SX, ca.SX], Pair], strain: Pair, m2: ca.SX, m3: ca.SX, bounded: bool
-) -> ImplicitLaw:
-    """0 = dW/du - m, with |eta| <= 1 as u3^2 <= u2^2 where the law demands it."""
+def bounded(moments: Callable[[ca.SX, ca.SX], Pair], strain: ca.SX, m: ca.SX) -> ImplicitLaw:
+    """0 = dW/du - m, with |eta| <= 1 as u3^2 <= u2^2."""
     u = ca.SX.sym("u", 2)
-    found2, found3 = moment(u[0], u[1])
-    bounds = ca.vertcat(u[1] ** 2 - u[0] ** 2) if bounded else ca.SX(0, 1)
-    return ImplicitLaw(u, ca.vertcat(found2 - m2, found3 - m3), bounds, ca.vertcat(*strain))
+    equations = ca.vertcat(*moments(u[0], u[1])) - m[1:]
+    return ImplicitLaw(u, equations, ca.vertcat(u[1] ** 2 - u[0] ** 2), strain[1:])
 
 
-def polynomial_form(
-    rho: ca.SX | float, epsilon: ca.SX, strain: Pair, m2: ca.SX, m3: ca.SX
-) -> ImplicitLaw:
+def polynomial_form(rho: ca.SX | float, epsilon: ca.SX, strain: ca.SX, m: ca.SX) -> ImplicitLaw:
     """Eq. (C 1) without roots; of the two eta that solve the first equation one has |eta| <= 1."""
-    z = ca.SX.sym("u", 3)
+    z, m2, m3 = ca.SX.sym("u", 3), m[1], m[2]
     u2, u3, eta = z[0], z[1], z[2]
     squared = rho * eta**2
     equations = ca.vertcat(
@@ -62,12 +57,12 @@ def polynomial_form(
         u2 * (1 - squared + rho * epsilon) * (1 + squared) - m2,
     )
     start = m3 / (ca.fabs(m2) + norm(m2, m3)) * ca.if_else(m2 < 0, -1, 1)
-    return ImplicitLaw(z, equations, ca.vertcat(eta**2 - 1), ca.vertcat(*strain, start))
+    return ImplicitLaw(z, equations, ca.vertcat(eta**2 - 1), ca.vertcat(strain[1:], start))
 
 
-def norm_form(delta: ca.SX, strain: Pair, m2: ca.SX, m3: ca.SX) -> ImplicitLaw:
+def norm_form(delta: ca.SX, strain: ca.SX, m: ca.SX) -> ImplicitLaw:
     """Variational law: u = (q + M)/4 (m / M + (m2, delta^2 m3) / q), q and M from their squares."""
-    z = ca.SX.sym("u", 4)
+    z, m2, m3 = ca.SX.sym("u", 4), m[1], m[2]
     u2, u3, q, M = z[0], z[1], z[2], z[3]
     size = norm(m2, m3)  # brings all equations to the size of the strains
     equations = ca.vertcat(
@@ -77,5 +72,5 @@ def norm_form(delta: ca.SX, strain: Pair, m2: ca.SX, m3: ca.SX) -> ImplicitLaw:
         (4 * q * M * u3 - m3 * (q + M) * (q + delta**2 * M)) / size**2,
     )
     bounds = ca.vertcat(-q, -M)
-    estimate = ca.vertcat(*strain, norm(m2, delta * m3), norm(m2, m3))
+    estimate = ca.vertcat(strain[1:], norm(m2, delta * m3), norm(m2, m3))
     return ImplicitLaw(z, equations, bounds, estimate)

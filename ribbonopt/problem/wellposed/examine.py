@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import numpy as np
 
 from ribbonopt.arrays import Array
 from ribbonopt.errors import ConvergenceError, ModelError
-from ribbonopt.mechanics import MODELS, RodModel
 from ribbonopt.mechanics.ends.boundary import gap_between_ends
 from ribbonopt.problem.contract import BoundaryValueProblem
+from ribbonopt.problem.posed import Posed
 from ribbonopt.problem.ribbon import Ribbon
-from ribbonopt.scene import Scene
 
 from .linearized import linearize
 from .motions import refuse_motions
@@ -19,7 +20,7 @@ Sample = tuple[Array, Array]
 PARALLEL = 1e-10
 
 
-def examine(ribbon: Ribbon, problem: BoundaryValueProblem, theta: Array) -> None:
+def examine(ribbon: Ribbon, problem: BoundaryValueProblem, posed: Posed) -> None:
     """Refuse a problem whose conditions are too many, too few, repeated or dependent.
 
     And one whose conditions leave the ribbon free to move as a whole, or along itself.
@@ -29,16 +30,17 @@ def examine(ribbon: Ribbon, problem: BoundaryValueProblem, theta: Array) -> None
     ModelError
         With counts, names and remedy.
     """
-    conditions = linearize(ribbon, problem, theta)
+    conditions = linearize(ribbon, posed)
     names = list(conditions.names)
     samples = [conditions.at(conditions.generic(seed)) for seed in (0.3, 0.8)]
-    excess = len(names) - sum(unknown_names(MODELS["reduced"]).values())
+    counts = unknown_counts(conditions.ribbon)
+    excess = len(names) - sum(counts.values())
     if not excess:
         # Where the energy is minimised, sliding along itself does no harm.
         refuse_motions(conditions, sliding=not problem.recovered)
     _refuse_repeated(names, samples)
     if excess:
-        raise ModelError(_count_message(names, excess), "boundary")
+        raise ModelError(_count_message(names, counts), "boundary")
     jacobian = samples[0][1]
     scaled = jacobian / np.linalg.norm(jacobian, axis=1, keepdims=True)
     left, singular, _ = np.linalg.svd(scaled)
@@ -52,13 +54,14 @@ def examine(ribbon: Ribbon, problem: BoundaryValueProblem, theta: Array) -> None
         )
 
 
-def unknown_names(model: RodModel) -> dict[str, int]:
+def unknown_counts(ribbon: Ribbon) -> dict[str, int]:
     """Unknown numbers that the conditions must determine, by what they stand for."""
-    return {"position": 3, "directors": len(model.orientation.names), "force": 3, "moment": 3}
+    own = len(ribbon.law.states)
+    return {**ribbon.model.unknowns, **({"states of the law": own} if own else {})}
 
 
-def _count_message(names: list[str], excess: int) -> str:
-    counts = unknown_names(MODELS["reduced"])
+def _count_message(names: list[str], counts: Mapping[str, int]) -> str:
+    excess = len(names) - sum(counts.values())
     unknowns = ", ".join(f"{name} {count}" for name, count in counts.items())
     own = [name for name in names if name.startswith("start: ")]
     listed = "\n  ".join(name for name in names if name not in own)
@@ -112,8 +115,9 @@ def _refuse_repeated(names: list[str], samples: list[Sample]) -> None:
             )
 
 
-def refuse_unreachable(scene: Scene) -> None:
+def refuse_unreachable(posed: Posed) -> None:
     """Raise ConvergenceError if the prescribed ends are further apart than the ribbon is long."""
+    scene = posed.given
     gap, length = gap_between_ends(scene), scene.interval[1] - scene.interval[0]
     if gap > length * (1 + 1e-12):
         raise ConvergenceError(
@@ -124,8 +128,9 @@ def refuse_unreachable(scene: Scene) -> None:
         )
 
 
-def refuse_idle_settings(scene: Scene, ribbon: Ribbon, problem: BoundaryValueProblem) -> None:
+def refuse_idle_settings(posed: Posed, ribbon: Ribbon, problem: BoundaryValueProblem) -> None:
     """Raise a ModelError where a scene asks for what its problem has not."""
+    scene = posed.given
     if scene.tolerance is not None and problem.recovered:
         raise ModelError(
             "tolerance: the energy formulation has no estimate of its error; leave it out, or use "

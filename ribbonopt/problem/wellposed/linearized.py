@@ -1,24 +1,21 @@
 """The conditions of a scene on the unknowns of both ends, linearised where it is asked.
 
-Unknowns z = (x(0), x(1), c) of the reduced states, whatever the scene's own: they know that the
-force is one constant, so that a force prescribed at both ends is seen as prescribed twice.
+Unknowns z = (x(0), x(1), c) of the least states, whatever the scene's own: without loads they know
+that the force is one constant, so that a force prescribed at both ends is seen as prescribed twice.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-from functools import cached_property
+from dataclasses import dataclass
 
 import casadi as ca
 import numpy as np
 
 from ribbonopt.arrays import Array
-from ribbonopt.mechanics import MODELS, RodFields
-from ribbonopt.problem.contract import BoundaryValueProblem
+from ribbonopt.mechanics.section import RodFields
+from ribbonopt.problem.posed import Posed
 from ribbonopt.problem.ribbon import Ribbon
 
-NX = len(MODELS["reduced"].states)
-NC = len(MODELS["reduced"].constants)
 STEPS = 16
 CONVERGED = 1e-11
 NEGLIGIBLE = 1e-9  # singular value, relative to the largest, that a step leaves alone
@@ -26,43 +23,48 @@ NEGLIGIBLE = 1e-9  # singular value, relative to the largest, that a step leaves
 
 @dataclass(frozen=True, eq=False)
 class Linearized:
-    """Conditions as functions of z, for one set of numbers theta.
+    """Conditions as functions of z, for the numbers of one scene.
 
     Attributes
     ----------
     ribbon : Ribbon
-        On the reduced states.
+        On its least states.
     names : tuple of str
-        The nb conditions, those that make the start's directors a frame included.
+        The nb conditions, those that give states their meaning included.
     function : Function
         (z, theta) to their residuals and Jacobian, (nb, 1 + nz).
-    theta : (np,) array
-        Numbers of the scene.
+    posed : Posed
+        The scene.
     """
 
     ribbon: Ribbon
     names: tuple[str, ...]
     function: ca.Function
-    theta: Array
+    posed: Posed
+
+    @property
+    def nx(self) -> int:
+        """Number of states at an end: position, quaternion, then others."""
+        return len(self.ribbon.states)
+
+    def parts(self, z: Array) -> tuple[Array, Array, Array]:
+        """States (nx,) at the start and at the end, and constants (nc,)."""
+        return z[: self.nx], z[self.nx : 2 * self.nx], z[2 * self.nx :]
 
     def at(self, z: Array) -> tuple[Array, Array]:
         """Residuals (nb,) and Jacobian (nb, nz)."""
-        both = self.function(z, self.theta).full()
+        both = self.function(z, self.posed.values).full()
         return both[:, 0], both[:, 1:]
 
-    def parameter(self, name: str) -> float:
-        """Value of a parameter of the scene."""
-        return float(self.theta[list(self.ribbon.theta).index(name)])
-
-    @cached_property
+    @property
     def reference(self) -> Array:
         """Point (3,) on which the constant moment acts."""
-        return np.array([self.parameter(f"reference.{axis}") for axis in "xyz"])
+        return self.posed.start[0]
 
-    @cached_property
+    @property
     def length(self) -> float:
         """Length of the ribbon."""
-        return self.parameter("interval.end") - self.parameter("interval.start")
+        return self.posed.length
 
     def generic(self, seed: float) -> Array:
         """Unknowns z of a rod without any symmetry.
@@ -76,7 +78,8 @@ class Linearized:
         size = self.length
         fields = RodFields(size * r, frames, n / size**2, m / size)
         x, c = self.ribbon.model.pack(fields, self.reference)
-        return np.concatenate([x.ravel(), c])
+        own = np.resize(0.1 * values, (2, len(self.ribbon.law.states)))
+        return np.concatenate([np.hstack([x, own]).ravel(), c])
 
     def satisfied(self, seed: float) -> Array | None:
         """Unknowns z without any symmetry but what the conditions demand; None if not found.
@@ -86,12 +89,12 @@ class Linearized:
         """
         z = self.generic(seed)
         scale = self.scales(z)
-        count = len(self.names)
+        count, last = len(self.names), slice(self.nx + 3, self.nx + 7)
         residuals, jacobian = np.empty(count + 1), np.zeros((count + 1, len(z)))
         for _ in range(STEPS):
             residuals[:count], jacobian[:count] = self.at(z)
-            q = z[NX + 3 : 2 * NX]
-            residuals[count], jacobian[count, NX + 3 : 2 * NX] = q @ q - 1, 2 * q
+            q = z[last]
+            residuals[count], jacobian[count, last] = q @ q - 1, 2 * q
             scaled = jacobian * scale
             rows = np.sqrt(np.einsum("ij,ij->i", scaled, scaled))
             relative = residuals / np.where(rows > 0, rows, np.nan)
@@ -106,19 +109,26 @@ class Linearized:
 
     def scales(self, z: Array) -> Array:
         """Sizes (nz,) of the unknowns: lengths, quaternions, forces and moments."""
-        state = np.append(np.full(3, self.length), np.ones(NX - 3))
-        n, m = z[2 * NX : 2 * NX + 3], z[2 * NX + 3 :]
+        start, _, constants = self.parts(z)
+        known = dict(zip(self.ribbon.states, start, strict=True))
+        known |= dict(zip(self.ribbon.constants, constants, strict=True))
+        n, m = ([known[f"{v}{axis}"] for axis in "xyz"] for v in "nm")
         force = max(1 / self.length**2, float(np.linalg.norm(n)))
         moment = max(1 / self.length, float(np.linalg.norm(m)))
-        return np.concatenate([state, state, np.full(3, force), np.full(3, moment)])
+        sizes = {"r": self.length, "n": force, "m": moment, "a": moment}
+        model = self.ribbon.model
+        state = [sizes.get(name[0], 1.0) for name in model.states]
+        state += [1.0] * len(self.ribbon.law.states)
+        return np.array(2 * state + [sizes[name[0]] for name in model.constants])
 
 
-def linearize(ribbon: Ribbon, problem: BoundaryValueProblem, theta: Array) -> Linearized:
-    """Return the conditions of a ribbon on its reduced states."""
-    reduced = replace(ribbon, model=MODELS["reduced"])
-    z = ca.SX.sym("z", 2 * NX + NC)
-    named = reduced.residuals(z[:NX], z[NX : 2 * NX], z[2 * NX :])
+def linearize(ribbon: Ribbon, posed: Posed) -> Linearized:
+    """Return the conditions of a ribbon on its least states."""
+    least = ribbon.least
+    nx = len(least.states)
+    z = ca.SX.sym("z", 2 * nx + len(least.constants))
+    named = least.residuals(z[:nx], z[nx : 2 * nx], z[2 * nx :])
     conditions = ca.vertcat(*named.values())
     both = ca.densify(ca.horzcat(conditions, ca.jacobian(conditions, z)))
-    function = ca.Function("conditions", [z, problem.parameters], [both])
-    return Linearized(reduced, tuple(named), function, theta)
+    function = ca.Function("conditions", [z, ribbon.parameters], [both])
+    return Linearized(least, tuple(named), function, posed)

@@ -5,9 +5,9 @@ being the same at every s, under sliding: (x(s), x(s + L)) for (x(0), x(L)). If 
 these seven motions keeps every condition, at ends that have no symmetry but what the conditions
 demand, then no solution that it moves is isolated, and as many conditions are at odds or repeated.
 
-Under a translation t and a rotation w about the reference point, the fields r, n and m of the
-reduced states change by t + w x (r - reference), w x n and w x m. Since m = m_0 + n x (r -
-reference), the constant m_0 changes by w x m_0 + t x n; a quaternion q changes by w q / 2.
+Under a translation t and a rotation w about the reference point, r, n and m change by
+t + w x (r - reference), w x n and w x m, a quaternion q by w q / 2. Under dead loads only turns
+about their direction are motions of equilibria, and nothing slides.
 """
 
 from __future__ import annotations
@@ -15,9 +15,9 @@ from __future__ import annotations
 import numpy as np
 
 from ribbonopt.arrays import Array
-from ribbonopt.mechanics.rotations import matrix_of, product
+from ribbonopt.mechanics.rotations import cross_matrix, matrix_of, product
 
-from .linearized import NX, Linearized
+from .linearized import Linearized
 
 SEEDS = (0.3, 0.8, 0.55)
 CLOSED = 1e-8  # gap of a closed loop, relative to its length, and of its directors
@@ -30,15 +30,16 @@ def refuse_motions(conditions: Linearized, *, sliding: bool) -> None:
     Said only where two different ends that satisfy the conditions agree; nothing is said where
     none are found. `sliding` says whether that does harm.
     """
-    found = 0
+    found, loaded = 0, bool(conditions.posed.loads)
     for seed in SEEDS:
         z = conditions.satisfied(seed)
         if z is None:
             continue
-        motions = rigid(conditions, z)
-        free = unopposed(conditions, z, motions)
+        allowed = _allowed(conditions)
+        motions = rigid(conditions, z) @ allowed
+        free = allowed @ unopposed(conditions, z, motions)
         slides = False
-        if sliding and not free.size and one_sided(conditions, z):
+        if sliding and not free.size and not loaded and one_sided(conditions, z):
             # Where the start is held, a rigid motion takes it back to its place.
             motions = np.hstack([motions, along_itself(conditions, z)])
             slides = unopposed(conditions, z, motions).size > 0
@@ -74,40 +75,44 @@ def one_sided(conditions: Linearized, z: Array) -> bool:
     Of loops, these can never be uniform; others may be circles, which sliding only turns, so that
     the circle held at one point is isolated, and no error.
     """
-    gap = z[NX : NX + 3] - z[:3]
-    turn = matrix_of(z[3:7]).T @ matrix_of(z[NX + 3 : 2 * NX])
+    start, end, _ = conditions.parts(z)
+    gap, turn = end[:3] - start[:3], matrix_of(start[3:7]).T @ matrix_of(end[3:7])
     reversed_ = np.abs(turn - np.diag([-1.0, -1.0, 1.0])).max() < CLOSED
     return bool(reversed_ and np.linalg.norm(gap) < CLOSED * conditions.length)
 
 
 def rigid(conditions: Linearized, z: Array) -> Array:
     """Return changes (nz, 6) of the ends z: translations by the length, then rotations."""
-    n, m0 = z[2 * NX : 2 * NX + 3], z[2 * NX + 3 :]
+    nx, (*_, c) = conditions.nx, conditions.parts(z)
+    balance = conditions.ribbon.model.balance
     result = np.zeros((len(z), 6))
-    for at in (0, NX):
+    for at in (0, nx):
         r, q0, q = z[at : at + 3] - conditions.reference, z[at + 3], z[at + 4 : at + 7]
-        result[at : at + 3, :3] = conditions.length * np.eye(3)
-        result[at : at + 3, 3:] = -_cross(r)
+        result[at : at + 3, :3] = np.eye(3)
+        result[at : at + 3, 3:] = -cross_matrix(r)
         result[at + 3, 3:] = -q / 2
-        result[at + 4 : at + 7, 3:] = (q0 * np.eye(3) - _cross(q)) / 2
-    result[2 * NX : 2 * NX + 3, 3:] = -_cross(n)
-    result[2 * NX + 3 :, :3] = -conditions.length * _cross(n)
-    result[2 * NX + 3 :, 3:] = -_cross(m0)
+        result[at + 4 : at + 7, 3:] = (q0 * np.eye(3) - cross_matrix(q)) / 2
+        own = slice(at + 7, at + 7 + len(balance.states))
+        result[own], result[2 * nx :] = balance.moved(z[own], c)
+    result[:, :3] *= conditions.length
     return result
 
 
 def along_itself(conditions: Linearized, z: Array) -> Array:
-    """Change (nz, 1) of the ends z by sliding along by the length."""
+    """Change (nz, 1) of the ends z by sliding along by the length; there are no loads."""
     result = np.zeros((len(z), 1))
-    for at in (0, NX):
-        x = z[at : at + NX]
-        *_, u2, u3 = conditions.ribbon.section_function(x, z[2 * NX :], conditions.theta)
-        result[at : at + 3, 0] = matrix_of(x[3:])[:, 2]
-        result[at + 3 : at + 7, 0] = np.array(product(x[3:], (0.0, 0.0, float(u2), float(u3)))) / 2
+    start, end, c = conditions.parts(z)
+    posed, section = conditions.posed, conditions.ribbon.section_function
+    for at, x, s in zip((0, conditions.nx), (start, end), posed.scene.interval, strict=True):
+        u = np.array(section(x, c, posed.values, s)[-1]).ravel()
+        result[at : at + 3, 0] = matrix_of(x[3:7])[:, 2]
+        result[at + 3 : at + 7, 0] = np.array(product(x[3:7], (0.0, *u))) / 2
     return conditions.length * result
 
 
-def _cross(v: Array) -> Array:
-    """Matrix (3, 3) of v x."""
-    x, y, z = v
-    return np.array([[0.0, -z, y], [z, 0.0, -x], [-y, x, 0.0]])
+def _allowed(conditions: Linearized) -> Array:
+    """Return combinations (6, k) of the rigid motions that take equilibria into equilibria."""
+    motions = np.eye(6)
+    for load in conditions.posed.loads:
+        motions = motions @ load.symmetries(motions)
+    return motions

@@ -10,7 +10,7 @@ from ribbonopt.arrays import Array
 from ribbonopt.errors import ModelError
 from ribbonopt.mechanics.rotations import matrix_of
 
-from .linearized import NX, Linearized
+from .linearized import Linearized
 
 SMALL = 1e-6  # of directions, and of positions relative to the length
 TELLING = 0.3  # share of the largest effect on a motion that makes a condition worth proposing
@@ -54,7 +54,8 @@ def sliding_refusal(conditions: Linearized, z: Array) -> ModelError:
     prescribed = all(f"boundary.end.position.{a}" in conditions.names for a in "xyz")
     if prescribed and abs(d1[axis]) > 1 - SMALL:
         # By symmetry the gap along d1 then closes, see `mechanics.loops`.
-        place = _place(z[NX : NX + 3], [i for i in range(3) if i != axis])
+        end = conditions.parts(z)[1]
+        place = _place(end[:3], [i for i in range(3) if i != axis])
         remedies.insert(
             0,
             f"replace boundary.end.position by {place} and add force: {{d1: 0}} to boundary.start",
@@ -67,8 +68,9 @@ def sliding_refusal(conditions: Linearized, z: Array) -> ModelError:
 
 
 def _ends(conditions: Linearized, z: Array) -> _Ends:
-    r = np.array([z[:3], z[NX : NX + 3]]) - conditions.reference
-    frames = np.array([matrix_of(z[at + 3 : at + 7]) for at in (0, NX)])
+    states = conditions.parts(z)[:2]
+    r = np.array([x[:3] for x in states]) - conditions.reference
+    frames = np.array([matrix_of(x[3:7]) for x in states])
     return _Ends(r / conditions.length, frames, -conditions.reference / conditions.length)
 
 
@@ -227,7 +229,8 @@ def _hinge(conditions: Linearized, z: Array) -> str:
     """Remedy for ends that are pinned both: an axis across the line through them."""
     if not all(f"boundary.start.position.{a}" in conditions.names for a in "xyz"):
         return ""
-    axis = int(np.abs(z[NX : NX + 3] - z[:3]).argmin())
+    start, end, _ = conditions.parts(z)
+    axis = int(np.abs(end[:3] - start[:3]).argmin())
     along = ", ".join("1" if i == axis else "0" for i in range(3))
     return (
         "; or make one end a hinge: boundary.start: {support: hinged, position: "

@@ -25,8 +25,8 @@ from .whole import check
 
 OUTPUTS: dict[str, Shape] = {
     **dict.fromkeys(("r", "d1", "d2", "d3", "n", "m", "u"), "vector"),
-    **dict.fromkeys(("n1", "n2", "n3", "m1", "m2", "m3", "u2", "u3"), "scalar"),
-    **dict.fromkeys(("eta", "energy", "H", "n_dot_m"), "scalar"),
+    **dict.fromkeys(("n1", "n2", "n3", "m1", "m2", "m3", "u1", "u2", "u3"), "scalar"),
+    **dict.fromkeys(("eta", "energy", "H", "n_dot_m", "switching", "leap"), "scalar"),
 }
 """What a solution has at every arclength, by name (see `Solution.sample`)."""
 

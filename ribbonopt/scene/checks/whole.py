@@ -12,6 +12,7 @@ from typing import Any, get_origin
 
 from ribbonopt.scene.ends import Boundary, Loop
 from ribbonopt.scene.faults import Path, Problem
+from ribbonopt.scene.loads import Loads
 from ribbonopt.scene.model import Guess, MoebiusGuess, RibbonSizes, Scene
 from ribbonopt.scene.schema.annotations import branches, hints, inside
 from ribbonopt.scene.wording import written
@@ -26,6 +27,7 @@ def check(scene: Scene) -> list[Problem]:
     boundary = scene.boundary
     problems = list(_interval(scene.interval))
     formulas = dict(_formulas(boundary, Boundary, ("boundary",)))
+    formulas |= _formulas(scene.loads, Loads, ("loads",))
     formulas |= _formulas(scene.guess, Guess, ("guess",))
     values: dict[Path, float] = {}
     if formulas or boundary.also or scene.parameters:

@@ -15,7 +15,6 @@ import numpy as np
 from ribbonopt.arrays import Array
 from ribbonopt.errors import RibbonoptError
 from ribbonopt.plain import is_number
-from ribbonopt.scene.units import in_special_units
 from ribbonopt.scene.yamlio import loads_scene
 
 from .study import Study, StudyRibbon
@@ -59,12 +58,12 @@ def _swept(ribbon: StudyRibbon) -> tuple[Group, Point]:
 
 def _plain(ribbon: StudyRibbon) -> tuple[Group, Point]:
     """Group a scene by its structure; its numbers are the place in it."""
-    from ribbonopt.problem import structure_of, theta_values  # only where scenes come as files
+    from ribbonopt.problem import Posed  # only where scenes come as files
 
     try:
         scene = loads_scene(ribbon.source.text, ribbon.source.name, ribbon.overrides)
-        special = in_special_units(scene)
-        return structure_of(special), tuple(theta_values(special).tolist())
+        posed = Posed.of(scene)
+        return posed.structure, tuple(posed.values.tolist())
     except RibbonoptError:  # its row will say so
         return ("no scene", ribbon.number), ()
 

@@ -14,7 +14,6 @@ from functools import partial
 from ribbonopt.errors import ConvergenceError
 from ribbonopt.pipeline.prepared import Prepared
 from ribbonopt.scene import Scene
-from ribbonopt.scene.units import in_special_units
 from ribbonopt.solution.solution import Solution
 
 from .neighbour import Neighbour
@@ -116,6 +115,6 @@ def _started(prepared: Prepared, scene: Scene, numbers: range) -> list[Neighbour
     with suppress(ConvergenceError):  # raised again where nothing else is known
         if 0 in numbers:
             found.append(prepared.solve(scene))
-        for solution in more_starts(in_special_units(scene), prepared.automatic, attempt, further):
+        for solution in more_starts(prepared.posed(scene), prepared.automatic, attempt, further):
             found.append(solution)
     return [Neighbour(prepared, solution) for solution in found if solution.verified]

@@ -13,8 +13,9 @@ import numpy as np
 
 from ribbonopt.accuracy.estimate import analyse
 from ribbonopt.arrays import Array
-from ribbonopt.attempt.attempt import Attempts
+from ribbonopt.attempt.attempt import Attempt
 from ribbonopt.pipeline.prepared import Prepared
+from ribbonopt.problem import Posed
 from ribbonopt.scene import Scene
 from ribbonopt.solution.solution import Solution
 from ribbonopt.solvers.condense import CondensedSystem
@@ -46,12 +47,13 @@ class Neighbour:
     finer: CondensedSystem | None = None
     before: Solution | None = None
 
-    def solve(self, scene: Scene) -> Neighbour | None:
+    def solve(self, scene: Scene | Posed) -> Neighbour | None:
         """Return a verified solution of another scene of this structure; None if none is near.
 
         Where the mesh or the phases do not do, they are made anew from the shape.
         """
-        search, old = self.prepared.search(scene), self.solution
+        posed, old = self.prepared.posed(scene), self.solution
+        search = self.prepared.search(posed)
         attempts = search.on_mesh(old.sheets, old.mesh, old.trajectory.ends[1:-1])
         if self._run(attempts) and attempts.best is not None:
             found = attempts.best
@@ -60,18 +62,19 @@ class Neighbour:
                 refined = self.prepared.refined(found, SPARE, search)
                 on_new_mesh = refined.trajectory is not found.trajectory
                 if refined.verified and on_new_mesh:
-                    return Neighbour(self.prepared, refined, search.factors)
+                    factors = None if search.last is None else search.last.factors
+                    return Neighbour(self.prepared, refined, factors)
                 if refined.verified and attempts.check():
                     kept = attempts.best, attempts.factors, finer, old
                     return Neighbour(self.prepared, *kept)
-        anew = self.prepared.solve(scene, guess=old, fallback=False, quick=True)
+        anew = self.prepared.solve(posed, guess=old, fallback=False, quick=True)
         return Neighbour(self.prepared, anew) if anew.verified else None
 
-    def solve_at_any_cost(self, scene: Scene) -> Solution:
+    def solve_at_any_cost(self, scene: Scene | Posed) -> Solution:
         """Return a solution of another scene of this structure, by all that a guess may lead to."""
         return self.prepared.solve(scene, guess=self.solution, fallback=False)
 
-    def _run(self, attempts: Attempts) -> bool:
+    def _run(self, attempts: Attempt) -> bool:
         old = self.solution
         if not _same_meaning(attempts, old):
             return attempts.run(old, quick=True, check=False)
@@ -103,7 +106,7 @@ class Neighbour:
             return None
 
 
-def _same_meaning(attempts: Attempts, old: Solution) -> bool:
+def _same_meaning(attempts: Attempt, old: Solution) -> bool:
     """Whether unknowns can be taken as they are: moments are about a point of reference."""
     names = attempts.problem.parameter_names
     where = [names.index(f"reference.{axis}") for axis in "xyz"]

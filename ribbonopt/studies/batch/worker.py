@@ -21,9 +21,8 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 from ribbonopt.errors import ModelError, RibbonoptError
 from ribbonopt.pipeline.prepared import Prepared, prepare
 from ribbonopt.plain import finite
-from ribbonopt.problem import structure_of
+from ribbonopt.problem import Posed
 from ribbonopt.scene import Scene, loads_scene
-from ribbonopt.scene.units import in_special_units
 from ribbonopt.solution.solution import Solution
 from ribbonopt.studies.continuation.recorded import error_of, numbers_of, sampled
 
@@ -82,7 +81,7 @@ class Worker:
 
     def _prepared(self, scene: Scene) -> Prepared:
         """Return the structure of a scene, built once."""
-        structure = structure_of(in_special_units(scene))
+        structure = Posed.of(scene).structure
         if structure not in self._built:
             self._built[structure] = prepare(replace(scene, continuation=None))
         return self._built[structure]
@@ -98,7 +97,7 @@ def _outcome(found: Solution, start: str) -> Row:
         row |= numbers_of(found) | {"error": error_of(found)}
         if found.scene.starts > 1:
             row["equilibria"] = 1 + len(found.others)
-    steps = [step["step"] for step in found.path]
+    steps = [step["step"] for step in found.steps]
     return row | {"start": start, "iterations": found.iterations, "path": "; ".join(steps)}
 
 

@@ -19,9 +19,10 @@ from ribbonopt.arrays import Array
 from ribbonopt.errors import ConvergenceError, RibbonoptError
 from ribbonopt.guess import Guess
 from ribbonopt.pipeline.prepared import Prepared, prepare
-from ribbonopt.problem import ribbon_of, theta_values
+from ribbonopt.problem import Posed, Ribbon
+from ribbonopt.problem.equilibrium import local_stress
 from ribbonopt.scene import Scene
-from ribbonopt.scene.units import Units, in_special_units
+from ribbonopt.scene.units import Units
 from ribbonopt.solution.solution import Solution
 
 from .pairs import Mesh, Pair
@@ -83,23 +84,21 @@ class Measurement:
 class LawResidual:
     """Departure from the constitutive law along a solution: |u - u*(m)| relative to |u|."""
 
-    scene: Scene
+    posed: Posed
 
     def __call__(self, outputs: dict[str, Array], units: Units) -> float:
         """Return the largest departure on sampled outputs."""
-        m2, m3 = (outputs[name][None] / units.moment for name in ("m2", "m3"))
-        expected = np.array(self._strain(m2, m3))
-        found = np.stack([outputs["u2"], outputs["u3"]]) / units.strain
+        known = [outputs[f"{v}{i}"] / units.of(v) for v in "nm" for i in (1, 2, 3)]
+        start = self.posed.scene.interval[0]
+        expected = np.array(self._strain(np.stack(known), start))
+        found = outputs["u"].T / units.strain
         return _relative(found - expected, found)
 
     @cached_property
     def _strain(self) -> ca.Function:
-        scene = in_special_units(self.scene)
-        ribbon, values = ribbon_of(scene), theta_values(scene)
-        m2, m3 = ca.SX.sym("m2"), ca.SX.sym("m3")
-        u = ca.vertcat(*ribbon.law.strain(m2, m3))
-        theta = ca.vertcat(*ribbon.theta.values())
-        return ca.Function("strain", [m2, m3], [ca.substitute(u, theta, ca.DM(values))])
+        ribbon, (local, stress) = Ribbon.of(self.posed), local_stress()
+        u = ca.substitute(ribbon.law.strain(stress), ribbon.parameters, ca.DM(self.posed.values))
+        return ca.Function("strain", [local, ribbon.position], [u])
 
 
 @dataclass(frozen=True)
@@ -170,7 +169,7 @@ def _measured(
         estimate = _estimate(solution, profile)
         numbers |= {
             "drift_invariant": solution.verification.drift["H"],
-            "drift_law": LawResidual(solution.scene)(o, solution.units),
+            "drift_law": LawResidual(solution.posed)(o, solution.units),
             "drift_frame": float(o["orthonormality"].max()),
         }
     message = "" if solution.verified else _line(solution.message)

@@ -7,7 +7,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ribbonopt.arrays import Array
-from ribbonopt.attempt.attempt import Attempts
+from ribbonopt.attempt.attempt import Attempt
 from ribbonopt.pipeline.prepared import Prepared
 from ribbonopt.solution.solution import Solution
 from ribbonopt.solvers import SolveReport
@@ -26,10 +26,10 @@ class Corrector:
     curve: Curve
     metric: Metric
 
-    def at(self, point: Point, unknowns: Array, position: float) -> Attempts:
+    def at(self, point: Point, unknowns: Array, position: float) -> Attempt:
         """Correct at a position (natural continuation), from predicted unknowns (nw,).
 
-        What is found is not verified yet: `Attempts.check` does that.
+        What is found is not verified yet: `Attempt.check` does that.
         """
         attempts = self.beside(point.solution, position)
         attempts.run_from(unknowns, quick=True, check=False)
@@ -37,7 +37,7 @@ class Corrector:
 
     def along(
         self, point: Point, direction: Array, arc: float, guess: Array, enough: float = 0.0
-    ) -> tuple[Attempts, float]:
+    ) -> tuple[Attempt, float]:
         """Correct where the projection on a direction is `arc` (pseudo-arclength continuation).
 
         Parameters
@@ -55,7 +55,7 @@ class Corrector:
 
         Returns
         -------
-        Attempts, float
+        Attempt, float
             With the solution found, not verified yet, and its position.
         """
         solution = point.solution
@@ -70,14 +70,14 @@ class Corrector:
         attempts.take(_without_last(report), check=False)
         return attempts, position
 
-    def beside(self, solution: Solution, position: float) -> Attempts:
+    def beside(self, solution: Solution, position: float) -> Attempt:
         """Return the means to solve at a position, on the mesh and in the phases of a solution."""
-        search = self.prepared.search(self.curve.scene_at(position))
+        search = self.prepared.search(self.curve.posed_at(position))
         return search.on_mesh(solution.sheets, solution.mesh, solution.trajectory.ends[1:-1])
 
     def anew(self, solution: Solution, position: float) -> Solution | None:
         """Solve at a position with all that a single scene may need, from a solution near by."""
-        found = self.prepared.solve(self.curve.scene_at(position), guess=solution, fallback=False)
+        found = self.prepared.solve(self.curve.posed_at(position), guess=solution, fallback=False)
         return found if found.verified else None
 
 

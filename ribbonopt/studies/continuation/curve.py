@@ -9,10 +9,9 @@ from itertools import pairwise
 import numpy as np
 
 from ribbonopt.arrays import Array
-from ribbonopt.problem import BoundaryValueProblem, theta_values
+from ribbonopt.problem import BoundaryValueProblem, Posed
 from ribbonopt.scene import Continuation, Scene
 from ribbonopt.scene.lens import with_value
-from ribbonopt.scene.units import in_special_units
 from ribbonopt.solution.solution import Solution
 from ribbonopt.solvers.extended import Line
 
@@ -35,7 +34,7 @@ class Curve:
 
     scene: Scene
     stage: Continuation
-    _scenes: dict[float, tuple[Scene, Array]] = field(default_factory=dict)
+    _posed: dict[float, Posed] = field(default_factory=dict)
 
     @property
     def start(self) -> float:
@@ -74,7 +73,7 @@ class Curve:
 
     def moves(self, problem: BoundaryValueProblem) -> bool:
         """Whether the equations of the scene contain the parameter."""
-        first, last = (self._at(position)[1] for position in (self.start, self.goals[-1]))
+        first, last = (self.posed_at(position).values for position in (self.start, self.goals[-1]))
         moving = [int(i) for i in np.flatnonzero(first != last)]
         return any(problem.contains(i) for i in moving)
 
@@ -92,7 +91,7 @@ class Curve:
 
     def scene_at(self, position: float) -> Scene:
         """Return the scene with the parameter's value at a position."""
-        return self._at(position)[0]
+        return self.posed_at(position).given
 
     def line(self, solution: Solution) -> Line:
         """Return the equations of a solution along this curve, on its mesh and in its phases."""
@@ -106,7 +105,7 @@ class Curve:
     def _theta(self, position: float) -> Array:
         """Parameters theta at a position."""
         if self._direct is None:
-            return self._at(position)[1]
+            return self.posed_at(position).values
         first, entry, scale = self._direct
         theta: Array = first.copy()
         theta[entry] = scale * self.value(position)
@@ -117,7 +116,7 @@ class Curve:
         """Parameters, and which of them is the value times what; None if it is not so simple."""
         ends = self.start, self.goals[-1]
         places = [*ends, 0.3 * ends[0] + 0.7 * ends[1], 0.6 * ends[0] + 0.4 * ends[1]]
-        found = np.array([self._at(place)[1] for place in places])
+        found = np.array([self.posed_at(place).values for place in places])
         values = np.array([self.value(place) for place in places])
         moving = np.flatnonzero((found != found[0]).any(axis=0))
         if len(moving) != 1:
@@ -127,12 +126,12 @@ class Curve:
         scale = float(found[largest, entry] / values[largest])
         return (found[0], entry, scale) if bool((found[:, entry] == scale * values).all()) else None
 
-    def _at(self, position: float) -> tuple[Scene, Array]:
-        """Scene and parameters theta at a position."""
-        if position not in self._scenes:
-            if len(self._scenes) >= KEPT:
-                self._scenes.pop(next(iter(self._scenes)))
+    def posed_at(self, position: float) -> Posed:
+        """Return the posed scene with the parameter's value at a position."""
+        if position not in self._posed:
+            if len(self._posed) >= KEPT:
+                self._posed.pop(next(iter(self._posed)))
             scene = with_value(self.scene, self.stage.parameter, self.value(position))
             scene = replace(scene, continuation=None)
-            self._scenes[position] = scene, theta_values(in_special_units(scene))
-        return self._scenes[position]
+            self._posed[position] = Posed.of(scene)
+        return self._posed[position]

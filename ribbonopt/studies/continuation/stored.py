@@ -52,7 +52,7 @@ class Stored:
         curve = self._curves[row["stage"]]
         arrays = {name: _array(state[name]) for name in ("w", "widths", "tangent")}
         mesh = Mesh(tuple(np.split(arrays["widths"], np.cumsum(state["elements"])[:-1])))
-        search = self._prepared.search(curve.scene_at(state["position"]))
+        search = self._prepared.search(curve.posed_at(state["position"]))
         solution = search.on_mesh(tuple(state["sheets"]), mesh).restored(arrays["w"])
         return Point(
             solution,

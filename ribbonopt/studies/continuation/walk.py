@@ -14,7 +14,7 @@ import numpy as np
 
 from ribbonopt.accuracy.estimate import relative_error
 from ribbonopt.arrays import Array
-from ribbonopt.attempt.attempt import Attempts
+from ribbonopt.attempt.attempt import Attempt
 from ribbonopt.pipeline.prepared import Prepared
 from ribbonopt.pipeline.refinement import SAFE
 from ribbonopt.solution.solution import Solution
@@ -142,7 +142,7 @@ class Walk:
         return self._accepted(point, attempts, position, predicted, arc)
 
     def _accepted(
-        self, point: Point, attempts: Attempts, position: float, predicted: Array, arc: float
+        self, point: Point, attempts: Attempt, position: float, predicted: Array, arc: float
     ) -> tuple[Point, list[Point]] | None:
         trial = attempts.best
         assert trial is not None
@@ -189,7 +189,7 @@ class Walk:
             before, solution=solution, position=position, tangent=tangent, sign=found.sign
         )
 
-    def _finished(self, point: Point, attempts: Attempts, position: float) -> Solution | None:
+    def _finished(self, point: Point, attempts: Attempt, position: float) -> Solution | None:
         """Return the solution verified, to tolerance, in the phases it needs; None for none."""
         trial = attempts.best
         assert trial is not None

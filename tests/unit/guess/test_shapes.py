@@ -15,15 +15,16 @@ from ribbonopt.guess import FollowerLoads, IntegratedLoads, ShapeGuess, guess_of
 from ribbonopt.guess.named import loop_shape, shape_of
 from ribbonopt.guess.placing import place_ends
 from ribbonopt.guess.shapes import Chord, Helical, Perturbed, Shape, TwistedCircle
-from ribbonopt.mechanics.rod import RodFields
+from ribbonopt.mechanics.section import RodFields
 from ribbonopt.pipeline.prepared import solve
-from ribbonopt.problem import ribbon_of, theta_of
+from ribbonopt.problem import Posed, Ribbon
 from ribbonopt.scene import (
     AnyVector,
     ArcGuess,
     Band,
     Boundary,
     Collocation,
+    Directors,
     End,
     Helix,
     HelixGuess,
@@ -242,7 +243,7 @@ def test_named_shapes_have_the_strains_they_name() -> None:
         HelixGuess(Helix(-1, -0.6)): (0, -np.pi * 0.8, np.pi * 0.6),
         "circle": (0, np.pi, 0),
     }.items():
-        shape = shape_of(scene(TILTED, guess=guess, interval=two))
+        shape = shape_of(Posed.of(scene(TILTED, guess=guess, interval=two)))
         assert shape is not None
         np.testing.assert_allclose(shape.strains(f9[1:-1]), np.tile(u, (7, 1)), atol=1e-8)
         np.testing.assert_allclose(shape.positions(f9)[0], [1, 2, 3])
@@ -251,7 +252,7 @@ def test_named_shapes_have_the_strains_they_name() -> None:
 
 
 def test_a_named_helix_rises_by_its_share_and_turns_as_often() -> None:
-    shape = shape_of(scene(guess=HelixGuess(Helix(3, 0.6)), interval=(0.0, 2.0)))
+    shape = shape_of(Posed.of(scene(guess=HelixGuess(Helix(3, 0.6)), interval=(0.0, 2.0))))
     assert shape is not None
     ends = np.array([0.0, 1.0])
     r = shape.positions(ends)
@@ -260,9 +261,10 @@ def test_a_named_helix_rises_by_its_share_and_turns_as_often() -> None:
 
 
 def test_no_shape_is_named_by_loads_or_by_nothing() -> None:
-    assert shape_of(scene()) is None
-    assert shape_of(scene(guess=LoadGuess((0, 0, 1), (0, 1, 0)))) is None
-    assert guess_of(scene(), ribbon_of(scene())) is None
+    assert shape_of(Posed.of(scene())) is None
+    assert shape_of(Posed.of(scene(guess=LoadGuess((0, 0, 1), (0, 1, 0))))) is None
+    posed = Posed.of(scene())
+    assert guess_of(posed, Ribbon.of(posed)) is None
 
 
 @pytest.mark.parametrize("half_twists", [2, -3, 5])
@@ -272,7 +274,8 @@ def test_twisted_circles_meet_the_conditions_of_their_loop(half_twists: int, pie
     band = Loop(half_twists, piece)  # type: ignore[arg-type]
     this = scene(End(), loop=band, interval=(0.0, 1 / count))
     guess = MoebiusGuess(Band(half_twists))
-    for shape in (shape_of(replace(this, guess=guess)), *shapes_for(this)):
+    named = shape_of(Posed.of(replace(this, guess=guess)))
+    for shape in (named, *shapes_for(Posed.of(this))):
         assert shape is not None
         ends = np.array([0.0, 1.0])
         assert worst(this, shape.positions(ends), shape.frames(ends)) < 1e-14
@@ -284,8 +287,11 @@ def test_twisted_circles_meet_the_conditions_of_their_loop(half_twists: int, pie
 
 
 def test_loop_shapes_are_pieces_of_one_circle() -> None:
-    this = scene(End(), loop=Loop(3, "half"), interval=(0.0, 0.5))
-    shape = loop_shape(this, Loop(3, "half"), (PLACE, FRAME))
+    x, y, z = (float(v) for v in PLACE)
+    d1, d2, d3 = (tuple(column) for column in FRAME.T.tolist())
+    start = End(position=(x, y, z), directors=Directors(d1, d2, d3))
+    this = scene(start, loop=Loop(3, "half"), interval=(0.0, 0.5))
+    shape = loop_shape(Posed.of(this), Loop(3, "half"))
     whole = TwistedCircle(PLACE, FRAME, 2 * np.pi, 3 * np.pi, 1.0)
     np.testing.assert_allclose(shape.positions(f9), whole.positions(f9 / 2), atol=1e-15)
     np.testing.assert_allclose(shape.frames(f9), whole.frames(f9 / 2), atol=1e-14)
@@ -308,9 +314,8 @@ def test_every_guess_has_words() -> None:
 
 def worst(this: Scene, r: Array, frames: Array) -> float:
     """Largest verdict on the conditions of positions and directors at given ends."""
-    this = replace(this, states="reduced")
-    ribbon = ribbon_of(this)
-    theta = theta_of(this)
+    posed = Posed.of(replace(this, states="reduced"))
+    ribbon = Ribbon.of(posed)
     zero = np.zeros((2, 3))
     x, _ = ribbon.model.pack(RodFields(r, frames, zero, zero), np.zeros(3))
     a, b = ca.SX.sym("a", 7), ca.SX.sym("b", 7)
@@ -320,7 +325,7 @@ def worst(this: Scene, r: Array, frames: Array) -> float:
     ]
     inputs = [a, b, ca.vertcat(*ribbon.theta.values())]
     function = ca.Function("verdicts", inputs, [ca.vertcat(*verdicts)])
-    return float(np.abs(np.array(function(x[0], x[1], list(theta.values())))).max())
+    return float(np.abs(np.array(function(x[0], x[1], posed.values))).max())
 
 
 HINGE = End("hinged", (0, 0, 0), axis="d2", along=(0, 1, 0))
@@ -372,8 +377,8 @@ ENDS: dict[str, tuple[End, End, dict[str, Any]]] = {
 def test_ends_are_placed_where_all_conditions_on_them_hold(ends: str) -> None:
     start, end, more = ENDS[ends]
     this = scene(start, end, law=Variational(delta=0.1), **more)
-    theta = np.array(list(theta_of(this).values()))
-    (r0, first), (r1, last) = place_ends(ribbon_of(this), this, theta)
+    posed = Posed.of(this)
+    (r0, first), (r1, last) = place_ends(Ribbon.of(posed), posed)
     for frame in (first, last):
         np.testing.assert_allclose(frame.T @ frame, np.eye(3), atol=1e-12)
         assert np.linalg.det(frame) > 0
@@ -384,8 +389,8 @@ def test_ends_are_placed_where_all_conditions_on_them_hold(ends: str) -> None:
 
 def test_what_is_prescribed_is_taken_as_it_is() -> None:
     this = scene(TILTED, End("clamped", (1, 2, 3.5), directors=SIDE))
-    theta = np.array(list(theta_of(this).values()))
-    (r0, first), (r1, last) = place_ends(ribbon_of(this), this, theta)
+    posed = Posed.of(this)
+    (r0, first), (r1, last) = place_ends(Ribbon.of(posed), posed)
     np.testing.assert_allclose(r0, [1, 2, 3], atol=1e-14)
     np.testing.assert_allclose(r1, [1, 2, 3.5], atol=1e-14)
     np.testing.assert_allclose(first, [[0, -1, 0], [1, 0, 0], [0, 0, 1]], atol=1e-14)
@@ -396,8 +401,8 @@ def test_what_is_prescribed_is_taken_as_it_is() -> None:
 def test_a_free_end_is_that_of_a_straight_ribbon(free: str) -> None:
     ends = (TILTED, End("free")) if free == "end" else (End("free"), TILTED)
     this = scene(*ends, interval=(0.0, 2.0))
-    theta = np.array(list(theta_of(this).values()))
-    (r0, first), (r1, last) = place_ends(ribbon_of(this), this, theta)
+    posed = Posed.of(this)
+    (r0, first), (r1, last) = place_ends(Ribbon.of(posed), posed)
     turned = [[0, -1, 0], [1, 0, 0], [0, 0, 1]]
     np.testing.assert_allclose([first, last], [turned, turned], atol=1e-12)
     np.testing.assert_allclose(r1 - r0, [0, 0, 2], atol=1e-12)
@@ -406,7 +411,7 @@ def test_a_free_end_is_that_of_a_straight_ribbon(free: str) -> None:
 def test_first_shapes_fit_the_ends_they_are_for() -> None:
     start, end, _ = ENDS["clamped"]
     this = scene(start, end)
-    shapes = list(shapes_for(this))
+    shapes = list(shapes_for(Posed.of(this)))
     assert len(shapes) >= 3
     ends = np.array([0.0, 1.0])
     for shape in shapes:
@@ -419,7 +424,9 @@ def test_first_shapes_fit_the_ends_they_are_for() -> None:
 def test_loads_at_the_start_are_integrated() -> None:
     # The exact helix: constant strains (0, 4, 2) under the loads of SCIENCE.
     this = scene(End(position=(0, 0, 0), directors="identity"))
-    fields = IntegratedLoads(ribbon_of(this), this, LoadGuess((0, 12.5, 6.25), (0, 3.75, 5)))
+    posed = Posed.of(this)
+    loads = LoadGuess((0, 12.5, 6.25), (0, 3.75, 5))
+    fields = IntegratedLoads(Ribbon.of(posed), posed, loads)
     found = fields.fields(np.linspace(0, 1, 41))
     exact = Helical(np.zeros(3), np.eye(3), np.array([0.0, 4.0, 2.0]), 1.0)
     f = np.linspace(0, 1, 41)
@@ -431,7 +438,7 @@ def test_loads_at_the_start_are_integrated() -> None:
 def test_loads_that_follow_the_end_are_integrated_from_there() -> None:
     force, moment = AnyVector(d1=0, d2=12.5, d3=6.25), AnyVector(d1=0, d2=3.75, d3=5)
     this = scene(TILTED, End("free", force=force, moment=moment))
-    guess = follower_loads(this)
+    guess = follower_loads(Posed.of(this))
     assert isinstance(guess, FollowerLoads)
     f = np.linspace(0, 1, 41)
     found = guess.fields(f)
@@ -444,11 +451,11 @@ def test_loads_that_follow_the_end_are_integrated_from_there() -> None:
 
 def test_only_loads_that_follow_the_end_of_a_clamped_ribbon_are_known_beforehand() -> None:
     follower = AnyVector(d1=0, d2=1, d3=0)
-    assert follower_loads(scene(CLAMP, End("free"))) is None  # nothing to integrate
-    assert follower_loads(scene(CLAMP, End("free", force=(0, 0, 1)))) is None  # dead
-    assert follower_loads(scene(CLAMP, End("free", moment=(0, 0, 1)))) is None
-    assert follower_loads(scene(CLAMP, End("free", moment=follower))) is not None
-    assert follower_loads(scene(End("free", moment=follower), CLAMP)) is None
+    assert follower_loads(Posed.of(scene(CLAMP, End("free")))) is None  # nothing to integrate
+    assert follower_loads(Posed.of(scene(CLAMP, End("free", force=(0, 0, 1))))) is None  # dead
+    assert follower_loads(Posed.of(scene(CLAMP, End("free", moment=(0, 0, 1))))) is None
+    assert follower_loads(Posed.of(scene(CLAMP, End("free", moment=follower)))) is not None
+    assert follower_loads(Posed.of(scene(End("free", moment=follower), CLAMP))) is None
 
 
 # Bands unfolded from their fundamental piece.

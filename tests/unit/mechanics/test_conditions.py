@@ -18,14 +18,16 @@ from ribbonopt.mechanics.ends.conditions import (
     Direction,
     Frame,
 )
-from ribbonopt.mechanics.rod import MODELS, RodFields
+from ribbonopt.mechanics.model import full_model, least_model
+from ribbonopt.mechanics.section import RodFields
 from ribbonopt.pipeline.prepared import prepare, solve
-from ribbonopt.problem import pose
+from ribbonopt.problem import Posed, formulate
 from ribbonopt.scene import load_scene
 from ribbonopt.solution.solution import Solution
 from ribbonopt.solvers import Status
 
 HALF = "moebius_half.yaml"
+MODELS = {"reduced": least_model((), ca.SX.sym), "full": full_model((), ca.SX.sym)}
 
 
 @pytest.mark.parametrize("states", ["reduced", "full"])
@@ -53,7 +55,7 @@ def test_equations_say_what_components_say(
 
 def test_vector_equations_are_three_conditions(configs: Path) -> None:
     overrides = ["boundary.start.position={}", "boundary.also=['r(start) = [0, 0, 0]']"]
-    _, problem = pose(load_scene(configs / HALF, overrides))
+    _, problem = formulate(Posed.of(load_scene(configs / HALF, overrides)))
     assert sum(name.startswith("boundary.also.0") for name in problem.conditions) == 3
 
 
@@ -61,8 +63,8 @@ def context(model: str, frame: np.ndarray, theta: dict[str, float]) -> Context:
     """Return the context of a rod whose end has a frame and nothing else of interest."""
     zero = np.zeros((1, 3))
     x, c = MODELS[model].pack(RodFields(zero, frame[None], zero, zero), np.zeros(3))
-    rod = MODELS[model].rod(ca.DM(x[0]), ca.DM(c), ca.DM.zeros(3))
-    section = CrossSection(MODELS[model], ca.DM(x[0]), rod, ca.DM(0), ca.DM(0))
+    rod = MODELS[model].section(ca.DM(x[0]), ca.DM(c), ca.DM(0), ca.DM.zeros(3))
+    section = CrossSection(MODELS[model], ca.DM(x[0]), rod, ca.DM.zeros(3))
     return Context({"end": section}, lambda name: ca.DM(theta[name]))
 
 

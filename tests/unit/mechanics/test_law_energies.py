@@ -11,17 +11,13 @@ from hypothesis import given
 from hypothesis import strategies as st
 from scipy.optimize import minimize_scalar
 
-from ribbonopt.mechanics.laws import catalogue as laws
-from ribbonopt.mechanics.laws.catalogue import (
-    LAWS,
-    ConstitutiveLaw,
-    HomotopyLaw,
-    KirchhoffLaw,
-    RegularizedLaw,
-    SadowskyLaw,
-    SingleSheetLaw,
-    VariationalLaw,
-)
+from ribbonopt.mechanics.laws import relations as laws
+from ribbonopt.mechanics.laws.blended import HomotopyLaw, RegularizedLaw
+from ribbonopt.mechanics.laws.catalogue import LAWS
+from ribbonopt.mechanics.laws.kirchhoff import KirchhoffLaw
+from ribbonopt.mechanics.laws.law import RibbonLaw
+from ribbonopt.mechanics.laws.sadowsky import SadowskyLaw, SingleSheetLaw
+from ribbonopt.mechanics.laws.variational import VariationalLaw
 
 Pairs = np.ndarray
 WITH_ENERGY = [
@@ -50,7 +46,7 @@ def evaluated(expression: Callable[[Any, Any], Any], gradient: bool = False) -> 
     return lambda points: np.array(function.map(points.shape[1])(points))
 
 
-def moments_of(law: ConstitutiveLaw) -> Pairs:
+def moments_of(law: RibbonLaw) -> Pairs:
     """Return random moments in every quadrant that has strains."""
     rng = np.random.default_rng(11)
     m = rng.uniform(0.1, 3, (2, 400)) * rng.choice([-1, 1], (2, 400))
@@ -61,43 +57,43 @@ def test_every_variational_law_has_both_energies_and_no_other_has_one() -> None:
     numbers = {"B2": 1, "B3": 2, "chi": 1, "epsilon": 0.1, "rho": 0.5, "delta": 0.1}
     for kind in LAWS.values():
         law = kind(**{name: numbers[name] for name in kind.__dataclass_fields__})
-        assert (law.energy(1.0, 0.5) is not None) is law.variational
-        assert (law.complementary_energy(1.0, 0.5) is not None) is law.variational
+        assert (law.stored(1.0, 0.5) is not None) is law.variational
+        assert (law.complementary(1.0, 0.5) is not None) is law.variational
 
 
 @with_energy
-def test_strain_is_the_gradient_of_the_complementary_energy(law: ConstitutiveLaw) -> None:
+def test_strain_is_the_gradient_of_the_complementary_energy(law: RibbonLaw) -> None:
     m = moments_of(law)
-    gradient = evaluated(law.complementary_energy, gradient=True)(m)
-    np.testing.assert_allclose(gradient, evaluated(law.strain)(m), rtol=1e-13)
+    gradient = evaluated(law.complementary, gradient=True)(m)
+    np.testing.assert_allclose(gradient, evaluated(law.strains)(m), rtol=1e-13)
 
 
 @with_energy
-def test_moment_is_the_gradient_of_the_energy(law: ConstitutiveLaw) -> None:
+def test_moment_is_the_gradient_of_the_energy(law: RibbonLaw) -> None:
     m = moments_of(law)
-    u = evaluated(law.strain)(m)
-    np.testing.assert_allclose(evaluated(law.energy, gradient=True)(u), m, rtol=1e-10)
+    u = evaluated(law.strains)(m)
+    np.testing.assert_allclose(evaluated(law.stored, gradient=True)(u), m, rtol=1e-10)
 
 
 @with_energy
-def test_complementary_energy_is_the_legendre_transform(law: ConstitutiveLaw) -> None:
+def test_complementary_energy_is_the_legendre_transform(law: RibbonLaw) -> None:
     m = moments_of(law)
-    u = evaluated(law.strain)(m)
-    transform = (m * u).sum(axis=0) - evaluated(law.energy)(u)[0]
-    np.testing.assert_allclose(evaluated(law.complementary_energy)(m)[0], transform, rtol=1e-12)
+    u = evaluated(law.strains)(m)
+    transform = (m * u).sum(axis=0) - evaluated(law.stored)(u)[0]
+    np.testing.assert_allclose(evaluated(law.complementary)(m)[0], transform, rtol=1e-12)
 
 
 @convex
-def test_complementary_energy_is_the_supremum(law: ConstitutiveLaw) -> None:
+def test_complementary_energy_is_the_supremum(law: RibbonLaw) -> None:
     rng = np.random.default_rng(12)
     m, u = moments_of(law)[:, :50], rng.uniform(-3, 3, (2, 2000))
-    bound = evaluated(law.complementary_energy)(m)[0]
-    assert ((m.T @ u - evaluated(law.energy)(u)) <= bound[:, None] * (1 + 1e-12)).all()
+    bound = evaluated(law.complementary)(m)[0]
+    assert ((m.T @ u - evaluated(law.stored)(u)) <= bound[:, None] * (1 + 1e-12)).all()
 
 
 def test_the_printed_legendre_transform_is_none() -> None:
-    u2, u3 = evaluated(SadowskyLaw().strain)(np.array([[1.0], [2.0]]))
-    transform = u2 + 2 * u3 - evaluated(SadowskyLaw().energy)(np.array([u2, u3]))
+    u2, u3 = evaluated(SadowskyLaw().strains)(np.array([[1.0], [2.0]]))
+    transform = u2 + 2 * u3 - evaluated(SadowskyLaw().stored)(np.array([u2, u3]))
     printed = (2 * np.sqrt(5)) ** 2 / 8  # (7.2), both roots of m2^2 + m3^2
     assert abs(printed - transform[0, 0]) > 0.5
 
@@ -105,18 +101,18 @@ def test_the_printed_legendre_transform_is_none() -> None:
 @convex
 @given(a2=number, a3=number, b2=number, b3=number)
 def test_complementary_energy_is_convex(
-    law: ConstitutiveLaw, a2: float, a3: float, b2: float, b3: float
+    law: RibbonLaw, a2: float, a3: float, b2: float, b3: float
 ) -> None:
     points = np.array([[a2, b2, (a2 + b2) / 2], [a3, b3, (a3 + b3) / 2]])
-    a, b, middle = evaluated(law.complementary_energy)(points)[0]
+    a, b, middle = evaluated(law.complementary)(points)[0]
     assert middle <= (a + b) / 2 * (1 + 1e-13)
 
 
 @convex
 @given(a2=number, a3=number, b2=number, b3=number)
-def test_energy_is_convex(law: ConstitutiveLaw, a2: float, a3: float, b2: float, b3: float) -> None:
+def test_energy_is_convex(law: RibbonLaw, a2: float, a3: float, b2: float, b3: float) -> None:
     points = np.array([[a2, b2, (a2 + b2) / 2], [a3, b3, (a3 + b3) / 2]])
-    a, b, middle = evaluated(law.energy)(points)[0]
+    a, b, middle = evaluated(law.stored)(points)[0]
     assert middle <= (a + b) / 2 * (1 + 1e-13)
 
 
@@ -157,8 +153,8 @@ def test_convexified_energy_is_a_minimum_over_the_curvature(u2: float, u3: float
 MOMENTS = np.array([[0.3, -1.2, 2.0, -0.01, 1.0], [1.0, 0.4, -3.0, -0.5, 0.0]])
 
 
-def gap(law: ConstitutiveLaw, limit: ConstitutiveLaw) -> float:
-    return float(np.abs(evaluated(law.strain)(MOMENTS) - evaluated(limit.strain)(MOMENTS)).max())
+def gap(law: RibbonLaw, limit: RibbonLaw) -> float:
+    return float(np.abs(evaluated(law.strains)(MOMENTS) - evaluated(limit.strains)(MOMENTS)).max())
 
 
 def test_homotopy_starts_at_the_rod() -> None:
@@ -189,23 +185,23 @@ def test_families_tend_to_sadowsky_at_their_rate(family: Any, rate: int) -> None
     ids=str,
 )
 def test_more_moment_gives_more_strain(
-    law: ConstitutiveLaw, m2: float, m3: float, n2: float, n3: float
+    law: RibbonLaw, m2: float, m3: float, n2: float, n3: float
 ) -> None:
     m = np.array([[m2, n2], [m3, n3]])
-    u = evaluated(law.strain)(m)
+    u = evaluated(law.strains)(m)
     work = ((m[:, 0] - m[:, 1]) * (u[:, 0] - u[:, 1])).sum()
     assert work >= -1e-13 * np.abs(m).max() * np.abs(u).max()
 
 
 def test_bending_moment_and_curvature_have_one_sign_where_eta_is_allowed() -> None:
     m = moments_of(SadowskyLaw())
-    u = evaluated(SadowskyLaw().strain)(m)
+    u = evaluated(SadowskyLaw().strains)(m)
     assert (np.sign(u[0]) == np.sign(m[0])).all()
     assert (np.abs(u[1] / u[0]) <= 1).all()
 
 
 def test_curvature_jumps_by_half_the_twisting_moment_where_bending_changes_sign() -> None:
     m = np.array([[1e-14, -1e-14, 0.0], [2.0, 2.0, 2.0]])
-    u = evaluated(SadowskyLaw().strain)(m)
+    u = evaluated(SadowskyLaw().strains)(m)
     np.testing.assert_allclose(u[0], [0.5, -0.5, 0.0], atol=1e-13)
     np.testing.assert_allclose(u[1], 0.5, atol=1e-13)

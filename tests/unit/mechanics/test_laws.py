@@ -13,6 +13,7 @@ from mpmath import sqrt as root
 
 from ribbonopt.mechanics.laws import relations
 from ribbonopt.mechanics.laws.catalogue import LAWS
+from ribbonopt.mechanics.laws.law import RibbonLaw
 from ribbonopt.scene import Law
 
 CASES: dict[str, list[dict[str, float]]] = {
@@ -36,7 +37,8 @@ def relation(name: str, case: dict[str, float], which: str) -> Callable[[Pairs],
     a, theta = ca.SX.sym("a", 2), ca.SX.sym("theta", len(case))
     law = LAWS[name](**dict(zip(case, ca.vertsplit(theta), strict=True)))
     kind, _, derivative = which.partition("_")
-    value = ca.vertcat(*getattr(law, kind)(a[0], a[1]))
+    assert isinstance(law, RibbonLaw)
+    value = ca.vertcat(*(law.strains if kind == "strain" else law.moments)(a[0], a[1]))
     value = ca.jacobian(value, a) if derivative else value
     function = ca.Function("relation", [a, theta], [ca.densify(value)])
 

@@ -17,9 +17,9 @@ from scipy.special import ellipe, ellipk
 from ribbonopt.errors import ConvergenceError
 from ribbonopt.mechanics.ends.boundary import conditions_of
 from ribbonopt.mechanics.ends.placement import LoadAlong, OnLine
-from ribbonopt.mechanics.rod import RodFields
+from ribbonopt.mechanics.section import RodFields
 from ribbonopt.pipeline.prepared import solve
-from ribbonopt.problem import ribbon_of, theta_of
+from ribbonopt.problem import Posed, Ribbon
 from ribbonopt.scene import (
     AnyVector,
     Boundary,
@@ -151,7 +151,8 @@ each_case = pytest.mark.parametrize(("support", "at"), cases())
 def functions(support: Support, at: int, seed: int, states: str) -> tuple[Any, list[str], int]:
     """Residuals and verdicts of a case at a state, names, and how many speak of no loads."""
     scene = replace(case(support, at, seed).scene, states=states)
-    ribbon = ribbon_of(scene)
+    posed = Posed.of(scene)
+    ribbon = Ribbon.of(posed)
     size, constants = len(ribbon.model.states), len(ribbon.model.constants)
     start, end, c = (ca.SX.sym(name, k) for name, k in (("a", size), ("b", size), ("c", constants)))
     named = ribbon.residuals(start, end, c)
@@ -161,8 +162,8 @@ def functions(support: Support, at: int, seed: int, states: str) -> tuple[Any, l
     verdicts = ca.vertcat(*ribbon.verdicts(start, end, c).values())
     theta = ca.vertcat(*ribbon.theta.values())
     function = ca.Function("residuals", [start, end, c, theta], [values, verdicts])
-    numbers = np.array(list(theta_of(scene).values()))
-    reference = np.array([theta_of(scene)[f"reference.{axis}"] for axis in "xyz"])
+    numbers = posed.values
+    reference = posed.start[0]
 
     def at_state(state: State) -> tuple[Array, Array]:
         moments = np.array([state.m + np.cross(state.n, r - state.r[state.at]) for r in state.r])

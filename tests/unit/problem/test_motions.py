@@ -11,9 +11,9 @@ from hypothesis import strategies as st
 from scipy.spatial.transform import Rotation
 
 from ribbonopt.errors import ModelError
-from ribbonopt.mechanics.rod import MODELS, RodFields
+from ribbonopt.mechanics.section import RodFields
 from ribbonopt.pipeline.prepared import solve
-from ribbonopt.problem import pose, theta_of
+from ribbonopt.problem import Posed, Ribbon, formulate
 from ribbonopt.problem.wellposed.examine import examine
 from ribbonopt.problem.wellposed.linearized import Linearized, linearize
 from ribbonopt.problem.wellposed.motions import along_itself, rigid, unopposed
@@ -31,7 +31,8 @@ def scene_of(boundary: str, **other: str) -> Scene:
 
 
 def looked_at(scene: Scene) -> None:
-    examine(*pose(scene), np.array(list(theta_of(scene).values())))
+    posed = Posed.of(scene)
+    examine(*formulate(posed), posed)
 
 
 def refusal(scene: Scene) -> ModelError:
@@ -41,8 +42,8 @@ def refusal(scene: Scene) -> ModelError:
 
 
 def linearized(scene: Scene) -> Linearized:
-    ribbon, problem = pose(scene)
-    return linearize(ribbon, problem, np.array(list(theta_of(scene).values())))
+    posed = Posed.of(scene)
+    return linearize(Ribbon.of(posed), posed)
 
 
 # --- what is refused ---------------------------------------------------------------------------
@@ -294,7 +295,8 @@ def test_the_length_does_not_matter(states: str, interval: str) -> None:
 def fields_at(conditions: Linearized, z: np.ndarray) -> RodFields:
     """Fields of both ends that the unknowns z stand for."""
     section = conditions.ribbon.section_function
-    rows = [section(x, z[14:], conditions.theta) for x in (z[:7], z[7:14])]
+    values = conditions.posed.values
+    rows = [section(x, z[14:], values, 0.0) for x in (z[:7], z[7:14])]
     r, d1, d2, d3, n, m = (np.array([np.array(row[i]).ravel() for row in rows]) for i in range(6))
     return RodFields(r, np.stack([d1, d2, d3], axis=2), n, m)
 
@@ -316,7 +318,7 @@ def test_motions_are_those_of_the_fields(column: int) -> None:
             before.n @ turn.T,
             before.m @ turn.T,
         )
-        x, c = MODELS["reduced"].pack(moved, origin)
+        x, c = conditions.ribbon.model.pack(moved, origin)
         q = x.reshape(2, 7)[:, 3:]
         q *= np.sign(np.sum(q * np.array([z[3:7], z[10:14]]), axis=1, keepdims=True))
         after.append(np.concatenate([x.ravel(), c]))
@@ -338,11 +340,11 @@ def test_sliding_is_the_solution_one_step_on() -> None:
 
 def test_looking_costs_little() -> None:
     scene = load_scene(CONFIGS / "moebius_half.yaml")
-    ribbon, problem = pose(scene)
-    theta = np.array(list(theta_of(scene).values()))
+    posed = Posed.of(scene)
+    ribbon, problem = formulate(posed)
     seconds = []
     for _ in range(10):
         started = time.perf_counter()
-        examine(ribbon, problem, theta)
+        examine(ribbon, problem, posed)
         seconds.append(time.perf_counter() - started)
     assert min(seconds) < 0.05  # 3 ms; the rest is for busy machines

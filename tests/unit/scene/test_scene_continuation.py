@@ -10,7 +10,7 @@ import pytest
 
 from ribbonopt.errors import SceneError
 from ribbonopt.mechanics.outputs import outputs
-from ribbonopt.problem import ribbon_of
+from ribbonopt.problem import Posed, Ribbon
 from ribbonopt.scene import (
     AnyVector,
     Boundary,
@@ -295,10 +295,10 @@ def test_stops_parsed() -> None:
 
 
 def test_records_know_what_a_solution_has() -> None:
-    ribbon = ribbon_of(scene())
+    ribbon = Ribbon.of(Posed.of(scene()))
     x, c = (ca.SX.sym("x", len(names)) for names in (ribbon.model.states, ribbon.model.constants))
     section = ribbon.section(x, c)
-    had = outputs(section, ribbon.law, section.u2, section.u3)
+    had = outputs(section, ribbon.law, section.u)
     checks = ("law_residual", "orthonormality")
     shapes = {1: "scalar", 3: "vector"}
     assert {name: shapes[had[name].numel()] for name in had if name not in checks} == OUTPUTS

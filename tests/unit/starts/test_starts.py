@@ -11,13 +11,15 @@ import numpy as np
 import pytest
 from references import CANTILEVER_DEFLECTION, ELASTICA, HALF_MOEBIUS, VARIATIONAL, agrees
 
+from ribbonopt.attempt.ledger import Ledger
+from ribbonopt.attempt.structure import Structure
 from ribbonopt.errors import ModelError
 from ribbonopt.guess import Guess, ShapeGuess
 from ribbonopt.guess.shapes import Chord, Helical
 from ribbonopt.output.report import report
 from ribbonopt.output.summary import summarize
 from ribbonopt.pipeline.prepared import prepare, solve
-from ribbonopt.problem import pose
+from ribbonopt.problem import Posed, formulate
 from ribbonopt.scene import (
     AnyVector,
     Boundary,
@@ -33,13 +35,13 @@ from ribbonopt.scene import (
 )
 from ribbonopt.solution.solution import Solution
 from ribbonopt.solvers import Newton, Status
-from ribbonopt.starts import homotopy as follow
+from ribbonopt.starts import homotopy
 from ribbonopt.starts.automatic import Automatic
 from ribbonopt.starts.equilibria import _variants as variants
 from ribbonopt.starts.equilibria import equilibria, potential
 from ribbonopt.starts.first_shape import shapes_for
-from ribbonopt.starts.homotopy import HomotopyPath, SmoothHomotopy
-from ribbonopt.starts.loops import closed_scene, fundamental_scene, loop_of
+from ribbonopt.starts.homotopy import HomotopyPath, smooth_of
+from ribbonopt.starts.loops import closed_posed, fundamental_scene, loop_of
 
 Array = np.ndarray
 Solved = Callable[..., Solution]
@@ -56,7 +58,7 @@ def scene(start: End, end: End, **more: Any) -> Scene:
 
 
 def steps(found: Solution) -> list[str]:
-    return [step["step"] for step in found.path]
+    return [step["step"] for step in found.steps]
 
 
 # Newton with residuals that the conditions shall have.
@@ -103,7 +105,9 @@ def test_a_relaxed_force_is_the_force_at_the_tip() -> None:
 
 
 def followed(this: Scene, guess: Guess, delta: float) -> HomotopyPath:
-    return SmoothHomotopy.of(this, ROD).follow(this, ROD, guess, delta)
+    posed = Posed.of(this)
+    structure = Structure.of(smooth_of(posed, ROD))
+    return homotopy.follow(structure, posed, ROD, guess, delta)
 
 
 @pytest.mark.parametrize(
@@ -151,7 +155,7 @@ def test_a_path_that_cannot_be_followed_to_its_end_is_given_up(
         assert len(tried) < 1000, "goes on without end"
         return tried[-1] > 0
 
-    monkeypatch.setattr(follow._Tracking, "_step", step)
+    monkeypatch.setattr(homotopy._Tracking, "_step", step)
     this = scene(CLAMP, End("free", moment=(0, 3.2, 2.4)))
     path = followed(this, STRAIGHT, 0.1)
     assert not path.complete
@@ -159,19 +163,19 @@ def test_a_path_that_cannot_be_followed_to_its_end_is_given_up(
 
 
 def test_a_first_step_that_fails_is_the_end_of_a_path(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(follow._Tracking, "_step", lambda *_: False)
+    monkeypatch.setattr(homotopy._Tracking, "_step", lambda *_: False)
     path = followed(scene(CLAMP, End("free", moment=(0, 3.2, 2.4))), STRAIGHT, 0.1)
     assert (path.complete, path.points) == (False, ())
 
 
 @pytest.mark.parametrize("limit", [0.2, 0.05])
 def test_delta_goes_down_as_far_as_it_can(monkeypatch: pytest.MonkeyPatch, limit: float) -> None:
-    genuine = follow._Tracking._step
+    genuine = homotopy._Tracking._step
 
     def step(self: Any, law: Any, relaxed: Array | None) -> bool:
         return law.delta >= limit and genuine(self, law, relaxed)
 
-    monkeypatch.setattr(follow._Tracking, "_step", step)
+    monkeypatch.setattr(homotopy._Tracking, "_step", step)
     path = followed(scene(CLAMP, End("free", force=(1, 0, 0))), STRAIGHT, 0.01)
     assert not path.complete
     assert limit <= path.points[-1].scene.law.delta < 1.2 * limit
@@ -205,10 +209,11 @@ def test_an_end_that_a_dead_load_moves_closes_no_loop() -> None:
 
 def test_the_least_energy_closes_what_symmetry_would_close(configs: Path) -> None:
     open_ = load_scene(configs / "moebius_regularized.yaml")
-    _, problem = pose(closed_scene(replace(open_, law=SMOOTH, formulation="energy")))
+    smooth = Posed.of(replace(open_, law=SMOOTH, formulation="energy"))
+    _, problem = formulate(closed_posed(smooth))
     assert {f"boundary.end.position.{axis}" for axis in "xyz"} <= set(problem.conditions)
-    half = load_scene(configs / "moebius_half.yaml")
-    assert closed_scene(half) is half
+    half = Posed.of(load_scene(configs / "moebius_half.yaml"))
+    assert closed_posed(half) is half
 
 
 def test_bands_of_several_half_twists_are_solved_by_their_piece_first(configs: Path) -> None:
@@ -281,14 +286,14 @@ def test_mirror_images_count_once() -> None:
 class Stub:
     """An automatic start that knows the way: each shape leads to one guess, by number."""
 
-    def guesses(self, scene: Scene, path: list[Any], shape: Any) -> Iterator[Any]:
+    def guesses(self, posed: Posed, ledger: Ledger, shape: Any) -> Iterator[Any]:
         yield shape
 
 
 def listed(first: Solution, *others: Solution, law: Any = None) -> Solution:
     """Return what several starts make of given solutions."""
     queue = iter(others)
-    this = replace(CLAMPED, starts=1 + len(others))
+    this = Posed.of(replace(CLAMPED, starts=1 + len(others)))
     return equilibria(this, first, Stub(), lambda _: next(queue))  # type: ignore[arg-type]
 
 
@@ -335,7 +340,7 @@ def test_equal_seeds_perturb_alike_and_others_do_not() -> None:
     f = np.linspace(0, 1, 5)
 
     def shapes(seed: int) -> list[Array]:
-        return [s.positions(f) for s in islice(variants(replace(CLAMPED, seed=seed)), 6)]
+        return [s.positions(f) for s in islice(variants(Posed.of(replace(CLAMPED, seed=seed))), 6)]
 
     first, again, other = shapes(0), shapes(0), shapes(1)
     for a, b in zip(first, again, strict=True):
@@ -462,13 +467,12 @@ def test_a_shape_is_a_guess_whatever_the_unknowns(solved: Solved, formulation: s
 
 
 def test_guesses_of_one_structure_can_be_asked_for_one_by_one() -> None:
-    automatic = Automatic(CLAMPED)
-    path: list[Any] = []
-    guesses = list(islice(automatic.guesses(CLAMPED, path), 2))
+    posed, ledger = Posed.of(CLAMPED), Ledger()
+    guesses = list(islice(Automatic(posed).guesses(posed, ledger), 2))
     assert isinstance(guesses[0], Solution)
     assert guesses[0].scene.law == Variational(delta=0.1)  # that of the scene, not below it
-    assert all(step["seconds"] >= 0 for step in path)
-    assert len(list(shapes_for(CLAMPED))) >= len(guesses)
+    assert all(step["seconds"] >= 0 for step in ledger.steps)
+    assert len(list(shapes_for(posed))) >= len(guesses)
 
 
 # Dead forces where the energy is minimised.

@@ -7,7 +7,6 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from ribbonopt.accuracy import estimate
 from ribbonopt.accuracy.estimate import analyse, relative_error
 from ribbonopt.pipeline.prepared import Prepared, prepare
 from ribbonopt.scene import Scene, load_scene
@@ -111,12 +110,10 @@ def test_another_point_of_reference_is_minded(prepared: Prepared) -> None:
     assert np.allclose(beside.solution.n0, alone.n0, rtol=1e-8, atol=1e-8)
 
 
-def test_estimate_by_factors_of_a_neighbour(
-    prepared: Prepared, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_estimate_by_factors_of_a_neighbour(prepared: Prepared) -> None:
     with_factors = walk(prepared, [0.05, 0.0499, 0.0498, 0.0497], "tolerance=1e-6")[-1].solution
     errors = analyse(with_factors).errors
-    estimate._latest.clear()
+    with_factors.trajectory.found.clear()
     exact = analyse(with_factors).errors
     for name, error in exact.items():
         assert errors[name] == pytest.approx(error, rel=0.45), name  # q / (1 - q), q = 0.3

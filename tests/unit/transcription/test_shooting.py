@@ -21,7 +21,7 @@ from references import HALF_MOEBIUS
 
 from ribbonopt.errors import TranscriptionError
 from ribbonopt.guess import IntegratedLoads, initial_unknowns
-from ribbonopt.problem import BoundaryValueProblem, Phase, pose, theta_of
+from ribbonopt.problem import BoundaryValueProblem, Phase, Posed, formulate
 from ribbonopt.scene import load_scene
 from ribbonopt.solvers import Ipopt, Newton, SolveReport, Status
 from ribbonopt.solvers.condense import CondensedSystem
@@ -369,12 +369,12 @@ def test_half_moebius_ribbon_is_that_of_the_reference(
 ) -> None:
     # The analytic law: explicit methods have a stage where Sadowsky's law jumps, s = 1/2.
     scene = load_scene(configs / "moebius_half.yaml", ["law={type: single_sheet, chi: 1}"])
-    ribbon, problem = pose(scene)
+    posed = Posed.of(scene)
+    ribbon, problem = formulate(posed)
     intervals, tolerance = MOEBIUS[method]
     nlp = shooting(problem, method, (intervals,))
-    theta = np.array(list(theta_of(scene).values()))
-    p = np.concatenate([theta, Mesh.uniform(intervals).widths])
-    guess = IntegratedLoads(ribbon, scene, scene.guess)
+    p = np.concatenate([posed.values, Mesh.uniform(intervals).widths])
+    guess = IntegratedLoads(ribbon, posed, scene.guess)
     report = Newton(nlp).solve(initial_unknowns(guess, ribbon, problem, nlp.blocks, p), p)
     assert report.status is Status.CONVERGED
     reference = np.concatenate([HALF_MOEBIUS["n0"], HALF_MOEBIUS["m0"]])

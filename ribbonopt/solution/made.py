@@ -1,39 +1,74 @@
-"""From a solver's report to a solution, loads from the costates of a minimum included."""
+"""The one place where solutions are made: from unknowns, or from what a solver reports.
+
+For a minimum the loads follow from the costates.
+"""
 
 from __future__ import annotations
+
+from typing import Any
 
 import casadi as ca
 import numpy as np
 
 from ribbonopt.arrays import Array
-from ribbonopt.problem import BoundaryValueProblem
-from ribbonopt.scene import Scene
-from ribbonopt.solution.verification import unverified
-from ribbonopt.solvers import SolveReport
+from ribbonopt.problem import BoundaryValueProblem, Posed
+from ribbonopt.solvers import SolveReport, Status
 from ribbonopt.transcription import NLP
 
 from .solution import Solution
 from .trajectory import Trajectory
+from .verification import unverified
+
+
+def solution_at(
+    posed: Posed,
+    problem: BoundaryValueProblem,
+    nlp: NLP,
+    w: Array,
+    p: Array,
+    **known: Any,
+) -> Solution:
+    """Return the solution with the unknowns w (nw,) at the parameters p (np,).
+
+    Parameters
+    ----------
+    posed, problem, nlp
+        What is asked, its equations and the program they became.
+    w, p
+        Unknowns and parameters.
+    known
+        Other fields of `Solution`; without them it has converged and nothing of it was checked.
+    """
+    fields: dict[str, Any] = {
+        "status": Status.CONVERGED,
+        "message": Status.CONVERGED.value,
+        "iterations": 0,
+        "verification": unverified(),
+    }
+    trajectory = Trajectory(problem, nlp.blocks.dense(w, p))
+    return Solution(posed=posed, trajectory=trajectory, **(fields | known))
 
 
 def solution_of(
-    scene: Scene,
+    posed: Posed,
     problem: BoundaryValueProblem,
     nlp: NLP,
     report: SolveReport,
     p: Array,
     sheets: tuple[int, ...] = (),
 ) -> Solution:
-    """Return what a solver found for a scene at the parameters p (np,), not yet verified."""
+    """Return what a solver found for a posed scene at the parameters p (np,), not yet verified."""
     if report.status.converged and problem.recovered:
         p = _with_recovered(problem, nlp, report, p)
-    return Solution(
-        scene=scene,
-        trajectory=Trajectory(problem, nlp.blocks.dense(report.w, p)),
+    return solution_at(
+        posed,
+        problem,
+        nlp,
+        report.w,
+        p,
         status=report.status,
         message=report.status.value,
         iterations=report.iterations,
-        verification=unverified(),
         multipliers=report.multipliers,
         sheets=sheets,
     )

@@ -5,8 +5,10 @@ import numpy as np
 import pytest
 from scipy.spatial.transform import Rotation
 
-from ribbonopt.mechanics.rod import MODELS, RodFields
+from ribbonopt.mechanics.model import full_model, least_model
+from ribbonopt.mechanics.section import RodFields
 
+MODELS = {"reduced": least_model((), ca.SX.sym), "full": full_model((), ca.SX.sym)}
 each_model = pytest.mark.parametrize("name", MODELS)
 REFERENCE = np.array([0.3, -0.2, 0.5])
 NAMES = ("r", "d1", "d2", "d3", "n", "m")
@@ -31,7 +33,7 @@ def section(name: str) -> ca.Function:
     model = MODELS[name]
     x, c = ca.SX.sym("x", len(model.states)), ca.SX.sym("c", len(model.constants))
     u = ca.SX.sym("u", 3)
-    rod = model.rod(x, c, ca.SX(REFERENCE))
+    rod = model.section(x, c, ca.SX(0), ca.SX(REFERENCE))
     values = ca.vertcat(*(getattr(rod, key) for key in NAMES))
     return ca.Function("section", [x, c, u], [values, ca.jtimes(values, x, model.rates(x, rod, u))])
 
@@ -72,7 +74,7 @@ def test_rates_are_the_equations_of_the_paper(name: str) -> None:
 def test_components_along_the_directors(name: str) -> None:
     f = random_fields(1, seed=2)
     x, c = MODELS[name].pack(f, REFERENCE)
-    rod = MODELS[name].rod(ca.DM(x[0]), ca.DM(c), ca.DM(REFERENCE))
+    rod = MODELS[name].section(ca.DM(x[0]), ca.DM(c), ca.DM(0), ca.DM(REFERENCE))
     np.testing.assert_allclose(
         np.array(rod.along(rod.m)).ravel(), f.frames[0].T @ f.m[0], atol=1e-13
     )
@@ -82,9 +84,9 @@ def test_components_along_the_directors(name: str) -> None:
 def test_frames_are_normal_where_the_normalisation_says_so(name: str) -> None:
     model = MODELS[name]
     x = model.pack(random_fields(1), REFERENCE)[0][0]
-    residuals = [float(v) for v in model.normalisation(ca.DM(x)).values()]
+    residuals = [float(v) for v in model.start_conditions(ca.DM(x)).values()]
     np.testing.assert_allclose(residuals, 0, atol=1e-14)
-    longer = [abs(float(v)) for v in model.normalisation(ca.DM(1.1 * x)).values()]
+    longer = [abs(float(v)) for v in model.start_conditions(ca.DM(1.1 * x)).values()]
     assert max(longer) > 0.1
 
 
@@ -96,7 +98,7 @@ def test_normalisation_and_alignment_together_fix_the_frame(name: str) -> None:
     f = random_fields(1)
     at = model.pack(RodFields(f.r, frame[None], f.n, f.m), REFERENCE)[0][0]
     x = ca.SX.sym("x", len(at))
-    equations = ca.vertcat(model.alignment(x, ca.DM(q)), *model.normalisation(x).values())
+    equations = ca.vertcat(model.alignment(x, ca.DM(q)), *model.start_conditions(x).values())
     values = ca.Function("f", [x], [equations, ca.densify(ca.jacobian(equations, x))])(at)
     assert np.abs(np.array(values[0])).max() < 1e-14
     columns = slice(3, 3 + len(model.orientation.names))

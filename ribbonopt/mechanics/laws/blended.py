@@ -1,0 +1,92 @@
+"""The regularised laws of the paper, eqs. (6.1) and (C 1): smooth where m2 changes sign, no energy.
+
+The kink that u3 keeps at m2 = 0 costs every scheme its order, so that phases help.
+"""
+
+from __future__ import annotations
+
+from abc import abstractmethod
+from dataclasses import dataclass
+
+import casadi as ca
+
+from .implicit import ImplicitLaw, polynomial_form
+from .law import ConstitutiveLaw, RibbonLaw, Stress
+from .relations import Pair, blended_strain, inverse
+from .sadowsky import SwitchedLaw
+
+
+class BlendedLaw(SwitchedLaw):
+    """The family of eq. (C 1)."""
+
+    variational = False
+    closed_moment = False
+
+    @property
+    @abstractmethod
+    def weights(self) -> tuple[ca.SX | float, ca.SX]:
+        """The numbers rho and epsilon of the family."""
+
+    def strains(self, m2: ca.SX, m3: ca.SX) -> Pair:
+        return blended_strain(m2, m3, *self.weights)
+
+    def implicit(self, stress: Stress) -> ImplicitLaw:
+        return polynomial_form(*self.weights, self.strain(stress), stress.m)
+
+    def moments(self, u2: ca.SX, u3: ca.SX) -> Pair:
+        return inverse(self.strains, u2, u3)
+
+    def stored(self, u2: ca.SX, u3: ca.SX) -> None:
+        return None
+
+    def complementary(self, m2: ca.SX, m3: ca.SX) -> None:
+        return None
+
+    def sheet(self, chi: int) -> ConstitutiveLaw:
+        return BlendedSheetLaw(*self.weights, chi)
+
+
+@dataclass(frozen=True, eq=False)
+class RegularizedLaw(BlendedLaw):
+    """Sadowsky's law smoothed by epsilon, eq. (6.1)."""
+
+    epsilon: ca.SX
+
+    @property
+    def weights(self) -> tuple[ca.SX | float, ca.SX]:
+        return 1, self.epsilon
+
+
+@dataclass(frozen=True, eq=False)
+class HomotopyLaw(BlendedLaw):
+    """From rod (rho = 0) to regularised ribbon (rho = 1), eq. (C 1)."""
+
+    rho: ca.SX
+    epsilon: ca.SX
+
+    @property
+    def weights(self) -> tuple[ca.SX | float, ca.SX]:
+        return self.rho, self.epsilon
+
+
+@dataclass(frozen=True, eq=False)
+class BlendedSheetLaw(RibbonLaw):
+    """One side of eq. (C 1), in which |m2| is continued as chi m2."""
+
+    rho: ca.SX | float
+    epsilon: ca.SX
+    chi: int
+    variational = False
+    closed_moment = False
+
+    def strains(self, m2: ca.SX, m3: ca.SX) -> Pair:
+        return blended_strain(m2, m3, self.rho, self.epsilon, self.chi)
+
+    def moments(self, u2: ca.SX, u3: ca.SX) -> Pair:
+        return inverse(self.strains, u2, u3)
+
+    def stored(self, u2: ca.SX, u3: ca.SX) -> None:
+        return None
+
+    def complementary(self, m2: ca.SX, m3: ca.SX) -> None:
+        return None

@@ -1,0 +1,194 @@
+"""What a constitutive law says: relations between the strains u and the moments m of a section.
+
+Components along the directors d1 (normal), d2 (across the width), d3 (tangent); units Dw = L = 1.
+Every law takes and gives whole vectors: u = (u1, u2, u3), and the `Stress` of a section. What a law
+has beyond `strain` it declares (see the attributes), and generic code asks for that, never for a
+type. `components` are those strains that it leaves free: (1, 2) for a ribbon that does not bend in
+its own plane, u1 = 0; (0, 1, 2) for a rod with finite B1.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import NamedTuple
+
+import casadi as ca
+
+from .implicit import ImplicitLaw
+
+
+class Stress(NamedTuple):
+    """What a law may read of a section: n, m (3,) along the directors, and its own states."""
+
+    n: ca.SX
+    m: ca.SX
+    own: ca.SX
+
+    @classmethod
+    def of_moment(cls, m: ca.SX) -> Stress:
+        """Return the stress of a moment (3,) alone."""
+        return cls(ca.SX.zeros(3), m, ca.SX(0, 1))
+
+
+class Switch(NamedTuple):
+    """Where the strains of a kinked law leap: where `value` changes sign and `leap` is not zero.
+
+    Both have the dimension of a moment.
+    """
+
+    value: ca.SX
+    leap: ca.SX
+
+
+@dataclass(frozen=True, eq=False)
+class Relaxed:
+    """A convexified energy as a smooth program over controls along the ribbon.
+
+    `controls` (nz,) symbols; `u` (3,) strains, `cost` per length and `path` (<= 0) as expressions
+    of them; `estimate` (nz,), where to start, of the stress.
+    """
+
+    controls: ca.SX
+    u: ca.SX
+    cost: ca.SX
+    path: ca.SX
+    estimate: ca.SX
+
+
+class ConstitutiveLaw(ABC):
+    """A relation between strains and moments; see the module for frame and units."""
+
+    #: strains that are not zero by themselves, by index
+    components: tuple[int, ...] = (1, 2)
+    #: a strain energy exists, so that H = W_Leg + n3 is an invariant (section 7)
+    variational: bool = True
+    #: the law demands |eta| <= 1 of a solution, eq. (4.1)
+    bounds_eta: bool = False
+    #: strains are those of a developable surface, whose generatrices may meet
+    developable: bool = True
+    #: the complementary energy is differentiable away from m = 0
+    smooth: bool = True
+    #: differentiable at m = 0 too, so that a straight ribbon without stress has a linearisation
+    linear_at_zero: bool = False
+    #: strains have a kink or a jump where `switching` changes sign; `branch` continues either side
+    kinked: bool = False
+    #: `moment` is a closed form, cheap to evaluate and to differentiate
+    closed_moment: bool = True
+    #: names of states of its own along the ribbon, with `rates`, `end_conditions`, `own_guess`
+    states: tuple[str, ...] = ()
+
+    @abstractmethod
+    def strain(self, stress: Stress) -> ca.SX:
+        """Strains (3,) at a stress."""
+
+    @abstractmethod
+    def moment(self, u: ca.SX) -> ca.SX:
+        """Moments at strains u (3,): those of `components`, (k,)."""
+
+    @abstractmethod
+    def energy(self, u: ca.SX) -> ca.SX | None:
+        """Strain energy W(u) per length, or None."""
+
+    @abstractmethod
+    def complementary_energy(self, stress: Stress) -> ca.SX | None:
+        """Legendre transform W_Leg(m) of the energy, eq. (7.1), or None."""
+
+    def implicit(self, stress: Stress) -> ImplicitLaw:
+        """Return the law at a stress as equations for its strains, eq. (3.1b)."""
+        u = ca.SX.sym("u", len(self.components))
+        target = stress.m[list(self.components)]
+        equations = self.moment(self.whole(u)) - target
+        strain = self.strain(stress)[list(self.components)]
+        return ImplicitLaw(u, equations, ca.SX(0, 1), strain)
+
+    def whole(self, free: ca.SX) -> ca.SX:
+        """Return the vector (3,) whose `components` are given, all others zero."""
+        values = dict(zip(self.components, ca.vertsplit(free), strict=True))
+        return ca.vertcat(*(values.get(i, ca.SX(0)) for i in range(3)))
+
+    def densities(self, stress: Stress, u: ca.SX) -> tuple[ca.SX, ca.SX]:
+        """Strain energy W and complementary energy per length, W + W_Leg = m . u.
+
+        Errors of u enter in second order. A law without an energy has none: both are m . u / 2, to
+        which they are equal for any 2-homogeneous energy, and the drift of H tells how far the law
+        is from having one.
+        """
+        work = ca.dot(stress.m, u)
+        found = self.complementary_energy(stress)
+        return (work / 2, work / 2) if found is None else (work - found, found)
+
+    def relaxed(self, stress: Stress) -> Relaxed | None:
+        """Return the program of the convexified energy where the law is not smooth, or None."""
+        return None
+
+    # Own states: none but for laws that declare them.
+
+    def rates(self, stress: Stress, u: ca.SX) -> ca.SX:
+        """Return the derivatives of its own states along s."""
+        return ca.SX(0, 1)
+
+    def end_conditions(self, end: str, stress: Stress) -> Mapping[str, ca.SX]:
+        """Return its own conditions at an end, start or end, by name."""
+        return {}
+
+    def own_guess(self, stress: Stress) -> ca.SX:
+        """Return where to start its own states, from n and m."""
+        return ca.SX(0, 1)
+
+    # Switching: of use to kinked laws, and to find phases for them on solutions of smooth ones.
+
+    def switching(self, stress: Stress) -> Switch:
+        """Return what changes sign where a ribbon's curvature does: m2, with a leap if twisted."""
+        return Switch(stress.m[1], ca.fabs(stress.m[2]))
+
+    def branch(self, kind: int) -> ConstitutiveLaw:
+        """Return the law of one side of the switch (+1, -1), or of a mixture of both (0).
+
+        Analytic across the switch.
+        """
+        return self
+
+    def entering(self, kind: int, before: int, stress: Stress) -> Mapping[str, ca.SX]:
+        """Conditions, by name, where a phase of a kind begins after one of kind `before`."""
+        return {}
+
+    def margins(self, kind: int, stress: Stress, u: ca.SX) -> Mapping[str, ca.SX]:
+        """Return what must not be negative along a phase, by what is wrong where it is."""
+        return {}
+
+
+class RibbonLaw(ConstitutiveLaw):
+    """A law of (u2, u3) and (m2, m3) alone, with u1 = 0: what an inextensible ribbon has.
+
+    It is written in pairs of scalars, CasADi symbols or numbers, as the paper does.
+    """
+
+    @abstractmethod
+    def strains(self, m2: ca.SX, m3: ca.SX) -> tuple[ca.SX, ca.SX]:
+        """Strains (u2, u3) at the moments (m2, m3)."""
+
+    @abstractmethod
+    def moments(self, u2: ca.SX, u3: ca.SX) -> tuple[ca.SX, ca.SX]:
+        """Moments (m2, m3) at the strains (u2, u3)."""
+
+    @abstractmethod
+    def stored(self, u2: ca.SX, u3: ca.SX) -> ca.SX | None:
+        """Strain energy W(u2, u3) per length, or None."""
+
+    @abstractmethod
+    def complementary(self, m2: ca.SX, m3: ca.SX) -> ca.SX | None:
+        """Complementary energy W_Leg(m2, m3) per length, or None."""
+
+    def strain(self, stress: Stress) -> ca.SX:
+        return ca.vertcat(0, *self.strains(stress.m[1], stress.m[2]))
+
+    def moment(self, u: ca.SX) -> ca.SX:
+        return ca.vertcat(*self.moments(u[1], u[2]))
+
+    def energy(self, u: ca.SX) -> ca.SX | None:
+        return self.stored(u[1], u[2])
+
+    def complementary_energy(self, stress: Stress) -> ca.SX | None:
+        return self.complementary(stress.m[1], stress.m[2])

@@ -1,0 +1,147 @@
+"""Sadowsky's law with |eta| <= 1, eqs. (4.3)-(4.4), its two sheets, and their mixture.
+
+The strain u2 jumps where m2 changes sign, between -|m3|/4 and |m3|/4. Beside the two sheets
+(chi = sign of m2, each continued analytically beyond m2 = 0) there are arcs on which m2 stays zero,
+a fine mixture of both (section 4, the convexified energy).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import casadi as ca
+
+from .implicit import ImplicitLaw, bounded
+from .law import ConstitutiveLaw, Relaxed, RibbonLaw, Stress
+from .relations import (
+    Pair,
+    convexified_energy,
+    norm,
+    sadowsky_complementary_energy,
+    sadowsky_energy,
+    sheet_moment,
+    sheet_sum,
+)
+
+
+class SwitchedLaw(RibbonLaw):
+    """A law whose strains have a jump or a kink at m2 = 0, in phases of one sheet or a mixture."""
+
+    kinked = True
+
+    def branch(self, kind: int) -> ConstitutiveLaw:
+        return self.sheet(kind) if kind else MixtureLaw()
+
+    def sheet(self, chi: int) -> ConstitutiveLaw:
+        """Return the law of the side chi = sign(m2), continued analytically beyond m2 = 0."""
+        return SingleSheetLaw(ca.SX(chi))
+
+    def entering(self, kind: int, before: int, stress: Stress) -> Mapping[str, ca.SX]:
+        n, m = stress.n, stress.m
+        if kind == 0:
+            return {"m2 = 0": m[1], "n1 + m1 u3 = 0": n[0] + m[0] * m[2] / 4}
+        # A mixture has m2 = 0 wherever it ends.
+        return {} if before == 0 else {"m2 = 0": m[1]}
+
+    def margins(self, kind: int, stress: Stress, u: ca.SX) -> Mapping[str, ca.SX]:
+        if kind:
+            wrong = "m2 has the wrong sign {where}: no equilibrium of Sadowsky's ribbon"
+            return {wrong: kind * stress.m[1]}
+        return {
+            "the mixture {where} is unstable: K < 0": mixture_stiffness(stress),
+            "|u2| > |u3| {where}: not a mixture": ca.fabs(u[2]) - ca.fabs(u[1]),
+        }
+
+
+@dataclass(frozen=True, eq=False)
+class SadowskyLaw(SwitchedLaw):
+    """Both sheets; energy W_F, the convexified W_S.
+
+    At m2 = 0 `strains` returns u2 = 0, the mixture of both for which W_F was made.
+    """
+
+    bounds_eta = True
+    smooth = False
+
+    def implicit(self, stress: Stress) -> ImplicitLaw:
+        # The gradient of W_S itself: eqs. (2.4)-(2.5) have solutions in the forbidden region too.
+        return bounded(sheet_moment, self.strain(stress), stress.m)
+
+    def strains(self, m2: ca.SX, m3: ca.SX) -> Pair:
+        M, mu = norm(m2, m3), ca.fabs(m2)
+        return ca.sign(m2) * (M + mu) ** 2 / (4 * M), m3 * (M + mu) / (4 * M)
+
+    def moments(self, u2: ca.SX, u3: ca.SX) -> Pair:
+        allowed = ca.fabs(u2) >= ca.fabs(u3)
+        m2, m3 = sheet_moment(ca.if_else(allowed, u2, 1), u3)
+        return ca.if_else(allowed, m2, 0) * (u2 != 0), ca.if_else(allowed, m3, 4 * u3)
+
+    def stored(self, u2: ca.SX, u3: ca.SX) -> ca.SX:
+        return convexified_energy(u2, u3)
+
+    def complementary(self, m2: ca.SX, m3: ca.SX) -> ca.SX:
+        return sadowsky_complementary_energy(m2, m3)
+
+    def relaxed(self, stress: Stress) -> Relaxed:
+        """W_F = min over k >= |u2| of (k + u3^2 / k)^2 / 2."""
+        z, strain = ca.SX.sym("u", 3), self.strain(stress)
+        u2, u3, k = ca.vertsplit(z)
+        path = ca.vertcat(u2 - k, -u2 - k)
+        estimate = ca.vertcat(strain[1:], ca.fmax(ca.fabs(strain[1]), ca.fabs(strain[2])))
+        return Relaxed(z, ca.vertcat(0, u2, u3), (k + u3**2 / k) ** 2 / 2, path, estimate)
+
+
+@dataclass(frozen=True, eq=False)
+class SingleSheetLaw(RibbonLaw):
+    """The sheet chi = sign(u2) of eqs. (2.4)-(2.5): (B 1) with the sign of m2 chi mended.
+
+    Analytic across m2 = 0; beyond it (chi m2 < 0) |eta| exceeds 1.
+    """
+
+    chi: ca.SX
+    bounds_eta = True
+
+    def implicit(self, stress: Stress) -> ImplicitLaw:
+        return bounded(self.moments, self.strain(stress), stress.m)
+
+    def strains(self, m2: ca.SX, m3: ca.SX) -> Pair:
+        M = norm(m2, m3)
+        p = sheet_sum(m2, m3, self.chi)
+        return self.chi * p**2 / (4 * M), m3 * p / (4 * M)
+
+    def moments(self, u2: ca.SX, u3: ca.SX) -> Pair:
+        return sheet_moment(u2, u3)
+
+    def stored(self, u2: ca.SX, u3: ca.SX) -> ca.SX:
+        return sadowsky_energy(u2, u3)
+
+    def complementary(self, m2: ca.SX, m3: ca.SX) -> ca.SX:
+        return sheet_sum(m2, m3, self.chi) ** 2 / 8
+
+
+@dataclass(frozen=True, eq=False)
+class MixtureLaw(ConstitutiveLaw):
+    """Arcs of both sheets, epsilon = 0: m2 = 0, u3 = m3 / 4, u2 = 2 n2 u3 / K.
+
+    The strain u2 keeps m2 at zero along the arc; no moment gives it.
+    """
+
+    def strain(self, stress: Stress) -> ca.SX:
+        u3 = stress.m[2] / 4
+        return ca.vertcat(0, 2 * stress.n[1] * u3 / mixture_stiffness(stress), u3)
+
+    def moment(self, u: ca.SX) -> ca.SX:
+        return ca.vertcat(0, 4 * u[2])
+
+    def energy(self, u: ca.SX) -> ca.SX:
+        return 2 * u[2] ** 2
+
+    def complementary_energy(self, stress: Stress) -> ca.SX:
+        return sadowsky_complementary_energy(stress.m[1], stress.m[2])
+
+
+def mixture_stiffness(stress: Stress) -> ca.SX:
+    """K = n3 + m3 u3 - m1^2 / 4 of a mixture, which must not be negative."""
+    n, m = stress.n, stress.m
+    return n[2] + m[2] ** 2 / 4 - m[0] ** 2 / 4

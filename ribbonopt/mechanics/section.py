@@ -1,0 +1,47 @@
+"""A cross section of a rod, symbolic, and the fields along a ribbon as numbers."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import casadi as ca
+
+from ribbonopt.arrays import Array
+
+from .laws.law import Stress
+
+
+@dataclass(frozen=True, eq=False)
+class Section:
+    """One cross section: lab-frame vectors (3,), arclength, and the law's own states (k,)."""
+
+    r: ca.SX
+    d1: ca.SX
+    d2: ca.SX
+    d3: ca.SX
+    n: ca.SX
+    m: ca.SX
+    s: ca.SX
+    own: ca.SX
+
+    def along(self, vector: ca.SX) -> ca.SX:
+        """Components (3,) of a lab vector along the directors."""
+        return ca.vertcat(*(ca.dot(vector, d) for d in (self.d1, self.d2, self.d3)))
+
+    @property
+    def stress(self) -> Stress:
+        """What a law may read of this section."""
+        return Stress(self.along(self.n), self.along(self.m), self.own)
+
+
+@dataclass(frozen=True, eq=False)
+class RodFields:
+    """Numbers along a ribbon, rows along s: r, n, m (k, 3) and frames (k, 3, 3), lab frame.
+
+    Column i of a frame is the director d_i.
+    """
+
+    r: Array
+    frames: Array
+    n: Array
+    m: Array

@@ -1,0 +1,118 @@
+"""A posed scene: everything that mechanics, solvers and studies ask of it, made once.
+
+A `Scene` is what a user wrote; `Posed` is what it means: in units Dw = L = 1, its conditions, its
+loads, and every number by name (theta). All that follows takes this object, so that nothing is
+converted, evaluated or built a second time.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+from typing import Any
+
+import numpy as np
+
+from ribbonopt.arrays import Array
+from ribbonopt.mechanics.ends.boundary import conditions_of, start_frame, start_position
+from ribbonopt.mechanics.ends.conditions import Condition
+from ribbonopt.mechanics.laws.catalogue import numbers_of
+from ribbonopt.mechanics.loads.catalogue import loads_of
+from ribbonopt.mechanics.loads.load import Load
+from ribbonopt.scene import Scene
+from ribbonopt.scene.units import Units, in_special_units, units_of
+
+#: force and moment at the start where they are not unknowns but follow from costates
+RECOVERED = tuple(f"recovered.{name}" for name in ("nx", "ny", "nz", "mx", "my", "mz"))
+
+Place = tuple[Array, Array]  # position (3,) and frame (3, 3), lab
+
+
+@dataclass(frozen=True, eq=False)
+class Posed:
+    """A scene, its conditions, its loads and its numbers.
+
+    Attributes
+    ----------
+    given : Scene
+        As the user wrote it.
+    scene : Scene
+        The same in units Dw = L = 1.
+    conditions : tuple of Condition
+        What it prescribes at the ends, in the order of its file.
+    loads : tuple of Load
+        What acts along the ribbon.
+    """
+
+    given: Scene
+    scene: Scene
+    conditions: tuple[Condition, ...]
+    loads: tuple[Load, ...]
+
+    @classmethod
+    def of(cls, scene: Scene) -> Posed:
+        """Pose a scene."""
+        special = in_special_units(scene)
+        return cls(scene, special, conditions_of(special), loads_of(special))
+
+    def under(self, **changes: Any) -> Posed:
+        """Return the same ribbon, at the same ends, under other settings of the special scene.
+
+        `changes` are fields of the scene other than boundary and interval: another law, another
+        formulation. Numbers that stay are not evaluated again.
+        """
+        special = replace(self.scene, **changes)
+        conditions = self.conditions
+        if special.boundary.loop is not None and special.formulation != self.scene.formulation:
+            conditions = conditions_of(special)  # a loop closes otherwise where energy is minimised
+        return Posed(special, special, conditions, self.loads)
+
+    @cached_property
+    def units(self) -> Units:
+        """Units of the scene as it was given, in units Dw = L = 1."""
+        return units_of(self.given)
+
+    @cached_property
+    def theta(self) -> dict[str, float]:
+        """Every number of the scene, in units Dw = L = 1, by name and in order."""
+        scene, (position, _) = self.scene, self.start
+        values = {f"law.{name}": value for name, value in numbers_of(scene.law).items()}
+        values |= {"interval.start": scene.interval[0], "interval.end": scene.interval[1]}
+        values |= {f"reference.{axis}": float(position[i]) for i, axis in enumerate("xyz")}
+        values |= {f"parameters.{name}": value for name, value in scene.parameters.items()}
+        for load in self.loads:
+            values |= load.numbers()
+        for condition in self.conditions:
+            values |= condition.theta()
+        if scene.formulation == "energy":
+            values |= dict.fromkeys(RECOVERED, 0.0)
+        return values
+
+    @cached_property
+    def values(self) -> Array:
+        """The numbers theta (nt,)."""
+        return np.array(list(self.theta.values()))
+
+    @cached_property
+    def structure(self) -> tuple[object, ...]:
+        """What scenes share that differ in numbers only, which serve one built problem."""
+        scene = self.scene
+        conditions = tuple(
+            (type(c).__name__, *(v for v in vars(c).values() if isinstance(v, str)))
+            for c in self.conditions
+        )
+        loads = tuple(type(load).__name__ for load in self.loads)
+        settings = scene.law.type, scene.formulation, scene.states, scene.transcription
+        return (*settings, scene.solver, tuple(self.theta), conditions, loads, scene.boundary.also)
+
+    @cached_property
+    def start(self) -> Place:
+        """Position and frame of the start, those of the lab where they are not prescribed."""
+        boundary, parameters = self.scene.boundary, self.scene.parameters
+        return start_position(boundary, parameters), start_frame(boundary, parameters)
+
+    @property
+    def length(self) -> float:
+        """Length of the ribbon, in units Dw = L = 1."""
+        start, end = self.scene.interval
+        return end - start
