@@ -16,8 +16,8 @@ from ribbonopt.solution.solution import Solution
 from ribbonopt.solution.trajectory import Trajectory
 from ribbonopt.solution.verification import unverified
 from ribbonopt.solvers import SolveReport, Status
-from ribbonopt.solvers.auto import Auto
-from ribbonopt.solvers.newton import Newton
+from ribbonopt.solvers.auto import AutoSolver
+from ribbonopt.solvers.newton import NewtonSolver
 from ribbonopt.transcription import NLP
 
 from .resistance import where_it_resists
@@ -83,9 +83,9 @@ class Attempts:
     ) -> bool:
         """Solve from unknowns w (nw,); see `run`. Newton's method may begin with given factors."""
         solver = self.solver
-        if quick and isinstance(solver, Auto) and self.nlp.square:
+        if quick and isinstance(solver, AutoSolver) and self.nlp.square:
             solver = solver.newton
-        if factors is not None and isinstance(solver, Newton):
+        if factors is not None and isinstance(solver, NewtonSolver):
             report = solver.solve(w, self.p, enough=self.enough, factors=factors)
         else:
             report = solver.solve(w, self.p, enough=self.enough)

@@ -18,7 +18,7 @@ from ribbonopt.scene import Collocation, Law, Scene
 from ribbonopt.solution.from_report import solution_of
 from ribbonopt.solution.solution import Solution
 from ribbonopt.solvers import SolveReport
-from ribbonopt.solvers.ipopt import Ipopt
+from ribbonopt.solvers.ipopt import IpoptSolver
 from ribbonopt.transcription import NLP, Mesh
 
 MESH = Collocation(scheme="gauss", degree=3, intervals=16)
@@ -32,7 +32,7 @@ class LeastEnergy:
     ribbon: Ribbon
     problem: BoundaryValueProblem
     nlp: NLP
-    solver: Ipopt
+    solver: IpoptSolver
 
     @classmethod
     def of(cls, scene: Scene, law: Law) -> LeastEnergy:
@@ -41,7 +41,7 @@ class LeastEnergy:
         ribbon = ribbon_of(scene)
         problem = minimum(ribbon)
         nlp = discretize(scene, problem)
-        solver = Ipopt(nlp, TOLERANCE, MAX_ITERATIONS)
+        solver = IpoptSolver(nlp, TOLERANCE, MAX_ITERATIONS)
         return cls(ribbon, problem, nlp, solver)
 
     def solve(self, scene: Scene, law: Law, guess: Guess) -> tuple[SolveReport, Solution]:

@@ -19,7 +19,7 @@ from ribbonopt.solution.solution import Solution
 from ribbonopt.solution.trajectory import Trajectory
 from ribbonopt.solution.verification import unverified
 from ribbonopt.solvers import Status
-from ribbonopt.solvers.newton import Newton
+from ribbonopt.solvers.newton import NewtonSolver
 from ribbonopt.transcription import NLP, Mesh
 
 MESH = Collocation(scheme="gauss", degree=3, intervals=30)
@@ -47,7 +47,7 @@ class SmoothHomotopy:
     ribbon: Ribbon
     problem: BoundaryValueProblem
     nlp: NLP
-    newton: Newton
+    newton: NewtonSolver
 
     @classmethod
     def of(cls, scene: Scene, law: Law) -> SmoothHomotopy:
@@ -55,7 +55,7 @@ class SmoothHomotopy:
         scene = _posed(scene, law)
         ribbon, problem = pose(scene)
         nlp = discretize(scene, problem)
-        return cls(ribbon, problem, nlp, Newton(nlp, TOLERANCE, MAX_ITERATIONS))
+        return cls(ribbon, problem, nlp, NewtonSolver(nlp, TOLERANCE, MAX_ITERATIONS))
 
     def follow(self, scene: Scene, law: Law, guess: Guess, delta: float) -> HomotopyPath:
         """Follow from a guess at one law to all of the conditions, then down to a delta."""

@@ -10,7 +10,7 @@ from references import HALF_MOEBIUS
 from ribbonopt.guess import IntegratedLoads, initial_unknowns
 from ribbonopt.problem import BoundaryValueProblem, pose, theta_of
 from ribbonopt.scene import load_scene
-from ribbonopt.solvers import Newton, Status
+from ribbonopt.solvers import NewtonSolver, Status
 from ribbonopt.transcription import Mesh, MultipleShooting, Output, lobatto
 
 #: (scheme, degree, steps): intervals whose errors are asymptotic and above rounding
@@ -37,7 +37,7 @@ def slope(counts: tuple[int, ...], errors: list[float]) -> float:
 def shot(problem: BoundaryValueProblem, method: tuple[str, int, int], elements: int) -> Output:
     nlp = MultipleShooting.named(*method).transcribe(problem, (elements,))
     p = Mesh.uniform(elements).widths
-    report = Newton(nlp).solve(np.ones(nlp.unknowns), p)
+    report = NewtonSolver(nlp).solve(np.ones(nlp.unknowns), p)
     assert report.status is Status.CONVERGED
     return nlp.blocks.dense(report.w, p)
 
@@ -121,7 +121,7 @@ def test_the_ribbon_converges_at_the_declared_order(
         theta = np.array(list(theta_of(scene).values()))
         p = np.concatenate([theta, Mesh.uniform(intervals).widths])
         guess = IntegratedLoads(ribbon, scene, scene.guess)
-        report = Newton(nlp).solve(initial_unknowns(guess, ribbon, problem, nlp.blocks, p), p)
+        report = NewtonSolver(nlp).solve(initial_unknowns(guess, ribbon, problem, nlp.blocks, p), p)
         assert report.status is Status.CONVERGED
         # Reduced states: n, and m at the origin, are the constants.
         constants = nlp.blocks.dense(report.w, p).constants

@@ -26,13 +26,13 @@ SCHEMES: dict[str, Callable[[int], Tableau]] = {"gauss": gauss, "radau": radau, 
 
 
 @dataclass(frozen=True, eq=False)
-class Collocation:
+class CollocationMethod:
     """Collocation by one tableau, the same in every phase."""
 
     tableau: Tableau
 
     @classmethod
-    def named(cls, scheme: str, degree: int) -> Collocation:
+    def named(cls, scheme: str, degree: int) -> CollocationMethod:
         """Return the collocation of a named scheme; raises TranscriptionError for others."""
         if scheme not in SCHEMES:
             raise TranscriptionError(
