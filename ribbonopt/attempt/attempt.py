@@ -104,7 +104,7 @@ class Attempts:
         """Return a solution from its unknowns w (nw,), which were verified when they were found."""
         return Solution(
             scene=self.scene,
-            trajectory=Trajectory(self.problem, self.nlp.blocks.dense(w, self.p)),
+            trajectory=Trajectory(self.problem, self.nlp.output(w, self.p)),
             status=Status.CONVERGED,
             message=Status.CONVERGED.value,
             iterations=0,

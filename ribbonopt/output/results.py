@@ -115,7 +115,7 @@ def load_solution(path: str | Path) -> Solution:
     worst, between, law = (_number(summary[key]) for key in keys)
     return Solution(
         scene=scene,
-        trajectory=Trajectory(problem, nlp.blocks.dense(w, p)),
+        trajectory=Trajectory(problem, nlp.output(w, p)),
         status=status,
         message=summary["message"],
         iterations=summary["iterations"],

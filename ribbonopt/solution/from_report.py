@@ -29,7 +29,7 @@ def solution_of(
         p = _with_recovered(problem, nlp, report, p)
     return Solution(
         scene=scene,
-        trajectory=Trajectory(problem, nlp.blocks.dense(report.w, p)),
+        trajectory=Trajectory(problem, nlp.output(report.w, p)),
         status=report.status,
         message=report.status.value,
         iterations=report.iterations,

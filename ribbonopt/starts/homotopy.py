@@ -123,9 +123,7 @@ class _Tracking:
         self.points.append(
             Solution(
                 scene=_posed(self.scene, self.law),
-                trajectory=Trajectory(
-                    self.equations.problem, self.equations.nlp.blocks.dense(self.w, p)
-                ),
+                trajectory=Trajectory(self.equations.problem, self.equations.nlp.output(self.w, p)),
                 status=Status.CONVERGED,
                 message=Status.CONVERGED.value,
                 iterations=self.iterations,

@@ -167,7 +167,7 @@ class TestForbiddenRegion:
         report = built.solver.solve(w, p)
         found = Solution(
             scene=built.scene,
-            trajectory=Trajectory(built.problem, built.nlp.blocks.dense(report.w, p)),
+            trajectory=Trajectory(built.problem, built.nlp.output(report.w, p)),
             status=report.status,
             message="",
             iterations=report.iterations,

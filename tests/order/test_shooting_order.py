@@ -39,7 +39,7 @@ def shot(problem: BoundaryValueProblem, method: tuple[str, int, int], elements: 
     p = Mesh.uniform(elements).widths
     report = NewtonSolver(nlp).solve(np.ones(nlp.unknowns), p)
     assert report.status is Status.CONVERGED
-    return nlp.blocks.dense(report.w, p)
+    return nlp.output(report.w, p)
 
 
 def between(nodes: np.ndarray) -> np.ndarray:
@@ -124,7 +124,7 @@ def test_the_ribbon_converges_at_the_declared_order(
         report = NewtonSolver(nlp).solve(initial_unknowns(guess, ribbon, problem, nlp.blocks, p), p)
         assert report.status is Status.CONVERGED
         # Reduced states: n, and m at the origin, are the constants.
-        constants = nlp.blocks.dense(report.w, p).constants
+        constants = nlp.output(report.w, p).constants
         errors.append(np.abs(constants - reference).max())
     assert slope(RIBBON[method], errors) == pytest.approx(nlp.blocks.order, abs=0.5)
 

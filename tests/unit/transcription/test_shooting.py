@@ -71,7 +71,7 @@ def shot(
     p = Mesh.uniform(*elements).widths
     report = NewtonSolver(nlp).solve(np.full(nlp.unknowns, start), p)
     assert report.status is Status.CONVERGED, report.status
-    dense = nlp.blocks.dense(report.w, p)
+    dense = nlp.output(report.w, p)
     assert isinstance(dense, ShootingOutput)
     return report, dense
 
@@ -266,7 +266,7 @@ def test_the_start_of_algebraic_variables_chooses_their_sheet(sign: float) -> No
     report = NewtonSolver(nlp).solve(np.ones(nlp.unknowns), p)
     assert report.status is Status.CONVERGED
     s = np.linspace(0, 1, 9)
-    dense = nlp.blocks.dense(report.w, p)
+    dense = nlp.output(report.w, p)
     np.testing.assert_allclose(dense.states(0, s)[:, 0], np.exp(sign * s), rtol=1e-9)
 
 
@@ -381,5 +381,5 @@ def test_half_moebius_ribbon_is_that_of_the_reference(
     report = NewtonSolver(nlp).solve(initial_unknowns(guess, ribbon, problem, nlp.blocks, p), p)
     assert report.status is Status.CONVERGED
     reference = np.concatenate([HALF_MOEBIUS["n0"], HALF_MOEBIUS["m0"]])
-    constants = nlp.blocks.dense(report.w, p).constants
+    constants = nlp.output(report.w, p).constants
     np.testing.assert_allclose(constants, reference, rtol=0, atol=tolerance * 44)
