@@ -33,7 +33,7 @@ from ribbonopt.scene import Scene
 from ribbonopt.scene.units import in_special_units
 from ribbonopt.solution.solution import Solution
 from ribbonopt.transcription import Tableau, gauss
-from ribbonopt.transcription.buffered import buffered, mapped
+from ribbonopt.transcription.buffered import Buffered, Mapped
 from ribbonopt.transcription.functions import condition_functions, stage_functions
 
 NX, NZ = 7, 2
@@ -122,10 +122,10 @@ class _Energy:
     """
 
     ribbon: Ribbon
-    first: ca.Function
-    second: ca.Function
-    conditions: ca.Function
-    bent: ca.Function
+    first: Mapped
+    second: Mapped
+    conditions: Buffered
+    bent: Buffered
 
     def at(self, solution: Solution, theta: Array) -> SecondVariation:
         """Second variation at the shape of a solution, on its own elements."""
@@ -136,10 +136,10 @@ class _Energy:
         tableau, count, none = gauss(degree), degree * len(widths), np.empty(0)
         points, v = self._sampled(solution, widths, tableau)
         inputs = v, none, theta, np.zeros(count)
-        J, slopes = mapped(self.first)(*inputs)
+        J, slopes = self.first(*inputs)
         J = J.reshape(*v.shape, NX).swapaxes(2, 3)  # CasADi stores columns first
         chain = _LinearisedChain(J, slopes.reshape(v.shape), widths, tableau)
-        b, B = buffered(self.conditions)(points, none, theta)
+        b, B = self.conditions(points, none, theta)
         B = B.reshape(2 * NX, len(b)).T
         left, singular, right = np.linalg.svd(B @ chain.ends, full_matrices=False)
         kept = singular > DEPENDENT * singular[0]
@@ -148,8 +148,8 @@ class _Energy:
         multipliers = -left @ (right @ g / singular)
         residual = np.linalg.norm(g - right @ g @ right) / max(float(np.linalg.norm(g)), FLAT)
         weights = chain.weights(B[:, NX:].T @ multipliers)
-        (H,) = mapped(self.second)(*inputs, weights)
-        (bent,) = buffered(self.bent)(points, none, theta, multipliers)
+        (H,) = self.second(*inputs, weights)
+        (bent,) = self.bent(points, none, theta, multipliers)
         hessian = chain.hessian(H.reshape(*v.shape, NX + NZ))
         hessian += chain.ends.T @ bent.reshape(2 * NX, 2 * NX) @ chain.ends
         free = np.linalg.qr(right.T, mode="complete")[0][:, len(right) :]
@@ -176,10 +176,10 @@ def _built(structure: _Structure) -> _Energy:
     hessians = [ca.densify(ca.triu2symm(g.lagrangian_hessian)) for g in (f, ends)]
     return _Energy(
         ribbon,
-        ca.Function("first", list(f.inputs), slopes),
-        ca.Function("second", [*f.inputs, f.weights], hessians[:1]),
-        ends.dense,
-        ca.Function("bent", [*ends.inputs, ends.multipliers], hessians[1:]),
+        Mapped(ca.Function("first", list(f.inputs), slopes)),
+        Mapped(ca.Function("second", [*f.inputs, f.weights], hessians[:1])),
+        ends.buffered_dense,
+        Buffered(ca.Function("bent", [*ends.inputs, ends.multipliers], hessians[1:])),
     )
 
 

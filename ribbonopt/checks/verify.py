@@ -8,6 +8,7 @@ loop must close with the half twists that were asked.
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import lru_cache
 
 import numpy as np
 
@@ -15,7 +16,7 @@ from ribbonopt.arrays import Array
 from ribbonopt.problem import Ribbon
 from ribbonopt.solution.solution import Solution
 from ribbonopt.solution.verification import Verification, unverified
-from ribbonopt.transcription.buffered import buffered
+from ribbonopt.transcription.buffered import Buffered
 
 TOLERANCE = 1e-8
 
@@ -77,7 +78,7 @@ def verify(solution: Solution, ribbon: Ribbon) -> Verification:
 
 def _worst_condition(solution: Solution, ribbon: Ribbon) -> tuple[str, float]:
     """Name and size of the condition that is furthest from what was asked."""
-    names, function = ribbon.verdicts_function
+    names, function = _verdicts(ribbon)
     count, constants = len(ribbon.model.states), len(ribbon.model.constants)
     nodes = solution.dense.at_nodes
     # Without further states, and without the lengths of phases.
@@ -87,7 +88,7 @@ def _worst_condition(solution: Solution, ribbon: Ribbon) -> tuple[str, float]:
         solution.constants[:constants],
         solution.dense.theta,
     )
-    (values,) = buffered(function)(*known)
+    (values,) = function(*known)
     # Relative to the loads, absolute in lengths and directors (L = 1).
     n0, m0 = solution.n0 / solution.units.force, solution.m0 / solution.units.moment
     scale = 1 + max(np.linalg.norm(n0), np.linalg.norm(m0))
@@ -96,6 +97,13 @@ def _worst_condition(solution: Solution, ribbon: Ribbon) -> tuple[str, float]:
     sizes = np.where(np.isfinite(sizes), sizes / np.where(loads, scale, 1.0), np.inf)
     index = int(sizes.argmax())
     return names[index], float(sizes[index])
+
+
+@lru_cache(maxsize=8)
+def _verdicts(ribbon: Ribbon) -> tuple[tuple[str, ...], Buffered]:
+    """Names of what to verify, and their values on numpy arrays."""
+    names, function = ribbon.verdicts_function
+    return names, Buffered(function)
 
 
 def _drift(values: Array, scale: float | None = None) -> float:

@@ -13,7 +13,7 @@ from ribbonopt.mechanics import RodFields
 from ribbonopt.mechanics.ends.boundary import start_frame, start_position
 from ribbonopt.problem import BoundaryValueProblem, Ribbon, theta_values
 from ribbonopt.scene import LoadGuess, Scene
-from ribbonopt.transcription.buffered import Buffered, mapped
+from ribbonopt.transcription.buffered import Buffered, Mapped
 
 STEPS = 32  # of one call
 
@@ -33,8 +33,7 @@ class IntegratedLoads:
     def fields(self, fraction: Array) -> RodFields:
         """Fields at fractions (k,) of the length, increasing from 0 to 1."""
         x, c = self._integrated(fraction)
-        section = mapped(self.ribbon.section_function)
-        parts = section(x, c, theta_values(self.scene))[:6]
+        parts = _sections(self.ribbon)(x, c, theta_values(self.scene))[:6]
         r, d1, d2, d3, n, m = (part.reshape(-1, 3) for part in parts)
         return RodFields(r, np.stack([d1, d2, d3], axis=2), n, m)
 
@@ -68,6 +67,12 @@ class IntegratedLoads:
             (after,) = steps(parts[-1][-1], *shared, part)
             parts.append(after.reshape(STEPS, -1))
         return np.vstack(parts)[: count + 1 : substeps], c
+
+
+@lru_cache(maxsize=8)
+def _sections(ribbon: Ribbon) -> Mapped:
+    """Cross-sections at any number of states."""
+    return Mapped(ribbon.section_function)
 
 
 @lru_cache(maxsize=8)
