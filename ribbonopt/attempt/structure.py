@@ -69,7 +69,7 @@ class Built:
         if mesh is None:
             mesh = self._mesh(scene, switches)
         nlp, solver = self.on(mesh.elements)
-        p = np.append(self.theta(scene), mesh.widths)
+        p = nlp.layout.parameters(self.theta(scene), mesh.widths)
         return Attempts(scene, p, self.ribbon, self.problem, nlp, solver, self.sheets, switches)
 
     def theta(self, scene: Scene) -> Array:

@@ -109,7 +109,7 @@ def load_solution(path: str | Path) -> Solution:
             "solve the scene again"
         )
     # The saved parameters, because some follow from the solution (loads from costates).
-    p = np.concatenate([theta, widths])
+    p = nlp.layout.parameters(theta, widths)
     drift = {k: _number(v) for k, v in summary["invariant_drift"].items()}
     keys = ("worst_condition", "residual_between_nodes", "law_residual")
     worst, between, law = (_number(summary[key]) for key in keys)

@@ -46,7 +46,7 @@ def _with_recovered(
     inputs = [problem.points[0], problem.costate, problem.parameters]
     function = ca.Function("recover", inputs, [ca.vertcat(*problem.recovered.values())])
     nodes, _, _ = nlp.layout.unpack(report.w)
-    theta = p[: problem.parameters.numel()]
+    theta = nlp.layout.theta(p)
     values = function(nodes[0], nlp.layout.start_costate(report.multipliers), theta)
     where = [problem.parameter_names.index(name) for name in problem.recovered]
     result: Array = p.copy()

@@ -8,8 +8,6 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 
-import numpy as np
-
 from ribbonopt.attempt.discretize import discretize
 from ribbonopt.guess import Guess, initial_unknowns
 from ribbonopt.problem import BoundaryValueProblem, Ribbon, ribbon_of, theta_values
@@ -47,7 +45,7 @@ class LeastEnergy:
     def solve(self, scene: Scene, law: Law, guess: Guess) -> tuple[SolveReport, Solution]:
         """Solve for the numbers of a scene; the solution is worth nothing unless converged."""
         widths = Mesh.uniform(MESH.intervals).widths
-        p = np.concatenate([theta_values(_posed(scene, law)), widths])
+        p = self.nlp.layout.parameters(theta_values(_posed(scene, law)), widths)
         w = initial_unknowns(guess, self.ribbon, self.problem, self.nlp.blocks, p)
         report = self.solver.solve(w, p)
         posed = _posed(scene, law)

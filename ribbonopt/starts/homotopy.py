@@ -134,7 +134,8 @@ class _Tracking:
 
     def _p(self, law: Law) -> Array:
         theta = theta_values(_posed(self.scene, law))
-        return np.concatenate([theta, Mesh.uniform(MESH.intervals).widths])
+        widths = Mesh.uniform(MESH.intervals).widths
+        return self.equations.nlp.layout.parameters(theta, widths)
 
 
 def _posed(scene: Scene, law: Law) -> Scene:
