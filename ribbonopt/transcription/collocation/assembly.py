@@ -141,7 +141,7 @@ class Assembler:
             scaled = (row < lay.nx).astype(float)[:, None]
             widths = self._repeated_widths(s)
             scale = ca.DM(scaled) @ widths + ca.DM(1 - scaled) @ ca.DM.ones(1, widths.shape[1])
-            stacked = ca.reshape(jac * scale, lay.stages * len(row), -1)
+            stacked = ca.reshape(jac * scale, lay.stages * len(row), s.stop - s.start)
             S, k, local_row, local_col = element_pattern(lay, self.tableau, row, col)
             nonzeros.append(ca.vec(S @ stacked + ca.repmat(k, 1, s.stop - s.start)))
             elements = np.arange(s.start, s.stop)[:, None]
