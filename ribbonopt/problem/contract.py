@@ -13,7 +13,7 @@ is an instance, every transcription consumes it, none asks which it is.
 Known fields are data along s (a measured width, a load from a file, the time step before). They are
 numbers as theta is: a program is built once and evaluated with any of them, see
 `ribbonopt.transcription.known`. A field belongs to relative positions in its phase: where a length
-is unknown it stretches with the phase, and no derivative of k by that length exists.
+is unknown it stretches with the phase (`ribbonopt.transcription.fields` has fields of s).
 """
 
 from __future__ import annotations
@@ -77,7 +77,7 @@ class BoundaryValueProblem:
     local, estimate : SX symbols, SX
         What any guess knows at a point, and from it the last states and the algebraic variables.
     algebraic_start : SX (nz,)
-        Where to start solving the algebraic equations, from states, constants and parameters.
+        Where to start solving the algebraic equations, from states, constants, parameters and k.
     costate, recovered : SX symbols (nx,), mapping of str to SX
         Costates at the start, and parameters whose values follow from them once a problem with a
         cost is solved; until then they enter outputs only.

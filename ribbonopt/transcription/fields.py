@@ -1,8 +1,12 @@
 """Data over arclengths, fractions of the length or in tables, read as known fields of phases.
 
-They need phases of known lengths: a stage that moves with an unknown length would want the
-derivative of k by it. Jumps belong where phases meet, with a field of each phase on either side;
-inside an element a jump costs every scheme its order.
+They need phases of known lengths: a stage that moves with an unknown length wants the derivative
+of k by it. A formulation can give that: with the known fields k, dk/ds and the s where they were
+read, it writes k + dk/ds (position - s); the fields are read at the lengths of some constants, and
+read again at those that were found, which is Newton's method once more.
+
+Jumps belong where phases meet, with a field of each phase on either side; inside an element a jump
+costs every scheme its order.
 """
 
 from __future__ import annotations
@@ -37,9 +41,14 @@ class AlongPhases:
         return self.field(np.clip(a + (b - a) * sigma, a, b))
 
 
-def of_arclength(problem: BoundaryValueProblem, theta: Array, field: Field) -> Known:
-    """Read a field of the arclength s; TranscriptionError where the lengths are unknown."""
-    return AlongPhases(field, _ends(problem, theta))
+def of_arclength(
+    problem: BoundaryValueProblem, theta: Array, field: Field, constants: Array | None = None
+) -> Known:
+    """Read a field of the arclength s; TranscriptionError where the lengths are unknown.
+
+    Unless `constants` (nc,) say which lengths are meant.
+    """
+    return AlongPhases(field, _ends(problem, theta, constants))
 
 
 def of_fraction(problem: BoundaryValueProblem, theta: Array, field: Field) -> Known:
@@ -49,23 +58,23 @@ def of_fraction(problem: BoundaryValueProblem, theta: Array, field: Field) -> Kn
     """
     if len(problem.phases) == 1:
         return AlongPhases(field, np.array([0.0, 1.0]))
-    ends = _ends(problem, theta)
+    ends = _ends(problem, theta, None)
     fractions = (ends - ends[0]) / (ends[-1] - ends[0])
     fractions[-1] = 1.0
     return AlongPhases(field, fractions)
 
 
-def _ends(problem: BoundaryValueProblem, theta: Array) -> Array:
+def _ends(problem: BoundaryValueProblem, theta: Array, constants: Array | None) -> Array:
     """Arclengths (P + 1,) where phases begin and end."""
-    extent, constants = problem.extent_function, np.zeros(problem.constants.numel())
     lengths = ca.vertcat(problem.start, *(phase.length for phase in problem.phases))
-    if ca.depends_on(lengths, problem.constants):
+    if constants is None and ca.depends_on(lengths, problem.constants):
         raise TranscriptionError(
             "a known field of s or of the whole length needs phases of known lengths, found "
             "lengths that contain unknown constants; give the field by relative positions of each "
             "phase, or leave the phases out"
         )
-    return np.cumsum(np.array(extent(constants, theta)).ravel())
+    c = np.zeros(problem.constants.numel()) if constants is None else constants
+    return np.cumsum(np.array(problem.extent_function(c, theta)).ravel())
 
 
 @dataclass(frozen=True, eq=False)

@@ -68,6 +68,35 @@ def test_lengths_that_are_unknown_are_refused() -> None:
     assert end_of(one, np.empty(0), fields, 20) == pytest.approx(np.e, rel=1e-10)
 
 
+@pytest.mark.parametrize("scheme", ["collocation", "shooting"])
+def test_fields_of_s_under_unknown_lengths_are_read_again(scheme: str) -> None:
+    # x' = k up to x = 0.2, which is at sin(3 c) / 3 = 0.2, then x' = 2 k; k = cos 3s all along.
+    x, c, s, k = ca.SX.sym("x"), ca.SX.sym("c"), ca.SX.sym("s"), ca.SX.sym("k", 3)
+    moved = k[0] + k[1] * (s - k[2])
+    phases = (Phase(moved, c, {}), Phase(2 * moved, 1 - c, {}))
+    problem = bvp(x, phases, lambda a, b, _: {"left": a, "switch": b - 0.2}, c=c, s=s)
+    problem = replace(problem, known=k, known_names=("k", "slope", "s"))
+    method = MultipleShooting.named("rk8")
+    method = CollocationMethod.named("gauss", 6) if scheme == "collocation" else method
+    nlp, widths = method.transcribe(problem, (4, 4)), Mesh.uniform(4, 4).widths
+
+    def field(s: Array) -> Array:
+        return np.column_stack([np.cos(3 * s), -3 * np.sin(3 * s), s])
+
+    w, found, exact = np.full(nlp.unknowns, 0.4), [np.array([0.4])], np.arcsin(0.6) / 3
+    for _ in range(5):
+        fields = of_arclength(problem, np.empty(0), field, found[-1])
+        p = nlp.layout.parameters(np.empty(0), widths, fields)
+        report = NewtonSolver(nlp).solve(w, p)
+        assert report.status is Status.CONVERGED
+        w, output = report.w, nlp.output(report.w, p, fields)
+        found.append(output.constants)
+    errors = [abs(float(constants[0]) - exact) for constants in found]
+    assert errors[1] < 0.1 and errors[2] < 3 * errors[1] ** 2 and errors[-1] < 1e-11
+    end = 0.2 + 2 * (np.sin(3) / 3 - 0.2)
+    assert output.at_nodes[-1, 0] == pytest.approx(end, abs=1e-9)
+
+
 @pytest.mark.parametrize("degree", [1, 3, 5])
 def test_tables_have_the_order_of_their_splines(degree: int) -> None:
     where, errors = np.linspace(0, 1, 501), []
