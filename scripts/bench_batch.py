@@ -26,7 +26,7 @@ from stopwatches import stopwatches
 from ribbonopt.accuracy import estimate
 from ribbonopt.attempt import attempt as attempts
 from ribbonopt.solvers.condense import CondensedSystem
-from ribbonopt.solvers.newton import Newton
+from ribbonopt.solvers.newton import NewtonSolver
 from ribbonopt.studies.batch import worker
 from ribbonopt.studies.batch.batch import run_batch
 from ribbonopt.studies.batch.chunks import Chunk, chunks_of
@@ -66,7 +66,7 @@ WATCHED = (
     (worker.Worker, "_solved", "in all"),
     (worker, "loads_scene", "scene read"),
     (worker, "structure_of", "structure"),
-    (Newton, "solve", "Newton's method"),
+    (NewtonSolver, "solve", "Newton's method"),
     (estimate, "_analysed", "estimate"),
     (attempts, "verify", "verification"),
     (ElementBlocks, "residuals", "of these: residuals"),

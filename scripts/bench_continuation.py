@@ -26,7 +26,7 @@ from stopwatches import stopwatches
 from ribbonopt.accuracy import estimate
 from ribbonopt.pipeline.prepared import Prepared
 from ribbonopt.scene import Scene, load_scene
-from ribbonopt.solvers.newton import Newton
+from ribbonopt.solvers.newton import NewtonSolver
 from ribbonopt.studies.continuation import recorded, walk
 from ribbonopt.studies.continuation.continuation import Continuation
 
@@ -60,7 +60,7 @@ DELTA = [
 
 
 WATCHED = (
-    (Newton, "solve", "Newton"),
+    (NewtonSolver, "solve", "Newton"),
     (walk, "near", "tangents and determinants"),
     (estimate, "_analysed", "estimates"),
     (walk, "special_points", "special points"),

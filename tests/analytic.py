@@ -6,8 +6,8 @@ import casadi as ca
 import numpy as np
 
 from ribbonopt.problem import BoundaryValueProblem, Phase
-from ribbonopt.solvers import Newton, SolveReport, Status
-from ribbonopt.transcription import NLP, Collocation, Mesh
+from ribbonopt.solvers import NewtonSolver, SolveReport, Status
+from ribbonopt.transcription import NLP, CollocationMethod, Mesh
 from ribbonopt.transcription.collocation.output import DenseOutput
 
 Array = np.ndarray
@@ -106,7 +106,7 @@ def transcribed(
     problem: BoundaryValueProblem, scheme: str, degree: int, *elements: int
 ) -> tuple[NLP, Array]:
     """Return the NLP on a uniform mesh and its parameters (theta must be empty)."""
-    nlp = Collocation.named(scheme, degree).transcribe(problem, elements)
+    nlp = CollocationMethod.named(scheme, degree).transcribe(problem, elements)
     return nlp, Mesh.uniform(*elements).widths
 
 
@@ -115,6 +115,6 @@ def by_newton(
 ) -> tuple[SolveReport, DenseOutput]:
     """Solve from constant unknowns."""
     nlp, p = transcribed(problem, scheme, degree, *elements)
-    report = Newton(nlp).solve(np.full(nlp.unknowns, start), p)
+    report = NewtonSolver(nlp).solve(np.full(nlp.unknowns, start), p)
     assert report.status is Status.CONVERGED, report.status
     return report, DenseOutput(nlp.blocks, report.w, p)

@@ -94,14 +94,15 @@ def relative_error(solution: Solution) -> tuple[float, str]:
 
 def _analysed(trajectory: Trajectory, near: CondensedSystem | None, keep: bool) -> Analysis:
     dense = trajectory.dense
-    blocks, w, p, split = dense.refined()
+    finer, split = dense.refined()
+    blocks, w, p = finer.blocks, finer.w, finer.p
     if near is None:
         residuals, derivatives = blocks.linearize(w, p)
         factors = CondensedSystem(blocks, derivatives, p, only=None if keep else residuals)
     else:
         residuals, factors, keep = blocks.residuals(w, p), near, True
     step = factors.solve(residuals)
-    better = Trajectory(trajectory.problem, blocks.dense(w + step, p))
+    better = Trajectory(trajectory.problem, finer.moved(step))
     size = np.maximum(np.abs(dense.at_nodes).max(axis=0), 1.0)
     local = np.abs(residuals.nodes / size).max(axis=1).reshape(-1, split).sum(axis=1)
     errors = _errors(trajectory, better, split)

@@ -12,8 +12,8 @@ from ribbonopt.problem import BoundaryValueProblem, Posed, Ribbon
 from ribbonopt.solution.made import solution_at, solution_of
 from ribbonopt.solution.solution import Solution
 from ribbonopt.solvers import SolveReport, Status
-from ribbonopt.solvers.auto import Auto
-from ribbonopt.solvers.newton import Newton
+from ribbonopt.solvers.auto import AutoSolver
+from ribbonopt.solvers.newton import NewtonSolver
 from ribbonopt.transcription import NLP
 
 from .ledger import Ledger
@@ -84,9 +84,9 @@ class Attempt:
     ) -> bool:
         """Solve from unknowns w (nw,); see `run`. Newton's method may begin with given factors."""
         solver = self.solver
-        if quick and isinstance(solver, Auto) and self.nlp.square:
+        if quick and isinstance(solver, AutoSolver) and self.nlp.square:
             solver = solver.newton
-        if factors is not None and isinstance(solver, Newton):
+        if factors is not None and isinstance(solver, NewtonSolver):
             report = solver.solve(w, self.p, enough=self.enough, factors=factors)
         else:
             report = solver.solve(w, self.p, enough=self.enough)

@@ -4,19 +4,18 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING
 
-from ribbonopt.scene import Collocation as CollocationSettings
-from ribbonopt.scene import Scene
-from ribbonopt.transcription import Collocation
+from ribbonopt.scene import Collocation, Scene
+from ribbonopt.transcription import CollocationMethod
 
 if TYPE_CHECKING:
     from ribbonopt.transcription.shooting.shooting import MultipleShooting
 
 
-def transcription_of(scene: Scene) -> Collocation | MultipleShooting:
+def transcription_of(scene: Scene) -> CollocationMethod | MultipleShooting:
     """Return the transcription a scene asks for; TranscriptionError where there is none such."""
     settings = scene.transcription
-    if isinstance(settings, CollocationSettings):
-        return Collocation.named(settings.scheme, settings.degree)
+    if isinstance(settings, Collocation):
+        return CollocationMethod.named(settings.scheme, settings.degree)
     from ribbonopt.transcription.shooting.shooting import MultipleShooting  # few scenes need it
 
     return MultipleShooting.named(settings.scheme, settings.degree, settings.steps)

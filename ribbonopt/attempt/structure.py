@@ -103,7 +103,7 @@ class Structure:
             raise ModelError("this scene differs from the prepared one in more than its numbers")
         mesh = mesh or self._mesh(switches)
         nlp, solver = self.on(mesh.elements)
-        p = np.append(posed.values, mesh.widths)
+        p = nlp.layout.parameters(posed.values, mesh.widths)
         parts = self.ribbon, self.problem, nlp, solver, self.sheets, switches
         return Attempt(posed, p, *parts, ledger or Ledger())
 

@@ -14,7 +14,7 @@ import numpy as np
 from ribbonopt.arrays import Array
 from ribbonopt.problem import Ribbon
 from ribbonopt.solution.solution import Solution
-from ribbonopt.transcription.buffered import mapped
+from ribbonopt.transcription.buffered import Mapped
 
 NEGLIGIBLE = 1e-7  # m2 over the largest |m| that has no sign
 BEYOND = 1.05  # |eta| of a mixture
@@ -113,9 +113,15 @@ def phase_problems(solution: Solution, ribbon: Ribbon) -> list[str]:
     for i, kind in enumerate(solution.sheets):
         rows = phase == i
         where = f"between s = {ends[i]:.4g} and {ends[i + 1]:.4g}"
-        names, function = ribbon.margins_function(kind)
-        (values,) = mapped(function)(nodes[rows], constants, theta, s[rows])
+        names, margins = ribbon.kept(_margins)[kind]
+        (values,) = margins(nodes[rows], constants, theta, s[rows])
         least = values.reshape(-1, len(names)).min(axis=0)
         short = zip(names, least, strict=True)
         problems += [name.format(where=where) for name, value in short if value < -tolerance]
     return problems
+
+
+def _margins(ribbon: Ribbon) -> dict[int, tuple[tuple[str, ...], Mapped]]:
+    """Names of the margins of every kind of phase, and their values at stages."""
+    found = {kind: ribbon.margins_function(kind) for kind in (-1, 0, 1)}
+    return {kind: (names, Mapped(function)) for kind, (names, function) in found.items()}

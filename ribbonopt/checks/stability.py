@@ -25,11 +25,11 @@ import numpy as np
 
 from ribbonopt.arrays import Array
 from ribbonopt.mechanics.laws.catalogue import capabilities
-from ribbonopt.problem import Posed, Ribbon
+from ribbonopt.problem import BoundaryValueProblem, Posed, Ribbon
 from ribbonopt.problem.energy import minimum, refusal
 from ribbonopt.solution.solution import Solution
 from ribbonopt.transcription import gauss
-from ribbonopt.transcription.buffered import buffered, mapped
+from ribbonopt.transcription.buffered import Buffered, Mapped
 from ribbonopt.transcription.functions import condition_functions, stage_functions
 
 from .chain import LinearisedChain
@@ -111,11 +111,15 @@ def _judged(solution: Solution) -> SecondVariation | str:
 
 def _energy_of(solution: Solution, posed: Posed) -> _Energy:
     """Return the problem of least energy of a solution's structure, built once for its problem."""
-    kept = solution.problem.kept
-    if _Energy not in kept:
-        kept[_Energy] = _Energy.of(posed)
-    energy: _Energy = kept[_Energy]
-    return energy
+    store = solution.problem.kept(_energies)
+    if not store:
+        store.append(_Energy.of(posed))
+    return store[0]
+
+
+def _energies(problem: BoundaryValueProblem) -> list[_Energy]:
+    """Return the place where a problem keeps what is built of its energy."""
+    return []
 
 
 @dataclass(frozen=True, eq=False)
@@ -127,10 +131,10 @@ class _Energy:
     """
 
     ribbon: Ribbon
-    first: ca.Function
-    second: ca.Function
-    conditions: ca.Function
-    bent: ca.Function
+    first: Mapped
+    second: Mapped
+    conditions: Buffered
+    bent: Buffered
 
     @classmethod
     def of(cls, posed: Posed) -> _Energy:
@@ -143,10 +147,10 @@ class _Energy:
         hessians = [ca.densify(ca.triu2symm(g.lagrangian_hessian)) for g in (f, ends)]
         return cls(
             ribbon,
-            ca.Function("first", list(f.inputs), slopes),
-            ca.Function("second", [*f.inputs, f.weights], hessians[:1]),
-            ends.dense,
-            ca.Function("bent", [*ends.inputs, ends.multipliers], hessians[1:]),
+            Mapped(ca.Function("first", list(f.inputs), slopes)),
+            Mapped(ca.Function("second", [*f.inputs, f.weights], hessians[:1])),
+            ends.buffered_dense,
+            Buffered(ca.Function("bent", [*ends.inputs, ends.multipliers], hessians[1:])),
         )
 
     def at(self, solution: Solution, theta: Array) -> SecondVariation:
@@ -160,10 +164,10 @@ class _Energy:
         points, v = self._sampled(solution, fractions)
         nx, nv = points.shape[1], v.shape[2]
         inputs = v, none, theta, fractions.ravel()
-        J, slopes = mapped(self.first)(*inputs)
+        J, slopes = self.first(*inputs)
         J = J.reshape(*v.shape, nx).swapaxes(2, 3)  # CasADi stores columns first
         chain = LinearisedChain(J, slopes.reshape(v.shape), widths, tableau)
-        b, B = buffered(self.conditions)(points, none, theta)
+        b, B = self.conditions(points, none, theta)
         B = B.reshape(2 * nx, len(b)).T
         left, singular, right = np.linalg.svd(B @ chain.ends, full_matrices=False)
         kept = singular > DEPENDENT * singular[0]
@@ -172,8 +176,8 @@ class _Energy:
         multipliers = -left @ (right @ g / singular)
         residual = np.linalg.norm(g - right @ g @ right) / max(float(np.linalg.norm(g)), FLAT)
         weights = chain.weights(B[:, nx:].T @ multipliers)
-        (H,) = mapped(self.second)(*inputs, weights)
-        (bent,) = buffered(self.bent)(points, none, theta, multipliers)
+        (H,) = self.second(*inputs, weights)
+        (bent,) = self.bent(points, none, theta, multipliers)
         hessian = chain.hessian(H.reshape(*v.shape, nv))
         hessian += chain.ends.T @ bent.reshape(2 * nx, 2 * nx) @ chain.ends
         free = np.linalg.qr(right.T, mode="complete")[0][:, len(right) :]

@@ -15,7 +15,7 @@ from ribbonopt.arrays import Array
 from ribbonopt.problem import Ribbon
 from ribbonopt.solution.solution import Solution
 from ribbonopt.solution.verification import Verification, unverified
-from ribbonopt.transcription.buffered import buffered
+from ribbonopt.transcription.buffered import Buffered
 
 TOLERANCE = 1e-8
 
@@ -69,7 +69,7 @@ def verify(solution: Solution, ribbon: Ribbon) -> Verification:
 
 def _worst_condition(solution: Solution, ribbon: Ribbon) -> tuple[str, float]:
     """Name and size of the condition that is furthest from what was asked."""
-    names, function = ribbon.verdicts_function
+    names, verdicts = ribbon.kept(_verdicts)
     count, constants = len(ribbon.states), len(ribbon.constants)
     nodes = solution.dense.at_nodes
     # Without further states, and without the lengths of phases.
@@ -79,7 +79,7 @@ def _worst_condition(solution: Solution, ribbon: Ribbon) -> tuple[str, float]:
         solution.constants[:constants],
         solution.dense.theta,
     )
-    (values,) = buffered(function)(*known)
+    (values,) = verdicts(*known)
     # Relative to the loads, absolute in lengths and directors (L = 1).
     n0, m0 = solution.n0 / solution.units.force, solution.m0 / solution.units.moment
     scale = 1 + max(np.linalg.norm(n0), np.linalg.norm(m0))
@@ -88,6 +88,12 @@ def _worst_condition(solution: Solution, ribbon: Ribbon) -> tuple[str, float]:
     sizes = np.where(np.isfinite(sizes), sizes / np.where(loads, scale, 1.0), np.inf)
     index = int(sizes.argmax())
     return names[index], float(sizes[index])
+
+
+def _verdicts(ribbon: Ribbon) -> tuple[tuple[str, ...], Buffered]:
+    """Names of what to verify, and their values on numpy arrays."""
+    names, function = ribbon.verdicts_function
+    return names, Buffered(function)
 
 
 def _drifts(solution: Solution) -> dict[str, float]:

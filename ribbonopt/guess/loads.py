@@ -11,7 +11,7 @@ from ribbonopt.arrays import Array
 from ribbonopt.mechanics.section import RodFields
 from ribbonopt.problem import BoundaryValueProblem, Posed, Ribbon
 from ribbonopt.scene import LoadGuess
-from ribbonopt.transcription.buffered import Buffered, mapped
+from ribbonopt.transcription.buffered import Buffered, Mapped
 
 STEPS = 32  # of one call
 
@@ -31,7 +31,7 @@ class IntegratedLoads:
     def fields(self, fraction: Array) -> RodFields:
         """Fields at fractions (k,) of the length, increasing from 0 to 1."""
         x, c = self._integrated(fraction)
-        section, start = mapped(self.ribbon.section_function), self.posed.scene.interval[0]
+        section, start = self.ribbon.kept(_sections), self.posed.scene.interval[0]
         along = 1 - fraction if self.backwards else fraction
         s = start + self.posed.length * along
         parts = section(x, c, self.posed.values, s)[:6]
@@ -59,7 +59,7 @@ class IntegratedLoads:
         substeps = int(np.clip(np.ceil(np.abs(widths).max() * strain), 1, 100))
         theta = self.posed.values
         widths = np.repeat(widths / substeps, substeps)
-        steps, shared = _steps(self.ribbon), (np.tile(c, STEPS), np.tile(theta, STEPS))
+        steps, shared = self.ribbon.kept(_steps), (np.tile(c, STEPS), np.tile(theta, STEPS))
         count = len(widths)
         widths = np.append(widths, np.zeros(-count % STEPS))  # steps of no width go nowhere
         parts = [states]
@@ -70,15 +70,12 @@ class IntegratedLoads:
         return np.vstack(parts)[: count + 1 : substeps], c
 
 
+def _sections(ribbon: Ribbon) -> Mapped:
+    """Cross sections at any number of states."""
+    return Mapped(ribbon.section_function)
+
+
 def _steps(ribbon: Ribbon) -> Buffered:
-    """Return the steps of a ribbon, built once."""
-    if _steps not in ribbon.kept:
-        ribbon.kept[_steps] = _built_steps(ribbon)
-    steps: Buffered = ribbon.kept[_steps]
-    return steps
-
-
-def _built_steps(ribbon: Ribbon) -> Buffered:
     """States after each of `STEPS` steps, from the first state and all c, theta, h and s."""
     return Buffered(_step(ribbon).mapaccum("steps", STEPS))
 

@@ -46,7 +46,7 @@ def initial_unknowns(
     length where phases meet, if there are several.
     """
     layout, widths = blocks.layout, blocks.widths(p)
-    theta = p[: len(p) - layout.element_count]
+    theta = layout.theta(p)
     ends = np.concatenate([[0.0], [] if switches is None else switches, [1.0]])
     local = blocks.stage_positions(p)
     parts = []

@@ -1,26 +1,33 @@
 """The contract between mechanics and transcription: a multi-phase boundary-value problem.
 
 Semi-explicit differential-algebraic optimal control: states x(s), algebraic variables or controls
-z(s), unknown constants c, numeric parameters theta,
+z(s), unknown constants c, numeric parameters theta, known fields k(s),
 
-    x' = f(s, x, z, c, theta)      0 = g(s, x, z, c, theta)      h(s, x, z, c, theta) <= 0
-    b(x at the ends of all phases, c, theta) = 0                 minimise  integral of l(...)
+    x' = f(s, x, z, c, theta, k)   0 = g(s, x, z, c, theta, k)   h(s, x, z, c, theta, k) <= 0
+    b(x and k at the ends of all phases, c, theta) = 0           minimise  integral of l(...)
 
 on consecutive phases. States are continuous from one phase to the next; a phase's length may hold
 unknown constants. No cost and as many conditions as unknowns is a square problem. Every formulation
 is an instance, every transcription consumes it, none asks which it is.
+
+Known fields are data along s (a measured width, a load from a file, the time step before). They are
+numbers as theta is: a program is built once and evaluated with any of them, see
+`ribbonopt.transcription.known`. A field belongs to relative positions in its phase: where a length
+is unknown it stretches with the phase (`ribbonopt.transcription.fields` has fields of s).
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field
 from functools import cached_property
-from typing import Any
+from typing import Any, TypeVar
 
 import casadi as ca
 
 from ribbonopt.errors import ModelError
+
+T = TypeVar("T")
 
 
 @dataclass(frozen=True, eq=False)
@@ -70,12 +77,14 @@ class BoundaryValueProblem:
     local, estimate : SX symbols, SX
         What any guess knows at a point, and from it the last states and the algebraic variables.
     algebraic_start : SX (nz,)
-        Where to start solving the algebraic equations, from states, constants and parameters.
+        Where to start solving the algebraic equations, from states, constants, parameters and k.
     costate, recovered : SX symbols (nx,), mapping of str to SX
         Costates at the start, and parameters whose values follow from them once a problem with a
         cost is solved; until then they enter outputs only.
-    kept : dict
-        What others have built for this problem, by who did; it goes with it.
+    known : SX column symbol (nk,)
+        k, in dynamics, algebraic equations, inequalities, costs and outputs of the phases.
+    known_at : tuple of SX symbols (nk,)
+        k at each of the points, for conditions; empty if no condition contains it.
     """
 
     position: ca.SX
@@ -95,7 +104,10 @@ class BoundaryValueProblem:
     algebraic_start: ca.SX = field(default_factory=lambda: ca.SX(0, 1))
     costate: ca.SX = field(default_factory=lambda: ca.SX(0, 1))
     recovered: Mapping[str, ca.SX] = field(default_factory=dict)
-    kept: dict[object, Any] = field(default_factory=dict)
+    known: ca.SX = field(default_factory=lambda: ca.SX(0, 1))
+    known_at: tuple[ca.SX, ...] = ()
+    known_names: tuple[str, ...] = ()
+    _kept: dict[Callable[..., Any], Any] = field(default_factory=dict, init=False, repr=False)
 
     def __post_init__(self) -> None:
         """Refuse a problem whose parts do not fit together."""
@@ -103,6 +115,15 @@ class BoundaryValueProblem:
             raise ModelError(
                 f"{len(self.phases)} phases need {len(self.phases) + 1} points, "
                 f"found {len(self.points)}"
+            )
+        if self.known_at and len(self.known_at) != len(self.points):
+            raise ModelError(
+                f"known fields at the points: {len(self.points)} points, expected as many symbols, "
+                f"found {len(self.known_at)}"
+            )
+        if any(part.shape != self.known.shape for part in self.known_at):
+            raise ModelError(
+                f"known fields at the points are expected to have shape {self.known.shape} each"
             )
         for i, phase in enumerate(self.phases):
             if phase.dynamics.shape != self.state.shape:
@@ -140,6 +161,13 @@ class BoundaryValueProblem:
             parts += [] if phase.cost is None else [phase.cost]
         return bool(ca.depends_on(ca.vertcat(*parts), self.parameters[parameter]))
 
+    def kept(self, make: Callable[[BoundaryValueProblem], T]) -> T:
+        """Return what is made of this problem, such as its functions: made once, kept with it."""
+        if make not in self._kept:
+            self._kept[make] = make(self)
+        found: T = self._kept[make]
+        return found
+
     @cached_property
     def extent_function(self) -> ca.Function:
         """Function (c, theta) of the arclength where the first phase starts and all lengths."""
@@ -148,9 +176,9 @@ class BoundaryValueProblem:
 
     @cached_property
     def output_functions(self) -> tuple[tuple[ca.Function, dict[str, int]], ...]:
-        """For each phase: function (v, c, theta, s) of its outputs in one column, and sizes."""
-        v = ca.vertcat(self.state, self.algebraic)
-        inputs = [v, self.constants, self.parameters, self.position]
+        """For each phase: function (v, c, theta, [s; k]) of its outputs in a column, and sizes."""
+        v, place = ca.vertcat(self.state, self.algebraic), ca.vertcat(self.position, self.known)
+        inputs = [v, self.constants, self.parameters, place]
         result = []
         for phase in self.phases:
             column = ca.densify(ca.vertcat(*phase.outputs.values()))

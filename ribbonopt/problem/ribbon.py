@@ -6,10 +6,10 @@ the same structure is another theta, not another problem.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any
+from typing import Any, TypeVar
 
 import casadi as ca
 
@@ -21,6 +21,8 @@ from ribbonopt.mechanics.model import MODELS, RodModel, least_model
 from ribbonopt.mechanics.section import Section
 
 from .posed import Posed
+
+T = TypeVar("T")
 
 
 @dataclass(frozen=True, eq=False)
@@ -37,8 +39,6 @@ class Ribbon:
         Symbol of every parameter by name.
     position : SX symbol
         Arclength s, on which laws and loads may depend.
-    kept : dict
-        What others have built for these mechanics, by who did; it goes with them.
     """
 
     model: RodModel
@@ -47,7 +47,7 @@ class Ribbon:
     loads: tuple[Load, ...]
     theta: Mapping[str, ca.SX]
     position: ca.SX
-    kept: dict[object, Any] = field(default_factory=dict)
+    _kept: dict[Callable[..., Any], Any] = field(default_factory=dict, repr=False)
 
     @classmethod
     def of(cls, posed: Posed) -> Ribbon:
@@ -64,7 +64,14 @@ class Ribbon:
         model = least_model(self.loads, self.theta.__getitem__)
         if model.states == self.model.states:
             return self
-        return replace(self, model=model, kept={})
+        return replace(self, model=model, _kept={})
+
+    def kept(self, make: Callable[[Ribbon], T]) -> T:
+        """Return what is made of these mechanics, such as functions: made once, kept with them."""
+        if make not in self._kept:
+            self._kept[make] = make(self)
+        found: T = self._kept[make]
+        return found
 
     @property
     def parameters(self) -> ca.SX:
@@ -153,13 +160,6 @@ class Ribbon:
 
     def margins_function(self, kind: int) -> tuple[tuple[str, ...], ca.Function]:
         """Names, and function (x, c, theta, s), of the margins of a phase of a kind."""
-        key = "margins", kind
-        if key not in self.kept:
-            self.kept[key] = self._margins(kind)
-        found: tuple[tuple[str, ...], ca.Function] = self.kept[key]
-        return found
-
-    def _margins(self, kind: int) -> tuple[tuple[str, ...], ca.Function]:
         x, c = ca.SX.sym("x", len(self.states)), ca.SX.sym("c", len(self.constants))
         stress = self.section(x, c).rod.stress
         margins = self.law.margins(kind, stress, self.law.branch(kind).strain(stress))

@@ -45,7 +45,7 @@ def solution_at(
         "iterations": 0,
         "verification": unverified(),
     }
-    trajectory = Trajectory(problem, nlp.blocks.dense(w, p))
+    trajectory = Trajectory(problem, nlp.output(w, p))
     return Solution(posed=posed, trajectory=trajectory, **(fields | known))
 
 

@@ -16,7 +16,8 @@ from numpy.typing import NDArray
 
 from ribbonopt.arrays import Array
 from ribbonopt.problem import BoundaryValueProblem
-from ribbonopt.transcription.buffered import buffered, mapped
+from ribbonopt.transcription.buffered import Buffered, Mapped
+from ribbonopt.transcription.known import sampled
 
 if TYPE_CHECKING:
     from ribbonopt.transcription.structure import Output
@@ -114,8 +115,7 @@ class Trajectory:
     @cached_property
     def _extent(self) -> Array:
         """Arclength where the ribbon starts, and the lengths of its phases."""
-        extent = buffered(self.problem.extent_function)
-        return extent(self.dense.constants, self.dense.theta)[0]
+        return self.problem.kept(_extent)(self.dense.constants, self.dense.theta)[0]
 
     def _local(self, fraction: Array) -> tuple[Phases, Array]:
         """Phase and position in the phase of each fraction."""
@@ -123,16 +123,26 @@ class Trajectory:
         a, b = self.ends[phase], self.ends[phase + 1]
         return phase, np.clip((fraction - a) / (b - a), 0.0, 1.0)
 
+    def _places(self, phase: int, fraction: Array, s: Array) -> Array:
+        """Arclengths s (k,) at fractions in one phase, with the known fields there after each."""
+        count = self.dense.blocks.layout.known
+        if not count:
+            return s
+        a, b = self.ends[phase : phase + 2]
+        local = np.clip((fraction - a) / (b - a), 0.0, 1.0)
+        return np.column_stack([s, sampled(self.dense.known, phase, local, count)])
+
     def _named(self, v: Array, fraction: Array, phase: Phases) -> dict[str, Array]:
         sizes = self.problem.output_functions[0][1]
         column = np.empty((len(v), sum(sizes.values())))
         s = self._extent[0] + self._extent[1:].sum() * fraction
-        known = self.dense.constants, self.dense.theta
-        for i, (function, _) in enumerate(self.problem.output_functions):
+        numbers = self.dense.constants, self.dense.theta
+        for i, function in enumerate(self.problem.kept(_outputs)):
             rows = phase == i
             count = int(np.count_nonzero(rows))
             if count:
-                (found,) = mapped(function)(v[rows], *known, s[rows])
+                places = self._places(i, fraction[rows], s[rows])
+                (found,) = function(v[rows], *numbers, places)
                 column[rows] = found.reshape(count, -1)
         result, at = {}, 0
         for name, size in sizes.items():
@@ -140,3 +150,13 @@ class Trajectory:
             result[name] = part[:, 0] if size == 1 else part
             at += size
         return result
+
+
+def _extent(problem: BoundaryValueProblem) -> Buffered:
+    """Start and lengths on numpy arrays."""
+    return Buffered(problem.extent_function)
+
+
+def _outputs(problem: BoundaryValueProblem) -> tuple[Mapped, ...]:
+    """Return the outputs of each phase, for any number of places."""
+    return tuple(Mapped(function) for function, _ in problem.output_functions)

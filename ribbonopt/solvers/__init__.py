@@ -9,30 +9,38 @@ from typing import TYPE_CHECKING, Any
 
 from ribbonopt.transcription import NLP
 
-from .auto import Auto
-from .newton import Newton
+from .auto import AutoSolver
+from .newton import NewtonSolver
 from .status import SolveReport, Status
 
 if TYPE_CHECKING:
-    from .ipopt import Ipopt
+    from .ipopt import IpoptSolver
 
-    Solver = Auto | Ipopt | Newton
+    Solver = AutoSolver | IpoptSolver | NewtonSolver
 
-__all__ = ["Auto", "Ipopt", "Newton", "SolveReport", "Solver", "Status", "solver_named"]
+__all__ = [
+    "AutoSolver",
+    "IpoptSolver",
+    "NewtonSolver",
+    "SolveReport",
+    "Solver",
+    "Status",
+    "solver_named",
+]
 
 
 def solver_named(name: str, nlp: NLP, settings: dict[str, Any]) -> Solver:
     """Return the solver of a name (auto, ipopt, newton) on an NLP, with its settings."""
     if name == "ipopt":
-        from .ipopt import Ipopt
+        from .ipopt import IpoptSolver
 
-        return Ipopt(nlp, **settings)
-    return Newton(nlp, **settings) if name == "newton" else Auto(nlp, **settings)
+        return IpoptSolver(nlp, **settings)
+    return NewtonSolver(nlp, **settings) if name == "newton" else AutoSolver(nlp, **settings)
 
 
 def __getattr__(name: str) -> Any:
-    if name == "Ipopt":
-        from .ipopt import Ipopt
+    if name == "IpoptSolver":
+        from .ipopt import IpoptSolver
 
-        return Ipopt
+        return IpoptSolver
     raise AttributeError(f"module {__name__!r} has no attribute {name!r}")

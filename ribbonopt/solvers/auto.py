@@ -13,30 +13,30 @@ from typing import TYPE_CHECKING
 from ribbonopt.arrays import Array
 from ribbonopt.transcription import NLP
 
-from .newton import Newton
+from .newton import NewtonSolver
 from .status import SolveReport
 
 if TYPE_CHECKING:
-    from .ipopt import Ipopt
+    from .ipopt import IpoptSolver
 
 
 @dataclass(frozen=True, eq=False)
-class Auto:
+class AutoSolver:
     """Newton, then IPOPT from the same guess if Newton did not converge."""
 
     nlp: NLP
 
     @cached_property
-    def newton(self) -> Newton:
+    def newton(self) -> NewtonSolver:
         """First choice for square programs."""
-        return Newton(self.nlp)
+        return NewtonSolver(self.nlp)
 
     @cached_property
-    def ipopt(self) -> Ipopt:
+    def ipopt(self) -> IpoptSolver:
         """For everything else."""
-        from .ipopt import Ipopt  # often never needed
+        from .ipopt import IpoptSolver  # often never needed
 
-        return Ipopt(self.nlp)
+        return IpoptSolver(self.nlp)
 
     def build(self) -> None:
         """Build the first choice now rather than at the first solve."""

@@ -37,7 +37,7 @@ _STATUS = {
 
 
 @dataclass(frozen=True, eq=False)
-class Ipopt:
+class IpoptSolver:
     """IPOPT with MUMPS on one NLP; `tolerance` bounds residuals and dual infeasibility."""
 
     nlp: NLP

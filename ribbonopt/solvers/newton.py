@@ -31,7 +31,7 @@ ROUNDING = 1e3 * np.finfo(float).eps
 
 
 @dataclass(frozen=True, eq=False)
-class Newton:
+class NewtonSolver:
     """Newton's method on one square NLP; `tolerance` is relative to 1 + |w|, entry by entry."""
 
     nlp: NLP
@@ -81,7 +81,7 @@ class Newton:
 class _Run:
     """One solve: the iterate, its counters and its clock."""
 
-    def __init__(self, settings: Newton, w: Array, p: Array) -> None:
+    def __init__(self, settings: NewtonSolver, w: Array, p: Array) -> None:
         self.settings, self.w, self.p = settings, w, p
         self.system: System = settings.system
         self.factors: Factors | None = None

@@ -18,8 +18,7 @@ from ribbonopt.mechanics.laws.smooth import in_family, sharpened, sharpness
 from ribbonopt.problem import Posed
 from ribbonopt.scene import Collocation, Law, Newton
 from ribbonopt.solution.solution import Solution
-from ribbonopt.solvers import Newton as NewtonSolver
-from ribbonopt.solvers import Status
+from ribbonopt.solvers import NewtonSolver, Status
 
 MESH = Collocation(scheme="gauss", degree=3, intervals=30)
 SOLVER = Newton(tolerance=1e-8, max_iterations=30)

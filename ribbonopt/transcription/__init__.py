@@ -5,7 +5,7 @@ Multiple shooting, and the interfaces for the type checker, are imported when fi
 
 from typing import TYPE_CHECKING, Any
 
-from .collocation.collocation import Collocation
+from .collocation.collocation import CollocationMethod
 from .layout import Layout
 from .mesh import Mesh
 from .nlp import NLP, NLPFunctions
@@ -18,7 +18,7 @@ if TYPE_CHECKING:
 __all__ = [
     "NLP",
     "Blocks",
-    "Collocation",
+    "CollocationMethod",
     "Layout",
     "Mesh",
     "MultipleShooting",

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from bisect import bisect_left
-from functools import lru_cache
 from typing import Any
 
 import casadi as ca
@@ -92,15 +91,3 @@ class Mapped:
         if size not in self._blocks:
             self._blocks[size] = Buffered(shared_map(self._function, size))
         return self._blocks[size]
-
-
-@lru_cache(maxsize=64)
-def buffered(function: ca.Function) -> Buffered:
-    """Return a function with its buffers, made once."""
-    return Buffered(function)
-
-
-@lru_cache(maxsize=64)
-def mapped(function: ca.Function) -> Mapped:
-    """Return a stage function to be called over stages, made once."""
-    return Mapped(function)

@@ -1,24 +1,26 @@
 """CasADi functions of one collocation stage and of the conditions, built once per problem.
 
-A stage knows its own unknowns v = [x; z], the constants c, the parameters theta and its relative
-position sigma in the phase. Multiplying the dynamics by the phase's length L turns an unknown
-length into one more constant, so that an element of relative width h always reads
-X_i = x_0 + h sum_j a_ij F_j with F = L f.
+A stage knows its own unknowns v = [x; z], the constants c, the parameters theta and its place
+[sigma; k]: relative position in the phase and the known fields there. Multiplying the dynamics by
+the phase's length L turns an unknown length into one more constant, so that an element of relative
+width h always reads X_i = x_0 + h sum_j a_ij F_j with F = L f.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property, lru_cache
+from functools import cached_property
 
 import casadi as ca
 
 from ribbonopt.problem.contract import BoundaryValueProblem, Phase
 
+from .buffered import Buffered, Mapped
+
 
 @dataclass(frozen=True, eq=False)
 class StageFunctions:
-    """Functions of one phase, all with the inputs (v, c, theta, sigma).
+    """Functions of one phase, all with the inputs (v, c, theta, place).
 
     `equations` is the column [F; g; h]: derivatives with respect to the relative position,
     algebraic equations, path inequalities.
@@ -35,8 +37,13 @@ class StageFunctions:
 
     @cached_property
     def depends_on_position(self) -> bool:
-        """Whether the equations change along the phase by themselves."""
+        """Whether the equations change along the phase, by themselves or by known fields."""
         return bool(ca.depends_on(self.equations, self.inputs[3]))
+
+    @property
+    def known(self) -> int:
+        """Number of known fields."""
+        return int(self.inputs[3].numel()) - 1
 
     @cached_property
     def jacobian(self) -> ca.SX:
@@ -53,6 +60,16 @@ class StageFunctions:
         """Equations and their dense Jacobian, for elimination element by element."""
         jacobian = ca.densify(self.jacobian)
         return ca.Function("stage_dense", list(self.inputs), [self.equations, jacobian])
+
+    @cached_property
+    def mapped_values(self) -> Mapped:
+        """The equations at any number of stages."""
+        return Mapped(self.values)
+
+    @cached_property
+    def mapped_dense(self) -> Mapped:
+        """Equations and their dense Jacobians at any number of stages."""
+        return Mapped(self.dense)
 
     @cached_property
     def sparse(self) -> ca.Function:
@@ -87,7 +104,10 @@ class StageFunctions:
 
 @dataclass(frozen=True, eq=False)
 class ConditionFunctions:
-    """Functions of the conditions b, with the inputs (points (nx, P + 1), c, theta)."""
+    """Functions of the conditions b, with the inputs (points (nx, P + 1), c, numbers).
+
+    The numbers are theta, then the known fields at all points.
+    """
 
     inputs: tuple[ca.SX, ca.SX, ca.SX]
     conditions: ca.SX
@@ -112,6 +132,16 @@ class ConditionFunctions:
         """Conditions and their dense Jacobian."""
         outputs = [self.conditions, ca.densify(self.jacobian)]
         return ca.Function("conditions_dense", list(self.inputs), outputs)
+
+    @cached_property
+    def buffered_values(self) -> Buffered:
+        """The conditions on numpy arrays."""
+        return Buffered(self.values)
+
+    @cached_property
+    def buffered_dense(self) -> Buffered:
+        """Conditions and their dense Jacobian on numpy arrays."""
+        return Buffered(self.dense)
 
     @cached_property
     def sparse(self) -> ca.Function:
@@ -143,16 +173,25 @@ def nonzeros_of(matrix: ca.SX) -> ca.SX:
     return column
 
 
-@lru_cache(maxsize=8)
 def stage_functions(bvp: BoundaryValueProblem) -> tuple[StageFunctions, ...]:
-    """Return the stage functions of every phase."""
+    """Return the stage functions of every phase, made once for each problem."""
+    return bvp.kept(_stage_functions)
+
+
+def condition_functions(bvp: BoundaryValueProblem) -> ConditionFunctions:
+    """Return the functions of the conditions, made once for each problem."""
+    return bvp.kept(_condition_functions)
+
+
+def _stage_functions(bvp: BoundaryValueProblem) -> tuple[StageFunctions, ...]:
     sigma = ca.SX.sym("sigma")
+    place = ca.vertcat(sigma, bvp.known)
     v = ca.vertcat(bvp.state, bvp.algebraic)
     result, start = [], bvp.start
     for phase in bvp.phases:
         position = start + sigma * phase.length
         equations, cost = _at(bvp, phase, position)
-        result.append(StageFunctions((v, bvp.constants, bvp.parameters, sigma), equations, cost))
+        result.append(StageFunctions((v, bvp.constants, bvp.parameters, place), equations, cost))
         start = start + phase.length
     return tuple(result)
 
@@ -166,10 +205,10 @@ def _at(bvp: BoundaryValueProblem, phase: Phase, position: ca.SX) -> tuple[ca.SX
     return equations, None if cost is None else ca.substitute(cost, bvp.position, position)
 
 
-@lru_cache(maxsize=8)
-def condition_functions(bvp: BoundaryValueProblem) -> ConditionFunctions:
-    """Return the functions of the conditions."""
+def _condition_functions(bvp: BoundaryValueProblem) -> ConditionFunctions:
     points = ca.SX.sym("points", bvp.state.numel(), len(bvp.points))
     conditions = ca.vertcat(*bvp.conditions.values())
     conditions = ca.substitute(conditions, ca.horzcat(*bvp.points), points)
-    return ConditionFunctions((points, bvp.constants, bvp.parameters), conditions)
+    unread = ca.SX.sym("known", bvp.known.numel() * len(bvp.points))
+    numbers = ca.vertcat(bvp.parameters, *(bvp.known_at or (unread,)))
+    return ConditionFunctions((points, bvp.constants, numbers), conditions)

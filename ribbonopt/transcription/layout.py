@@ -7,6 +7,10 @@ Unknowns w, element by element, then the last node and the constants:
 Equations, element by element, then the conditions:
 
     [defects of the stages | algebraic | path, stage by stage | next node]_e ... | conditions
+
+Parameters p; the known fields k are sampled at all points, then at the places of every element:
+
+    [theta | k at the points | k at the places, element by element | relative widths]
 """
 
 from __future__ import annotations
@@ -20,12 +24,18 @@ from numpy.typing import NDArray
 
 from ribbonopt.arrays import Array
 
+from .known import Known, sampled
+
 Index = NDArray[np.intp]
 
 
 @dataclass(frozen=True, eq=False)
 class Layout:
-    """Sizes of an NLP: states, algebraic variables, constants, stages (0: shooting), elements."""
+    """Sizes of an NLP: states, algebraic variables, constants, stages (0: shooting), elements.
+
+    `known` is the number of known fields, `places` are the positions in an element, from 0 to 1,
+    where its equations read them.
+    """
 
     nx: int
     nz: int
@@ -35,6 +45,8 @@ class Layout:
     stages: int
     elements: tuple[int, ...]  # in each phase
     conditions: int
+    known: int = 0
+    places: tuple[float, ...] = ()
 
     @cached_property
     def nv(self) -> int:
@@ -97,9 +109,51 @@ class Layout:
         p = self.point_elements
         return tuple(slice(a, b) for a, b in pairwise(p))
 
+    @cached_property
+    def parameter_sizes(self) -> tuple[int, int, int]:
+        """How much of p comes after theta: k at the points, k at the places, relative widths."""
+        points = self.known * (len(self.elements) + 1)
+        return points, self.known * len(self.places) * self.element_count, self.element_count
+
+    def parameters(self, theta: Array, widths: Array, known: Known | None = None) -> Array:
+        """Vector p of theta (nt,), relative widths (N,), and known fields if the problem has any.
+
+        TranscriptionError where fields are missing, not asked for, or of another shape.
+        """
+        if not self.known and known is None:
+            return np.concatenate([theta, widths])
+        starts, last = self.starts(widths), len(self.elements) - 1
+        sigma = starts[:, None] + widths[:, None] * np.array(self.places)
+        ends = [(min(i, last), float(i > last)) for i in range(last + 2)]
+        points = [sampled(known, i, np.array([end]), self.known) for i, end in ends]
+        places = [
+            sampled(known, i, sigma[s].ravel(), self.known) for i, s in enumerate(self.phase_slices)
+        ]
+        return np.concatenate([theta, *(part.ravel() for part in (*points, *places)), widths])
+
+    @cached_property
+    def _after(self) -> tuple[int, int]:
+        """How much of p comes after theta, and after what is known at the points."""
+        points, places, widths = self.parameter_sizes
+        return points + places + widths, places + widths
+
     def theta(self, p: Array) -> Array:
-        """Parameters of the problem in p = [theta, relative widths]."""
-        return p[: len(p) - self.element_count]
+        """Parameters of the problem in p."""
+        return p[: len(p) - self._after[0]]
+
+    def at_points(self, p: Array) -> Array:
+        """Numbers of the conditions in p: theta, and the known fields at all points."""
+        return p[: len(p) - self._after[1]]
+
+    def with_known(self, sigma: Array, p: Array) -> Array:
+        """Relative positions (N, ...), with the known fields of the places of p after them.
+
+        (N, K, 1 + nk) for positions (N, K) of the places, (N, 1 + K nk) for those (N,) of elements.
+        """
+        if not self.known:
+            return sigma
+        k = p[len(p) - self._after[1] : len(p) - self.element_count]
+        return np.concatenate([sigma[..., None], k.reshape(*sigma.shape, -1)], axis=-1)
 
     def widths(self, p: Array) -> Array:
         """Relative widths (N,) of the elements in p."""

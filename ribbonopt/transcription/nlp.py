@@ -17,12 +17,14 @@ import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
 
+from ribbonopt.arrays import Array
 from ribbonopt.errors import TranscriptionError
 
+from .known import Known
 from .layout import Layout
 
 if TYPE_CHECKING:
-    from .structure import Blocks
+    from .structure import Blocks, Output
 
 
 @dataclass(frozen=True, eq=False)
@@ -41,7 +43,11 @@ class NLPFunctions:
 
 @dataclass(frozen=True, eq=False)
 class NLP:
-    """One program; `build` makes its sparse functions when a solver first asks for them."""
+    """One program.
+
+    `build` makes its sparse functions when a solver first asks for them, `read` the output of
+    unknowns w and parameters p.
+    """
 
     unknowns: int
     equations: int
@@ -49,6 +55,7 @@ class NLP:
     inequality: NDArray[np.bool_]
     has_cost: bool
     build: Callable[[], NLPFunctions]
+    read: Callable[[Array, Array, Known | None], Output]
     layout: Layout
     structure: Blocks | None
 
@@ -64,6 +71,10 @@ class NLP:
         """Whether the program is a system of equations with as many unknowns."""
         unconstrained = not self.has_cost and not self.inequality.any()
         return unconstrained and self.unknowns == self.equations
+
+    def output(self, w: Array, p: Array, known: Known | None = None) -> Output:
+        """Return a solution w (nw,) for p (np,) to be read anywhere; `known` are its fields."""
+        return self.read(w, p, known)
 
     @cached_property
     def functions(self) -> NLPFunctions:

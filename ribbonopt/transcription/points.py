@@ -1,16 +1,14 @@
 """The conditions of a problem, evaluated on the nodes where its phases meet.
 
-`parts` are the unknowns as the layout unpacks them, and p = [theta, relative widths].
+`parts` are the unknowns as the layout unpacks them, p the parameters as the layout packs them.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass
-from functools import cached_property
 
 from ribbonopt.arrays import Array
 
-from .buffered import Buffered
 from .functions import ConditionFunctions
 from .layout import Layout
 
@@ -26,27 +24,19 @@ class Conditions:
 
     def build(self) -> None:
         """Build the functions now rather than at the first evaluation."""
-        _ = self._values, self._dense
+        _ = self.functions.buffered_values, self.functions.buffered_dense
 
     def values(self, parts: Parts, p: Array) -> Array:
         """Conditions (nb,)."""
-        values: Array = self._values(*self._at_points(parts, p))[0]
+        values: Array = self.functions.buffered_values(*self._at_points(parts, p))[0]
         return values
 
     def linearize(self, parts: Parts, p: Array) -> tuple[Array, Array]:
         """Conditions (nb,) and their derivatives (nb, (P + 1) nx + nc)."""
-        b, jacobian = self._dense(*self._at_points(parts, p))
+        b, jacobian = self.functions.buffered_dense(*self._at_points(parts, p))
         # CasADi stores columns first.
         return b, jacobian.reshape(-1, self.layout.conditions).T.copy()
 
     def _at_points(self, parts: Parts, p: Array) -> Parts:
         nodes, _, c = parts
-        return nodes[list(self.layout.point_elements)], c, self.layout.theta(p)
-
-    @cached_property
-    def _values(self) -> Buffered:
-        return Buffered(self.functions.values)
-
-    @cached_property
-    def _dense(self) -> Buffered:
-        return Buffered(self.functions.dense)
+        return nodes[list(self.layout.point_elements)], c, self.layout.at_points(p)

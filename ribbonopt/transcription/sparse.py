@@ -10,6 +10,8 @@ from numpy.typing import NDArray
 
 from ribbonopt.arrays import Array
 
+from .layout import Layout
+
 Index = NDArray[np.int64]
 
 
@@ -40,6 +42,14 @@ def from_triplets(rows: Index, cols: Index, values: Array, shape: tuple[int, int
 def sparse(matrix: NDArray[np.floating[Any]]) -> ca.DM:
     """Constant sparse matrix of the nonzeros of an array."""
     return ca.sparsify(ca.DM(matrix))
+
+
+def parts_of(p: ca.MX, layout: Layout, n_theta: int) -> tuple[ca.MX, ca.MX, ca.MX, ca.MX]:
+    """Theta, numbers of the conditions, known fields at the places, and widths in parameters p."""
+    ends = np.cumsum([0, n_theta, *layout.parameter_sizes]).tolist()
+    theta, at_points, at_places, widths = ca.vertsplit(p, ends)
+    numbers = ca.vertcat(theta, at_points) if layout.known else theta
+    return theta, numbers, at_places, widths
 
 
 def triplets_of(sparsity: ca.Sparsity) -> tuple[Index, Index]:

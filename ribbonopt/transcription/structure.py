@@ -17,6 +17,7 @@ from typing import Protocol
 
 from ribbonopt.arrays import Array
 
+from .known import Known
 from .layout import Layout
 from .residuals import Derivatives, Residuals
 
@@ -40,7 +41,7 @@ class Elimination(Protocol):
 
 
 class Blocks(Protocol):
-    """A square problem, evaluated element by element; p = [theta, relative widths]."""
+    """A square problem, evaluated element by element; the layout makes the parameters p."""
 
     @property
     def layout(self) -> Layout:
@@ -99,9 +100,6 @@ class Blocks(Protocol):
     def sampled(self, output: Output, p: Array) -> Array:
         """Unknowns w that stand for an output of the same problem, on any elements."""
 
-    def dense(self, w: Array, p: Array) -> Output:
-        """Return the dense output of a solution w."""
-
 
 class Output(Protocol):
     """A solution anywhere; positions are relative to their phase."""
@@ -116,7 +114,11 @@ class Output(Protocol):
 
     @property
     def p(self) -> Array:
-        """Parameters [theta, relative widths]."""
+        """Parameters (np,), as the layout packs them."""
+
+    @property
+    def known(self) -> Known | None:
+        """The known fields that p was sampled from, if the problem has any."""
 
     @property
     def order(self) -> int:
@@ -137,8 +139,11 @@ class Output(Protocol):
     def nodes(self, phase: int) -> Array:
         """Relative positions (n + 1,) of the nodes of a phase."""
 
-    def refined(self) -> tuple[Blocks, Array, Array, int]:
-        """Return the next better scheme, this output as its unknowns w, p, parts per element."""
+    def moved(self, step: Array) -> Output:
+        """Return the output of the unknowns w + step (nw,)."""
+
+    def refined(self) -> tuple[Output, int]:
+        """Return this output on the next better scheme, and the parts of each element."""
 
     def approximate(self, phase: int, sigma: Array) -> Array:
         """Unknowns v (k, nv) at relative positions sigma (k,): quick, fit to start Newton on."""

@@ -109,7 +109,7 @@ def test_resuming_a_finished_branch_adds_nothing(
     def never(*_: object) -> None:
         raise AssertionError("solved")
 
-    monkeypatch.setattr("ribbonopt.solvers.newton.Newton.solve", never)
+    monkeypatch.setattr("ribbonopt.solvers.newton.NewtonSolver.solve", never)
     reference, status = whole(name), LONG[name][1]
     folder = reference.cut(tmp_path / "branch", reference.data)
     found = run("continue", reference.scene, "--out", folder, "--resume")

@@ -73,7 +73,7 @@ def never(*_: object, **__: object) -> None:
 @pytest.fixture
 def unsolved(monkeypatch: pytest.MonkeyPatch) -> None:
     """Let nothing be solved."""
-    for solver in ("newton.Newton", "ipopt.Ipopt"):
+    for solver in ("newton.NewtonSolver", "ipopt.IpoptSolver"):
         monkeypatch.setattr(f"ribbonopt.solvers.{solver}.solve", never)
 
 

@@ -229,8 +229,8 @@ def test_unreachable_ends_are_told_before_solving(
     def never(*_: object) -> None:
         raise AssertionError("solved")
 
-    monkeypatch.setattr("ribbonopt.solvers.newton.Newton.solve", never)
-    monkeypatch.setattr("ribbonopt.solvers.ipopt.Ipopt.solve", never)
+    monkeypatch.setattr("ribbonopt.solvers.newton.NewtonSolver.solve", never)
+    monkeypatch.setattr("ribbonopt.solvers.ipopt.IpoptSolver.solve", never)
     status, out, err = run(verb, configs / "elastica_clamped.yaml", "--set", UNREACHABLE)
     assert (status, out) == (3, "")
     for word in ("unreachable", "1.2 apart", "boundary.end.position", "1 long"):

@@ -10,7 +10,7 @@ from references import HALF_MOEBIUS
 from ribbonopt.guess import IntegratedLoads, initial_unknowns
 from ribbonopt.problem import BoundaryValueProblem, Posed, formulate
 from ribbonopt.scene import load_scene
-from ribbonopt.solvers import Newton, Status
+from ribbonopt.solvers import NewtonSolver, Status
 from ribbonopt.transcription import Mesh, MultipleShooting, Output, lobatto
 
 #: (scheme, degree, steps): intervals whose errors are asymptotic and above rounding
@@ -37,9 +37,9 @@ def slope(counts: tuple[int, ...], errors: list[float]) -> float:
 def shot(problem: BoundaryValueProblem, method: tuple[str, int, int], elements: int) -> Output:
     nlp = MultipleShooting.named(*method).transcribe(problem, (elements,))
     p = Mesh.uniform(elements).widths
-    report = Newton(nlp).solve(np.ones(nlp.unknowns), p)
+    report = NewtonSolver(nlp).solve(np.ones(nlp.unknowns), p)
     assert report.status is Status.CONVERGED
-    return nlp.blocks.dense(report.w, p)
+    return nlp.output(report.w, p)
 
 
 def between(nodes: np.ndarray) -> np.ndarray:
@@ -121,10 +121,10 @@ def test_the_ribbon_converges_at_the_declared_order(
         nlp = MultipleShooting.named(*method).transcribe(problem, (intervals,))
         p = np.concatenate([posed.values, Mesh.uniform(intervals).widths])
         guess = IntegratedLoads(ribbon, posed, scene.guess)
-        report = Newton(nlp).solve(initial_unknowns(guess, ribbon, problem, nlp.blocks, p), p)
+        report = NewtonSolver(nlp).solve(initial_unknowns(guess, ribbon, problem, nlp.blocks, p), p)
         assert report.status is Status.CONVERGED
         # Reduced states: n, and m at the origin, are the constants.
-        constants = nlp.blocks.dense(report.w, p).constants
+        constants = nlp.output(report.w, p).constants
         errors.append(np.abs(constants - reference).max())
     assert slope(RIBBON[method], errors) == pytest.approx(nlp.blocks.order, abs=0.5)
 

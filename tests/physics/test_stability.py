@@ -16,7 +16,7 @@ from ribbonopt.problem.energy import minimum
 from ribbonopt.scene import Scene, loads_scene
 from ribbonopt.solution.solution import Solution
 from ribbonopt.solvers import Status
-from ribbonopt.transcription import Collocation, Mesh
+from ribbonopt.transcription import CollocationMethod, Mesh
 
 Solved = Callable[..., Solution]
 SMOOTH = "law={type: variational, delta: 0.1}"
@@ -160,7 +160,7 @@ def inertia(solution: Solution, degree: int, intervals: int) -> int:
     posed = solution.posed.under(formulation="energy")
     ribbon = Ribbon.of(posed)
     problem = minimum(ribbon)
-    nlp = Collocation.named("gauss", degree).transcribe(problem, (intervals,))
+    nlp = CollocationMethod.named("gauss", degree).transcribe(problem, (intervals,))
     p = np.concatenate([posed.values, Mesh.uniform(intervals).widths])
     w = initial_unknowns(solution, ribbon, problem, nlp.blocks, p)
     at, of = ca.MX.sym("w", len(w)), ca.MX.sym("p", len(p))

@@ -12,7 +12,7 @@ from ribbonopt.pipeline.prepared import Prepared
 from ribbonopt.solution.solution import Solution
 from ribbonopt.solvers import SolveReport
 from ribbonopt.solvers.extended import ExtendedSystem
-from ribbonopt.solvers.newton import Newton
+from ribbonopt.solvers.newton import NewtonSolver
 
 from .curve import Curve
 from .points import Metric, Point, reduced, row_of
@@ -64,7 +64,7 @@ class Corrector:
         y = np.append(line.at_points(point.unknowns[:-1]), point.position)
         system = ExtendedSystem(line, row, float(row @ y) + arc)
         nlp = self.beside(solution, point.position).nlp
-        report = Newton(nlp).solve(guess, line.parameters(guess[-1]), None, enough, system)
+        report = NewtonSolver(nlp).solve(guess, line.parameters(guess[-1]), None, enough, system)
         position = float(report.w[-1])
         attempts = self.beside(solution, position)
         attempts.take(_without_last(report), check=False)

@@ -95,10 +95,11 @@ class Curve:
 
     def line(self, solution: Solution) -> Line:
         """Return the equations of a solution along this curve, on its mesh and in its phases."""
-        widths = solution.mesh.widths
+        widths, dense = solution.mesh.widths, solution.dense
+        layout, known = dense.blocks.layout, dense.known
         return Line(
-            solution.dense.blocks,
-            lambda position: np.concatenate([self._theta(position), widths]),
+            dense.blocks,
+            lambda position: layout.parameters(self._theta(position), widths, known),
             SLOPE * self.span,
         )
 

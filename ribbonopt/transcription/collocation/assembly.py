@@ -14,14 +14,15 @@ from collections.abc import Sequence
 
 import casadi as ca
 import numpy as np
-from numpy.typing import NDArray
 
 from ribbonopt.transcription.buffered import shared_map
 from ribbonopt.transcription.functions import ConditionFunctions, StageFunctions
 from ribbonopt.transcription.layout import Layout
 from ribbonopt.transcription.nlp import NLPFunctions
-from ribbonopt.transcription.sparse import Index, from_triplets, scatter, sparse, triplets_of
+from ribbonopt.transcription.sparse import Index, parts_of, scatter, sparse, triplets_of
 from ribbonopt.transcription.tableaus import Tableau
+
+from .element_pattern import element_pattern
 
 
 class Assembler:
@@ -38,12 +39,13 @@ class Assembler:
         self.layout, self.tableau = layout, tableau
         self.phases, self.conditions = phases, conditions
         self.w = ca.MX.sym("w", layout.unknowns)
-        self.p = ca.MX.sym("p", n_theta + layout.element_count)
-        theta, widths = ca.vertsplit(self.p, [0, n_theta, n_theta + layout.element_count])
+        self.p = ca.MX.sym("p", n_theta + sum(layout.parameter_sizes))
+        self.theta, self.numbers, known, widths = parts_of(self.p, layout, n_theta)
+        self.known = ca.reshape(known, layout.known, -1) if layout.known else None
         ends = [0, layout.element_count * layout.element_unknowns]
         body, last, c = ca.vertsplit(self.w, [*ends, layout.constants_at, layout.unknowns])
         body = ca.reshape(body, layout.element_unknowns, layout.element_count)
-        self.theta, self.widths, self.c = theta, widths.T, c
+        self.widths, self.c = widths.T, c
         self.nodes = ca.horzcat(body[: layout.nx, :], last)
         self.stages = body[layout.nx :, :]
 
@@ -71,7 +73,11 @@ class Assembler:
         positions = ca.DM.ones(lay.stages, 1) @ (widths @ before)
         positions += ca.DM(self.tableau.nodes) @ widths
         v = ca.reshape(self.stages[:, elements.start : elements.stop], lay.nv, -1)
-        return [v, self.c, self.theta, ca.reshape(positions, 1, -1)]
+        places = ca.reshape(positions, 1, -1)
+        if self.known is not None:
+            stages = slice(elements.start * lay.stages, elements.stop * lay.stages)
+            places = ca.vertcat(places, self.known[:, stages])
+        return [v, self.c, self.theta, places]
 
     def _each(self, name: str, extra: Sequence[list[ca.MX]] = ()) -> list[list[ca.MX]]:
         """Return the outputs of stage function `name` of every phase, mapped over its stages."""
@@ -85,7 +91,7 @@ class Assembler:
 
     def _condition_inputs(self) -> list[ca.MX]:
         points = ca.horzcat(*(self.nodes[:, i] for i in self.layout.point_elements))
-        return [points, self.c, self.theta]
+        return [points, self.c, self.numbers]
 
     def _repeated_widths(self, elements: slice) -> ca.MX:
         """Width of the element of every stage, a row."""
@@ -135,8 +141,8 @@ class Assembler:
             scaled = (row < lay.nx).astype(float)[:, None]
             widths = self._repeated_widths(s)
             scale = ca.DM(scaled) @ widths + ca.DM(1 - scaled) @ ca.DM.ones(1, widths.shape[1])
-            stacked = ca.reshape(jac * scale, lay.stages * len(row), -1)
-            S, k, local_row, local_col = self._element_pattern(row, col)
+            stacked = ca.reshape(jac * scale, lay.stages * len(row), s.stop - s.start)
+            S, k, local_row, local_col = element_pattern(lay, self.tableau, row, col)
             nonzeros.append(ca.vec(S @ stacked + ca.repmat(k, 1, s.stop - s.start)))
             elements = np.arange(s.start, s.stop)[:, None]
             rows.append((elements * lay.element_equations + local_row).ravel())
@@ -154,49 +160,6 @@ class Assembler:
         shape = (lay.equations, lay.unknowns)
         jacobian = scatter(nonzeros, np.concatenate(rows), np.concatenate(columns), shape)
         return self._residuals([e for e, _ in stage_outputs], conditions), jacobian
-
-    def _element_pattern(self, row: Index, col: Index) -> tuple[ca.DM, ca.DM, Index, Index]:
-        """S, k and the local rows and columns of the nonzeros S J + k of one element.
-
-        Local columns: node, stages, next node, constants.
-        """
-        lay, t = self.layout, self.tableau
-        K, x = lay.stages, np.arange(lay.nx)
-        end_rows = K * lay.stage_equations + x
-        next_node = lay.element_unknowns + x
-        entries: list[tuple[Index, Index, NDArray[np.float64], Index]] = []
-        none = np.full(lay.nx, -1)
-        for i in range(K):
-            rows = i * lay.stage_equations + x
-            entries.append((rows, lay.nx + i * lay.nv + x, np.ones(lay.nx), none))
-            entries.append((rows, x, -np.ones(lay.nx), none))
-        entries.append((end_rows, next_node, np.ones(lay.nx), none))
-        entries.append((end_rows, x, -np.ones(lay.nx), none))
-        dynamic = np.flatnonzero(row < lay.nx)
-        static = np.flatnonzero(row >= lay.nx)
-        for j in range(K):
-            local = np.where(
-                col < lay.nv,
-                lay.nx + j * lay.nv + col,
-                lay.element_unknowns + lay.nx + col - lay.nv,
-            )
-            source = j * len(row) + np.arange(len(row))
-            for i in range(K):
-                rows = i * lay.stage_equations + row[dynamic]
-                value = np.full(len(dynamic), -t.matrix[i, j])
-                entries.append((rows, local[dynamic], value, source[dynamic]))
-            rows = K * lay.stage_equations + row[dynamic]
-            value = np.full(len(dynamic), -t.weights[j])
-            entries.append((rows, local[dynamic], value, source[dynamic]))
-            rows = j * lay.stage_equations + row[static]
-            entries.append((rows, local[static], np.ones(len(static)), source[static]))
-        r, c, v, source = (np.concatenate(part) for part in zip(*entries, strict=True))
-        width = lay.element_unknowns + lay.nx + lay.nc
-        keys, where = np.unique(r * width + c, return_inverse=True)
-        linear = source >= 0
-        S = from_triplets(where[linear], source[linear], v[linear], (len(keys), K * len(row)))
-        k = np.bincount(where[~linear], v[~linear], len(keys))
-        return S, ca.DM(k), keys // width, keys % width
 
     def _hessian(self, sigma_f: ca.MX, multipliers: ca.MX) -> ca.MX:
         lay, t = self.layout, self.tableau

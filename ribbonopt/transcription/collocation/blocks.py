@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ribbonopt.arrays import Array
-from ribbonopt.transcription.buffered import Mapped, mapped
+from ribbonopt.transcription.buffered import Mapped
 from ribbonopt.transcription.functions import StageFunctions
 from ribbonopt.transcription.layout import Layout
 from ribbonopt.transcription.points import Conditions, Parts
@@ -67,7 +67,8 @@ class ElementBlocks:
         """
         tableau, split = next_tableau(self.tableau)
         elements = tuple(split * n for n in self.layout.elements)
-        layout = replace(self.layout, nh=0, stages=tableau.degree, elements=elements)
+        places = tuple(tableau.nodes.tolist())
+        layout = replace(self.layout, nh=0, stages=tableau.degree, places=places, elements=elements)
         conditions = replace(self.conditions, layout=layout)
         phases = self.phases
         if self.layout.nh:
@@ -90,7 +91,7 @@ class ElementBlocks:
         return stages, self.conditions.values(parts, p)
 
     def residuals(self, w: Array, p: Array) -> Residuals:
-        """Residuals at the unknowns w for the parameters p = [theta, widths]."""
+        """Residuals at the unknowns w for the parameters p."""
         parts = self.layout.unpack(w)
         values = self._evaluate(self._values, parts, p)
         return self._residuals(parts, p, values[0], self.conditions.values(parts, p))
@@ -113,12 +114,6 @@ class ElementBlocks:
         """Solve every element's stage equations for its stages, maybe for some residuals only."""
         widths = self.widths(p)
         return StageElimination(self.layout, self.tableau, derivatives.stages, widths, only)
-
-    def dense(self, w: Array, p: Array) -> Output:
-        """Return the dense output of a solution w."""
-        from .output import DenseOutput  # needs these blocks
-
-        return DenseOutput(self, w, p)
 
     def rates(self, w: Array, p: Array) -> Array:
         """Return the derivatives F (N, K, nx) at the stages, per relative position."""
@@ -179,18 +174,19 @@ class ElementBlocks:
             positions = self.stage_positions(p)
         else:
             positions = np.zeros((lay.element_count, lay.stages))
+        places = lay.with_known(positions, p)
         if len(calls) == 1:
-            return calls[0](stages, c, theta, positions)
+            return calls[0](stages, c, theta, places)
         groups = [
-            call(stages[s], c, theta, positions[s])
+            call(stages[s], c, theta, places[s])
             for call, s in zip(calls, lay.phase_slices, strict=True)
         ]
         return [np.concatenate(group) for group in zip(*groups, strict=True)]
 
     @cached_property
     def _values(self) -> tuple[Mapped, ...]:
-        return tuple(mapped(f.values) for f in self.phases)
+        return tuple(f.mapped_values for f in self.phases)
 
     @cached_property
     def _dense(self) -> tuple[Mapped, ...]:
-        return tuple(mapped(f.dense) for f in self.phases)
+        return tuple(f.mapped_dense for f in self.phases)

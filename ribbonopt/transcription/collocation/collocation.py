@@ -12,27 +12,30 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import dataclass
 
+from ribbonopt.arrays import Array
 from ribbonopt.errors import TranscriptionError
 from ribbonopt.problem.contract import BoundaryValueProblem
 from ribbonopt.transcription.functions import condition_functions, stage_functions
+from ribbonopt.transcription.known import Known
 from ribbonopt.transcription.layout import Layout
 from ribbonopt.transcription.nlp import NLP, NLPFunctions
 from ribbonopt.transcription.points import Conditions
 from ribbonopt.transcription.tableaus import Tableau, gauss, lobatto, radau
 
 from .blocks import ElementBlocks
+from .output import DenseOutput
 
 SCHEMES: dict[str, Callable[[int], Tableau]] = {"gauss": gauss, "radau": radau, "lobatto": lobatto}
 
 
 @dataclass(frozen=True, eq=False)
-class Collocation:
+class CollocationMethod:
     """Collocation by one tableau, the same in every phase."""
 
     tableau: Tableau
 
     @classmethod
-    def named(cls, scheme: str, degree: int) -> Collocation:
+    def named(cls, scheme: str, degree: int) -> CollocationMethod:
         """Return the collocation of a named scheme; raises TranscriptionError for others."""
         if scheme not in SCHEMES:
             raise TranscriptionError(
@@ -46,7 +49,7 @@ class Collocation:
         return self.tableau.name
 
     def transcribe(self, bvp: BoundaryValueProblem, elements: tuple[int, ...]) -> NLP:
-        """NLP of `bvp` with `elements[i]` elements in phase i; p = [theta, relative widths]."""
+        """NLP of `bvp` with `elements[i]` elements in phase i."""
         if len(elements) != len(bvp.phases):
             raise TranscriptionError(
                 f"the mesh has {len(elements)} phases, the problem has {len(bvp.phases)}"
@@ -61,6 +64,8 @@ class Collocation:
             stages=self.tableau.degree,
             elements=elements,
             conditions=len(bvp.conditions),
+            known=bvp.known.numel(),
+            places=tuple(self.tableau.nodes.tolist()),
         )
         n_theta = bvp.parameters.numel()
 
@@ -71,13 +76,18 @@ class Collocation:
             return Assembler(layout, self.tableau, phases, conditions, n_theta).functions()
 
         blocks = ElementBlocks(layout, self.tableau, phases, Conditions(layout, conditions))
+
+        def read(w: Array, p: Array, known: Known | None) -> DenseOutput:
+            return DenseOutput(blocks, w, p, known)
+
         return NLP(
             unknowns=layout.unknowns,
             equations=layout.equations,
-            parameters=n_theta + layout.element_count,
+            parameters=n_theta + sum(layout.parameter_sizes),
             inequality=layout.is_inequality(),
             has_cost=any(p.cost is not None for p in bvp.phases),
             build=build,
+            read=read,
             layout=layout,
             structure=blocks,
         )

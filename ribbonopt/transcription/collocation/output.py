@@ -8,13 +8,13 @@ the polynomial and improved by fixed-point sweeps, each worth one order, until t
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 import numpy as np
 
 from ribbonopt.arrays import Array
-from ribbonopt.transcription.buffered import mapped
+from ribbonopt.transcription.known import Known, at_places
 from ribbonopt.transcription.layout import Index
 
 from .blocks import ElementBlocks
@@ -31,12 +31,15 @@ class DenseOutput:
     blocks : ElementBlocks
         The discretised equations.
     w, p : arrays
-        Unknowns, and parameters [theta, relative widths].
+        Unknowns, and parameters.
+    known : Known or None
+        The known fields that p was sampled from, if the problem has any.
     """
 
     blocks: ElementBlocks
     w: Array
     p: Array
+    known: Known | None = None
 
     @property
     def order(self) -> int:
@@ -78,36 +81,39 @@ class DenseOutput:
         element, t, h = self.blocks.layout.locate(self.p, phase, sigma)
         return np.hstack([self._polynomial(element, t, h), self._interpolated(element, t)])
 
-    def refined(self) -> tuple[ElementBlocks, Array, Array, int]:
-        """Return the next better scheme, this output as its unknowns w, p, parts per element."""
+    def moved(self, step: Array) -> DenseOutput:
+        """Return the output of the unknowns w + step."""
+        return replace(self, w=self.w + step)
+
+    def refined(self) -> tuple[DenseOutput, int]:
+        """Return this output on the next better scheme, and the parts of each element."""
         blocks, split = self.blocks.finer
         widths = np.repeat(self.blocks.widths(self.p) / split, split)
-        p = np.concatenate([self.theta, widths])
+        p = blocks.layout.parameters(self.theta, widths, self.known)
         if split == 1:
             stages = self._everywhere(blocks.tableau.nodes)
             w = blocks.layout.pack(self.at_nodes, stages, self.constants)
         else:
             w = blocks.sampled(self, p)
-        return blocks, w, p, split
+        return DenseOutput(blocks, w, p, self.known), split
 
     def _substeps(self, phase: int, element: Index, t: Array, h: Array) -> Array:
         """States (k, nx) after steps of t h from the first nodes of elements."""
-        nodes = self.at_nodes
-        tableau = self.blocks.tableau
+        nodes, tableau, lay = self.at_nodes, self.blocks.tableau, self.blocks.layout
         e, count, K = element, len(element), tableau.degree
         stage_t = t[:, None] * tableau.nodes
         repeated = np.repeat(e, K)
         X = self._polynomial(repeated, stage_t.ravel(), np.repeat(h, K)).reshape(count, K, -1)
-        positions = self.blocks.layout.starts(self.p)[e][:, None] + h[:, None] * stage_t
-        lay = self.blocks.layout
+        positions = lay.starts(self.p)[e][:, None] + h[:, None] * stage_t
         z = self._interpolated(repeated, stage_t.ravel())
-        equations = mapped(self.blocks.phases[phase].values)
+        places = self._places(phase, positions.ravel())
+        equations = self.blocks.phases[phase].mapped_values
         step = (h * t)[:, None]
         before = np.inf
         for _ in range(MOST_SWEEPS):
             x = X.reshape(count * K, -1)
-            z = self._solved(phase, x, z, positions.ravel())
-            values = equations(np.hstack([x, z]), self.constants, self.theta, positions)[0]
+            z = self._solved(phase, x, z, places)
+            values = equations(np.hstack([x, z]), self.constants, self.theta, places)[0]
             F = values.reshape(count, K, -1)[:, :, : lay.nx]
             improved = nodes[e][:, None] + step[:, None] * (tableau.matrix @ F)
             change = float(np.abs(improved - X).max())
@@ -124,7 +130,9 @@ class DenseOutput:
         """
         element, t, _ = self.blocks.layout.locate(self.p, phase, sigma)
         z = self._interpolated(element, t)
-        return self._solved(phase, self.states(phase, sigma), z, sigma) if z.size else z
+        if not z.size:
+            return z
+        return self._solved(phase, self.states(phase, sigma), z, self._places(phase, sigma))
 
     def stages(self, phase: int) -> tuple[Array, Array, Array]:
         """Stage values v (k, nv), relative positions (k,) and quadrature weights (k,)."""
@@ -158,11 +166,12 @@ class DenseOutput:
         positions = lay.starts(self.p)[:, None] + lay.widths(self.p)[:, None] * t
         result = np.empty((lay.element_count, count))
         for phase, s in enumerate(lay.phase_slices):
-            v, sigma = everywhere[s].reshape(-1, lay.nv), positions[s].ravel()
+            v = everywhere[s].reshape(-1, lay.nv)
+            places = self._places(phase, positions[s].ravel())
             x = v[:, : lay.nx]
-            v = np.hstack([x, self._solved(phase, x, v[:, lay.nx :], sigma)])
-            equations = mapped(self.blocks.phases[phase].values)
-            values = equations(v, self.constants, self.theta, sigma)[0]
+            v = np.hstack([x, self._solved(phase, x, v[:, lay.nx :], places)])
+            equations = self.blocks.phases[phase].mapped_values
+            values = equations(v, self.constants, self.theta, places)[0]
             F = values.reshape(-1, count, values.size // len(v))[:, :, : lay.nx]
             result[s] = np.abs(found[s] - F).max(axis=2)
         return np.asarray(result / np.abs(self._rates).max())
@@ -198,15 +207,19 @@ class DenseOutput:
         z: Array = np.einsum("kj,kjz->kz", basis, self._parts[1][element][:, :, lay.nx :])
         return z
 
-    def _solved(self, phase: int, x: Array, z: Array, sigma: Array) -> Array:
+    def _places(self, phase: int, sigma: Array) -> Array:
+        """Positions sigma (k,) with the known fields there, as stage functions take them."""
+        return at_places(self.known, phase, sigma, self.blocks.layout.known)
+
+    def _solved(self, phase: int, x: Array, z: Array, places: Array) -> Array:
         """Algebraic variables (k, nz) that solve their equations at the states x, from z."""
         lay = self.blocks.layout
         if not lay.nz or lay.nz != lay.ng:
             return z
-        dense = mapped(self.blocks.phases[phase].dense)
+        dense = self.blocks.phases[phase].mapped_dense
         rows, columns = slice(lay.nx, lay.nx + lay.ng), slice(lay.nx, lay.nv)
         for _ in range(3):  # from the accuracy of the polynomial to rounding
-            values, jacobian = dense(np.hstack([x, z]), self.constants, self.theta, sigma)
+            values, jacobian = dense(np.hstack([x, z]), self.constants, self.theta, places)
             g = values.reshape(len(x), -1)[:, rows]
             slope = jacobian.reshape(len(x), lay.nv + lay.nc, -1).swapaxes(1, 2)[:, rows, columns]
             z = z - np.linalg.solve(slope, g[:, :, None])[:, :, 0]

@@ -15,7 +15,7 @@ from ribbonopt.transcription.buffered import shared_map
 from ribbonopt.transcription.functions import ConditionFunctions
 from ribbonopt.transcription.layout import Layout
 from ribbonopt.transcription.nlp import NLPFunctions
-from ribbonopt.transcription.sparse import Index, scatter, triplets_of
+from ribbonopt.transcription.sparse import Index, parts_of, scatter, triplets_of
 
 from .blocks import Flow
 
@@ -25,8 +25,9 @@ def shooting_functions(
 ) -> NLPFunctions:
     """Cost (none), constraints, Jacobian and Hessian (empty: equations only)."""
     lay, count = layout, layout.element_count
-    w, p = ca.MX.sym("w", lay.unknowns), ca.MX.sym("p", n_theta + count)
-    theta, widths = ca.vertsplit(p, [0, n_theta, n_theta + count])
+    w = ca.MX.sym("w", lay.unknowns)
+    p = ca.MX.sym("p", n_theta + sum(lay.parameter_sizes))
+    theta, numbers, known, widths = parts_of(p, lay, n_theta)
     body, c = ca.vertsplit(w, [0, lay.constants_at, lay.unknowns])
     nodes, widths = ca.reshape(body, lay.nx, count + 1), widths.T
     points = ca.horzcat(*(nodes[:, i] for i in lay.point_elements))
@@ -36,17 +37,20 @@ def shooting_functions(
         result = []
         for flow, s in zip(flows, lay.phase_slices, strict=True):
             h = widths[0, s.start : s.stop]
-            sigma = h @ ca.DM(np.triu(np.ones((s.stop - s.start,) * 2), 1))
+            place = h @ ca.DM(np.triu(np.ones((s.stop - s.start,) * 2), 1))
+            if lay.known:
+                k = ca.reshape(known, lay.known * len(lay.places), count)
+                place = ca.vertcat(place, k[:, s.start : s.stop])
             mapped = shared_map(getattr(flow.step, name), s.stop - s.start)
-            result.append(mapped.call([nodes[:, s.start : s.stop], c, theta, sigma, h]))
+            result.append(mapped.call([nodes[:, s.start : s.stop], c, theta, place, h]))
         return result
 
     def residuals(after: list[ca.MX], values: ca.MX) -> ca.MX:
         return ca.vertcat(ca.vec(nodes[:, 1:] - ca.horzcat(*after)), values)
 
-    plain = residuals([after for (after,) in each("values")], conditions.values(points, c, theta))
+    plain = residuals([after for (after,) in each("values")], conditions.values(points, c, numbers))
     stepped = each("dense")
-    values, nonzeros = conditions.sparse(points, c, theta)
+    values, nonzeros = conditions.sparse(points, c, numbers)
     rows, columns = _places(lay, conditions)
     slopes = ca.vertcat(*(ca.vec(slope) for _, slope in stepped))
     entries = [-slopes, ca.MX.ones(count * lay.nx), nonzeros]

@@ -13,7 +13,7 @@ import casadi as ca
 import numpy as np
 
 from ribbonopt.arrays import Array
-from ribbonopt.transcription.buffered import Mapped, mapped
+from ribbonopt.transcription.buffered import Mapped
 from ribbonopt.transcription.collocation.elimination import NothingToEliminate
 from ribbonopt.transcription.functions import StageFunctions
 from ribbonopt.transcription.layout import Layout
@@ -30,13 +30,18 @@ if TYPE_CHECKING:
 class Flow:
     """What carries the states along one phase: equations, `steps` steps of a method, z at states.
 
-    `algebraic` is a function (x, c, theta, sigma) of z.
+    `algebraic` is a function (x, c, theta, place) of z.
     """
 
     stage: StageFunctions
     step: Step
     algebraic: ca.Function
     steps: int
+
+    @cached_property
+    def mapped_algebraic(self) -> Mapped:
+        """The algebraic variables at any number of states."""
+        return Mapped(self.algebraic)
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,7 +87,7 @@ class ShootingBlocks:
         return after.reshape(-1, 1, self.layout.nx), conditions
 
     def residuals(self, w: Array, p: Array) -> Residuals:
-        """Return the residuals at the unknowns w for p = [theta, widths]."""
+        """Return the residuals at the unknowns w for p."""
         (after,) = self._evaluate(self._values, w, p)
         return self._residuals(w, after, self.conditions.values(self.layout.unpack(w), p))
 
@@ -124,12 +129,6 @@ class ShootingBlocks:
         stages = np.empty((lay.element_count, 0, lay.nv))
         return lay.pack(np.concatenate(nodes), stages, output.constants)
 
-    def dense(self, w: Array, p: Array) -> Output:
-        """Return the dense output of a solution w."""
-        from .output import ShootingOutput  # needs these blocks
-
-        return ShootingOutput(self, w, p)
-
     def _residuals(self, w: Array, after: Array, b: Array) -> Residuals:
         lay = self.layout
         nodes, _, _ = lay.unpack(w)
@@ -139,17 +138,18 @@ class ShootingBlocks:
     def _evaluate(self, calls: tuple[Mapped, ...], w: Array, p: Array) -> list[Array]:
         lay = self.layout
         nodes, _, c = lay.unpack(w)
-        theta, starts, widths = lay.theta(p), lay.starts(p), lay.widths(p)
+        theta, widths = lay.theta(p), lay.widths(p)
+        places = lay.with_known(lay.starts(p), p)
         parts = [
-            call(nodes[s], c, theta, starts[s], widths[s])
+            call(nodes[s], c, theta, places[s], widths[s])
             for call, s in zip(calls, lay.phase_slices, strict=True)
         ]
         return [np.concatenate(group) for group in zip(*parts, strict=True)]
 
     @cached_property
     def _values(self) -> tuple[Mapped, ...]:
-        return tuple(mapped(flow.step.values) for flow in self.flows)
+        return tuple(flow.step.mapped_values for flow in self.flows)
 
     @cached_property
     def _dense(self) -> tuple[Mapped, ...]:
-        return tuple(mapped(flow.step.dense) for flow in self.flows)
+        return tuple(flow.step.mapped_dense for flow in self.flows)

@@ -17,7 +17,7 @@ import numpy as np
 from ribbonopt.transcription.functions import StageFunctions
 from ribbonopt.transcription.tableaus import Tableau
 
-from .steps import Step, stage_inputs
+from .steps import Step, shifted, stage_inputs
 
 ACCEPTED = 1e-9  # residual of inner equations, relative to 1 + |V|, below which they are solved
 LINEAR_SOLVER = "lapackqr"  # as quick as any, and singular matrices raise nothing: they give nan
@@ -50,11 +50,18 @@ class ImplicitStep:
         """Whether quadratic invariants are kept to rounding."""
         return self.tableau.symplectic
 
+    @property
+    def places(self) -> tuple[float, ...]:
+        """The start, from which the stages are guessed, and the positions of the stages."""
+        return (0.0, *self.tableau.nodes.tolist())
+
     def step(self, stage: StageFunctions, nx: int, start: ca.SX) -> Step:
         """Return one step of nx states; `start` is where inner equations for z start."""
-        x, c, theta, sigma, h = inputs = stage_inputs(stage, nx)
-        z = algebraic_function(stage, nx, start)(x, c, theta, sigma)
-        rate = stage.values(ca.vertcat(x, z), c, theta, sigma)[:nx]
+        count = len(self.places)
+        x, c, theta, place, h = inputs = stage_inputs(stage, nx, count)
+        first = shifted(place, ca.MX(0), 0, count)
+        z = algebraic_function(stage, nx, start)(x, c, theta, first)
+        rate = stage.values(ca.vertcat(x, z), c, theta, first)[:nx]
         guess = [ca.vertcat(x + node * h * rate, z) for node in self.tableau.nodes.tolist()]
         equations, linear = self._equations(stage, nx)
         V = _root(equations)(ca.vertcat(*guess), *inputs)[0]
@@ -68,13 +75,14 @@ class ImplicitStep:
         )
 
     def _equations(self, stage: StageFunctions, nx: int) -> tuple[ca.Function, ca.Function]:
-        """Functions (V, x, c, theta, sigma, h) -> R, after; and with derivatives in V, [x; c]."""
+        """Functions (V, x, c, theta, place, h) -> R, after; and with derivatives in V, [x; c]."""
         t = self.tableau
-        inputs = [ca.SX.sym("input", *s.shape) for s in stage_inputs(stage, nx)]
-        x, c, theta, sigma, h = inputs
+        count = len(self.places)
+        inputs = [ca.SX.sym("input", *s.shape) for s in stage_inputs(stage, nx, count)]
+        x, c, theta, place, h = inputs
         V = ca.SX.sym("V", stage.inputs[0].numel(), t.degree)
         columns = [
-            stage.values(V[:, j], c, theta, sigma + node * h)
+            stage.values(V[:, j], c, theta, shifted(place, node * h, j + 1, count))
             for j, node in enumerate(t.nodes.tolist())
         ]
         values = ca.horzcat(*columns)
@@ -90,12 +98,12 @@ class ImplicitStep:
 
 
 def algebraic_function(stage: StageFunctions, nx: int, start: ca.SX) -> ca.Function:
-    """Return the function (x, c, theta, sigma) of the z that solve 0 = g, from `start`."""
-    v, c, theta, sigma = stage.inputs
+    """Return the function (x, c, theta, place) of the z that solve 0 = g, from `start`."""
+    v, c, theta, place = stage.inputs
     x, z = ca.vertsplit(v, [0, nx, v.numel()])
-    equations = ca.Function("g", [z, x, c, theta, sigma], [stage.equations[nx:]])
-    first = ca.Function("start", [x, c, theta, sigma], [start])
-    inputs = stage_inputs(stage, nx)[:4]
+    equations = ca.Function("g", [z, x, c, theta, place], [stage.equations[nx:]])
+    first = ca.Function("start", [x, c, theta, place], [start])
+    inputs = stage_inputs(stage, nx, 1)[:4]
     found = first(*inputs)
     if z.numel():
         found = _root(equations)(found, *inputs)

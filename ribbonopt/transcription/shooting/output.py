@@ -6,19 +6,15 @@ states.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-from typing import TYPE_CHECKING
+from dataclasses import dataclass, replace
 
 import numpy as np
 
 from ribbonopt.arrays import Array
-from ribbonopt.transcription.buffered import mapped
+from ribbonopt.transcription.known import Known, at_places, sampled
 from ribbonopt.transcription.tableaus import gauss
 
 from .blocks import ShootingBlocks
-
-if TYPE_CHECKING:
-    from ribbonopt.transcription.structure import Blocks
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,12 +26,15 @@ class ShootingOutput:
     blocks : ShootingBlocks
         The discretised equations.
     w, p : arrays
-        Unknowns, and parameters [theta, relative widths].
+        Unknowns, and parameters.
+    known : Known or None
+        The known fields that p was sampled from, if the problem has any.
     """
 
     blocks: ShootingBlocks
     w: Array
     p: Array
+    known: Known | None = None
 
     @property
     def order(self) -> int:
@@ -57,12 +56,16 @@ class ShootingOutput:
         """States (N + 1, nx) at the nodes of all phases."""
         return self.blocks.layout.unpack(self.w)[0]
 
-    def refined(self) -> tuple[Blocks, Array, Array, int]:
-        """Return the next better scheme, this output as its unknowns w, p, parts per element."""
+    def moved(self, step: Array) -> ShootingOutput:
+        """Return the output of the unknowns w + step."""
+        return replace(self, w=self.w + step)
+
+    def refined(self) -> tuple[ShootingOutput, int]:
+        """Return this output on the next better scheme, and the parts of each element."""
         blocks, split = self.blocks.finer
         widths = np.repeat(self.blocks.widths(self.p) / split, split)
-        p = np.concatenate([self.theta, widths])
-        return blocks, blocks.sampled(self, p), p, split
+        p = blocks.layout.parameters(self.theta, widths, self.known)
+        return ShootingOutput(blocks, blocks.sampled(self, p), p, self.known), split
 
     def approximate(self, phase: int, sigma: Array) -> Array:
         """Unknowns v (k, nv) at relative positions sigma (k,)."""
@@ -128,20 +131,28 @@ class ShootingOutput:
 
     def _after(self, phase: int, x: Array, sigma: Array, h: Array) -> Array:
         """States (k, nx) after the steps of an element of widths h (k,) from x at sigma."""
-        step = mapped(self.blocks.flows[phase].step.values)
-        after: Array = step(x, self.constants, self.theta, sigma, h)[0].reshape(x.shape)
+        lay, step, place = self.blocks.layout, self.blocks.flows[phase].step.mapped_values, sigma
+        if lay.known:
+            everywhere = (sigma[:, None] + h[:, None] * np.array(lay.places)).ravel()
+            known = sampled(self.known, phase, everywhere, lay.known)
+            place = np.column_stack([sigma, known.reshape(len(x), -1)])
+        after: Array = step(x, self.constants, self.theta, place, h)[0].reshape(x.shape)
         return after
 
     def _algebraic(self, phase: int, x: Array, sigma: Array) -> Array:
         nz = self.blocks.layout.nz
         if not nz or not len(x):
             return np.empty((len(x), nz))
-        solve = mapped(self.blocks.flows[phase].algebraic)
-        z: Array = solve(x, self.constants, self.theta, sigma)[0].reshape(-1, nz)
+        solve, places = self.blocks.flows[phase].mapped_algebraic, self._places(phase, sigma)
+        z: Array = solve(x, self.constants, self.theta, places)[0].reshape(-1, nz)
         return z
+
+    def _places(self, phase: int, sigma: Array) -> Array:
+        """Positions sigma (k,) with the known fields there, as stage functions take them."""
+        return at_places(self.known, phase, sigma, self.blocks.layout.known)
 
     def _largest_rate(self, phase: int, x: Array, sigma: Array) -> float:
         v = np.hstack([x, self._algebraic(phase, x, sigma)])
-        values = mapped(self.blocks.flows[phase].stage.values)
-        equations = values(v, self.constants, self.theta, sigma)[0].reshape(len(v), -1)
+        values, places = self.blocks.flows[phase].stage.mapped_values, self._places(phase, sigma)
+        equations = values(v, self.constants, self.theta, places)[0].reshape(len(v), -1)
         return float(np.abs(equations[:, : x.shape[1]]).max())

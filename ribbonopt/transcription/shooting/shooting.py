@@ -15,9 +15,11 @@ from dataclasses import dataclass
 
 import casadi as ca
 
+from ribbonopt.arrays import Array
 from ribbonopt.errors import TranscriptionError
 from ribbonopt.problem.contract import BoundaryValueProblem
 from ribbonopt.transcription.functions import condition_functions, stage_functions
+from ribbonopt.transcription.known import Known
 from ribbonopt.transcription.layout import Layout
 from ribbonopt.transcription.nlp import NLP, NLPFunctions
 from ribbonopt.transcription.points import Conditions
@@ -25,6 +27,7 @@ from ribbonopt.transcription.tableaus import gauss
 
 from .blocks import Flow, ShootingBlocks
 from .implicit import ImplicitStep, algebraic_function
+from .output import ShootingOutput
 from .runge_kutta import rk4, rk8
 from .steps import Explicit, Method
 
@@ -62,7 +65,7 @@ class MultipleShooting:
         return f"{self.method.name} x {self.steps}"
 
     def transcribe(self, bvp: BoundaryValueProblem, elements: tuple[int, ...]) -> NLP:
-        """NLP of `bvp` with `elements[i]` elements in phase i; p = [theta, relative widths].
+        """NLP of `bvp` with `elements[i]` elements in phase i.
 
         Raises
         ------
@@ -84,6 +87,8 @@ class MultipleShooting:
             stages=0,
             elements=elements,
             conditions=len(bvp.conditions),
+            known=bvp.known.numel(),
+            places=self._places,
         )
         flows = self._flows(bvp)
         n_theta = bvp.parameters.numel()
@@ -94,18 +99,30 @@ class MultipleShooting:
 
             return shooting_functions(layout, flows, conditions, n_theta)
 
+        blocks = ShootingBlocks(
+            layout, self.method, self.name, flows, Conditions(layout, conditions)
+        )
+
+        def read(w: Array, p: Array, known: Known | None) -> ShootingOutput:
+            return ShootingOutput(blocks, w, p, known)
+
         return NLP(
             unknowns=layout.unknowns,
             equations=layout.equations,
-            parameters=n_theta + layout.element_count,
+            parameters=n_theta + sum(layout.parameter_sizes),
             inequality=layout.is_inequality(),
             has_cost=False,
             build=build,
+            read=read,
             layout=layout,
-            structure=ShootingBlocks(
-                layout, self.method, self.name, flows, Conditions(layout, conditions)
-            ),
+            structure=blocks,
         )
+
+    @property
+    def _places(self) -> tuple[float, ...]:
+        """Positions in an element where its steps read known fields."""
+        steps = range(self.steps)
+        return tuple((i + place) / self.steps for i in steps for place in self.method.places)
 
     def _flows(self, bvp: BoundaryValueProblem) -> tuple[Flow, ...]:
         nx, nz = bvp.state.numel(), bvp.algebraic.numel()

@@ -8,7 +8,7 @@ import pytest
 from analytic import bvp, double_integrator, implicit, rational, switching
 
 from ribbonopt.errors import ModelError
-from ribbonopt.problem import Phase
+from ribbonopt.problem import BoundaryValueProblem, Phase
 
 
 def test_points_must_be_one_more_than_phases() -> None:
@@ -73,3 +73,17 @@ def test_outputs_are_evaluated_by_name() -> None:
     assert sizes == {"both": 2, "sum": 1}
     found = np.array(function([3.0, 4.0], ca.DM(0, 1), ca.DM(0, 1), 0.0))
     np.testing.assert_array_equal(found.ravel(), [3, 4, 7])
+
+
+def test_what_is_made_of_a_problem_is_made_once_and_belongs_to_it() -> None:
+    made = []
+
+    def make(problem: BoundaryValueProblem) -> list[BoundaryValueProblem]:
+        made.append(problem)
+        return made
+
+    one = rational()
+    other = replace(one, state_names=("a", "b"))
+    assert one.kept(make) is one.kept(make)
+    other.kept(make)
+    assert made == [one, other]

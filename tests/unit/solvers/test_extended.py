@@ -18,25 +18,25 @@ from generic import nonlinear, random_data
 from scipy.optimize import brentq
 
 from ribbonopt.problem import BoundaryValueProblem, Phase
-from ribbonopt.solvers import Newton, Status
+from ribbonopt.solvers import NewtonSolver, Status
 from ribbonopt.solvers.extended import ExtendedSystem, Line, Local, local
-from ribbonopt.transcription import NLP, Collocation, Mesh, MultipleShooting
+from ribbonopt.transcription import NLP, CollocationMethod, Mesh, MultipleShooting
 
 Array = np.ndarray
-Scheme = Collocation | MultipleShooting
+Scheme = CollocationMethod | MultipleShooting
 
 FOLD_T = 4 * brentq(lambda x: x * math.tanh(x) - 1, 1, 2, xtol=1e-15)
 FOLD = FOLD_T**2 / (2 * math.cosh(FOLD_T / 4) ** 2)
 
 ACCURATE: dict[str, Scheme] = {
-    "gauss 6": Collocation.named("gauss", 6),
+    "gauss 6": CollocationMethod.named("gauss", 6),
     "rk8": MultipleShooting.named("rk8", steps=3),
     "shot gauss 4": MultipleShooting.named("gauss", 4, 2),
 }
 ROUGH: dict[str, Scheme] = {
-    "gauss 1": Collocation.named("gauss", 1),
-    "gauss 3": Collocation.named("gauss", 3),
-    "radau 2": Collocation.named("radau", 2),
+    "gauss 1": CollocationMethod.named("gauss", 1),
+    "gauss 3": CollocationMethod.named("gauss", 3),
+    "radau 2": CollocationMethod.named("radau", 2),
     "shot gauss 1": MultipleShooting.named("gauss", 1, 1),
     "shot gauss 3": MultipleShooting.named("gauss", 3, 2),
 }
@@ -87,7 +87,7 @@ def transcribed(
     """Return Bratu's problem, its line, and its lower solution at l = 1."""
     nlp = ACCURATE[scheme].transcribe(bratu(len(elements)), elements)
     line = along(nlp, elements, step)
-    report = Newton(nlp).solve(np.zeros(nlp.unknowns), line.parameters(1.0))
+    report = NewtonSolver(nlp).solve(np.zeros(nlp.unknowns), line.parameters(1.0))
     assert report.status is Status.CONVERGED
     return nlp, line, report.w
 
@@ -141,7 +141,7 @@ def test_slope_where_equations_are_linear_in_the_parameter(
     line = along(nlp, elements, 0.5)  # no error at all, however far
     w = np.random.default_rng(3).uniform(-1, 1, nlp.unknowns)
     stages, conditions = line.slope(w, 2.0)
-    if isinstance(ACCURATE[scheme], Collocation):
+    if isinstance(ACCURATE[scheme], CollocationMethod):
         one, none = (nlp.blocks.values(w, line.parameters(position))[0] for position in (1.0, 0.0))
         np.testing.assert_allclose(stages, one - none, rtol=0, atol=1e-13)
         # of three equations of a stage, only the second contains l
@@ -303,7 +303,7 @@ def test_tangent_is_that_of_finite_differences(elements: tuple[int, ...], scheme
     h = 1e-4
     found = local(line, random_row(line, w, 5), w, 1.0)
     ahead, behind = (
-        Newton(nlp).solve(w, line.parameters(1.0 + sign * h)).w for sign in (1.0, -1.0)
+        NewtonSolver(nlp).solve(w, line.parameters(1.0 + sign * h)).w for sign in (1.0, -1.0)
     )
     expected = np.append((ahead - behind) / (2 * h), 1)
     np.testing.assert_allclose(found.direction / found.direction[-1], expected, rtol=0, atol=1e-7)
@@ -342,7 +342,7 @@ class Branch:
         row = self.reduced(self.tangent)
         system = ExtendedSystem(self.line, row, float(row @ self.reduced(self.y)) + arc)
         p = self.line.parameters(float(self.y[-1]))
-        report = Newton(self.nlp).solve(self.y + arc * self.tangent, p, system=system)
+        report = NewtonSolver(self.nlp).solve(self.y + arc * self.tangent, p, system=system)
         assert report.status is Status.CONVERGED, report.status
         return report.w
 
@@ -412,13 +412,13 @@ def test_natural_steps_are_the_row_of_the_position_alone() -> None:
     row = np.zeros(len(line.at_points(w)) + 1)
     row[-1] = 1.0
     system = ExtendedSystem(line, row, 2.5)
-    report = Newton(nlp).solve(np.append(w, 1.0), line.parameters(1.0), system=system)
+    report = NewtonSolver(nlp).solve(np.append(w, 1.0), line.parameters(1.0), system=system)
     assert report.status is Status.CONVERGED
     assert report.w[-1] == pytest.approx(2.5, abs=1e-14)
-    other = Newton(nlp).solve(w, line.parameters(2.5))
+    other = NewtonSolver(nlp).solve(w, line.parameters(2.5))
     np.testing.assert_allclose(report.w[:-1], other.w, rtol=0, atol=1e-11)
 
 
 def test_points_beyond_the_fold_are_not_there() -> None:
     nlp, line, w = transcribed((7,), "gauss 6")
-    assert Newton(nlp).solve(w, line.parameters(FOLD + 0.1)).status is not Status.CONVERGED
+    assert NewtonSolver(nlp).solve(w, line.parameters(FOLD + 0.1)).status is not Status.CONVERGED

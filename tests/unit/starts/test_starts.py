@@ -34,7 +34,7 @@ from ribbonopt.scene import (
     load_scene,
 )
 from ribbonopt.solution.solution import Solution
-from ribbonopt.solvers import Newton, Status
+from ribbonopt.solvers import NewtonSolver, Status
 from ribbonopt.starts import homotopy
 from ribbonopt.starts.automatic import Automatic
 from ribbonopt.starts.equilibria import _variants as variants
@@ -65,11 +65,11 @@ def steps(found: Solution) -> list[str]:
 
 
 @cache
-def cantilever() -> tuple[Newton, Array, Array, list[str]]:
+def cantilever() -> tuple[NewtonSolver, Array, Array, list[str]]:
     """A solved cantilever: Newton's method, its unknowns, parameters, names of conditions."""
     this = scene(CLAMP, End("free", force=(1, 0, 0)), guess=LoadGuess((1, 0, 0), (0, 1, 0)))
     prepared = prepare(this)
-    newton = Newton(prepared.nlp)
+    newton = NewtonSolver(prepared.nlp)
     w, p = prepared.start()
     found = newton.solve(w, p)
     assert found.status is Status.CONVERGED

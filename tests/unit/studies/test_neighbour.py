@@ -10,7 +10,7 @@ import pytest
 from ribbonopt.accuracy.estimate import analyse, relative_error
 from ribbonopt.pipeline.prepared import Prepared, prepare
 from ribbonopt.scene import Scene, load_scene
-from ribbonopt.solvers.newton import Newton
+from ribbonopt.solvers.newton import NewtonSolver
 from ribbonopt.studies.batch.neighbour import Neighbour
 
 CONFIGS = Path(__file__).parents[3] / "configs"
@@ -30,14 +30,14 @@ def prepared() -> Prepared:
 def counted(monkeypatch: pytest.MonkeyPatch) -> Iterator[list[tuple[int, int]]]:
     """Count iterations and factorisations of every Newton solve."""
     found: list[tuple[int, int]] = []
-    whole = Newton.solve
+    whole = NewtonSolver.solve
 
-    def solve(self: Newton, *arguments: object, **options: object) -> object:
+    def solve(self: NewtonSolver, *arguments: object, **options: object) -> object:
         report = whole(self, *arguments, **options)  # type: ignore[arg-type]
         found.append((report.iterations, report.factorizations))
         return report
 
-    monkeypatch.setattr(Newton, "solve", solve)
+    monkeypatch.setattr(NewtonSolver, "solve", solve)
     yield found
 
 
@@ -120,7 +120,7 @@ def test_estimate_by_factors_of_a_neighbour(prepared: Prepared) -> None:
 
 
 def test_factors_that_do_not_fit_are_given_up(prepared: Prepared) -> None:
-    newton = Newton(prepared.nlp)
+    newton = NewtonSolver(prepared.nlp)
     w, p = prepared.start()
     good = newton.solve(w, p)
 

@@ -7,7 +7,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from ribbonopt.arrays import Array
-from ribbonopt.transcription.buffered import SIZES, Mapped, mapped
+from ribbonopt.transcription.buffered import SIZES, Mapped
 
 COUNTS = (1, 2, 3, 31, 63, 64, 65, 127, 200)
 NV, NC, NT = 3, 2, 4
@@ -52,14 +52,14 @@ def test_stages_are_those_of_single_calls_bit_for_bit(count: int) -> None:
 
 
 def test_no_stages_give_no_numbers() -> None:
-    assert [a.shape for a in mapped(STAGE)(*inputs(0))] == [(0,), (0,)]
+    assert [a.shape for a in Mapped(STAGE)(*inputs(0))] == [(0,), (0,)]
 
 
 @given(st.integers(1, 300), st.data())
 def test_parts_give_the_whole(count: int, data: st.DataObject) -> None:
     v, c, theta, sigma = inputs(count, seed=count)
     at = data.draw(st.integers(0, count))
-    call = mapped(STAGE)
+    call = Mapped(STAGE)
     head, tail = call(v[:at], c, theta, sigma[:at]), call(v[at:], c, theta, sigma[at:])
     joined = [np.concatenate(parts) for parts in zip(head, tail, strict=True)]
     assert same(call(v, c, theta, sigma), joined)
@@ -69,7 +69,7 @@ def test_parts_give_the_whole(count: int, data: st.DataObject) -> None:
 def test_arrays_of_any_kind_are_taken(count: int) -> None:
     v, c, theta, sigma = inputs(count)
     expected = stage_by_stage(v, c, theta, sigma)
-    call = mapped(STAGE)
+    call = Mapped(STAGE)
     wide = np.full((2 * count, 2 * NV), np.nan)
     wide[::2, ::2] = v
     apart = np.full(3 * count, np.nan)
@@ -91,7 +91,7 @@ def test_arguments_stay_and_may_be_locked() -> None:
     before = [value.copy() for value in values]
     for value in values:
         value.setflags(write=False)
-    mapped(STAGE)(*values)
+    Mapped(STAGE)(*values)
     assert same(values, before)
 
 
@@ -121,20 +121,13 @@ def test_a_wrong_number_of_numbers_is_refused(at: int, wanted: int, change: int)
     values = inputs(7)
     values[at] = np.resize(values[at], wanted + change)
     with pytest.raises(ValueError, match=f"argument {at} is expected to have {wanted} numbers"):
-        mapped(STAGE)(*values)
+        Mapped(STAGE)(*values)
 
 
 def test_a_stage_cut_short_is_refused() -> None:
     v, *others = inputs(7)
     with pytest.raises(ValueError, match="argument 0"):
-        mapped(STAGE)(v.ravel()[:-1], *others)
-
-
-def test_one_object_for_one_function() -> None:
-    other = stage_function()
-    assert mapped(STAGE) is mapped(STAGE)
-    assert mapped(other) is not mapped(STAGE)
-    assert mapped(other) is mapped(other)
+        Mapped(STAGE)(v.ravel()[:-1], *others)
 
 
 def test_few_blocks_serve_all_counts() -> None:

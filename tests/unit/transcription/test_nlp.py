@@ -10,7 +10,7 @@ from generic import nonlinear, random_data
 from ribbonopt.errors import TranscriptionError
 from ribbonopt.problem import BoundaryValueProblem
 from ribbonopt.solvers.condense import CondensedSystem
-from ribbonopt.transcription import NLP, Collocation
+from ribbonopt.transcription import NLP, CollocationMethod
 
 Array = np.ndarray
 
@@ -42,7 +42,7 @@ def test_jacobian_is_that_of_automatic_differentiation(
     scheme: str, degree: int, elements: tuple[int, ...], minimised: bool
 ) -> None:
     problem = nonlinear(len(elements), minimised)
-    nlp = Collocation.named(scheme, degree).transcribe(problem, elements)
+    nlp = CollocationMethod.named(scheme, degree).transcribe(problem, elements)
     w, p = random_data(nlp, elements)
     values, jacobian = nlp.functions.jacobian(w, p)
     expected = automatic(nlp)[0](w, p)
@@ -53,7 +53,7 @@ def test_jacobian_is_that_of_automatic_differentiation(
 @each_kind
 def test_jacobian_is_that_of_finite_differences(minimised: bool) -> None:
     elements = (2, 3, 1)
-    nlp = Collocation.named("gauss", 2).transcribe(nonlinear(3, minimised), elements)
+    nlp = CollocationMethod.named("gauss", 2).transcribe(nonlinear(3, minimised), elements)
     w, p = random_data(nlp, elements)
     step = 1e-6 * np.eye(nlp.unknowns)
     g = nlp.functions.constraints
@@ -68,7 +68,7 @@ def test_hessian_is_that_of_automatic_differentiation(
     scheme: str, degree: int, elements: tuple[int, ...]
 ) -> None:
     problem = nonlinear(len(elements), minimised=True)
-    nlp = Collocation.named(scheme, degree).transcribe(problem, elements)
+    nlp = CollocationMethod.named(scheme, degree).transcribe(problem, elements)
     w, p = random_data(nlp, elements)
     multipliers = np.random.default_rng(1).uniform(-1, 1, nlp.equations)
     hessian = np.array(nlp.functions.hessian(w, p, 0.7, multipliers))
@@ -78,7 +78,7 @@ def test_hessian_is_that_of_automatic_differentiation(
 
 
 def test_square_programs_need_no_hessian() -> None:
-    nlp = Collocation.named("gauss", 2).transcribe(nonlinear(1), (3,))
+    nlp = CollocationMethod.named("gauss", 2).transcribe(nonlinear(1), (3,))
     assert nlp.functions.hessian.nnz_out(0) == 0
 
 
@@ -89,7 +89,7 @@ def test_blocks_give_the_constraints_of_the_program(
     scheme: str, degree: int, elements: tuple[int, ...], minimised: bool
 ) -> None:
     problem = nonlinear(len(elements), minimised)
-    nlp = Collocation.named(scheme, degree).transcribe(problem, elements)
+    nlp = CollocationMethod.named(scheme, degree).transcribe(problem, elements)
     w, p = random_data(nlp, elements)
     expected = np.array(nlp.functions.constraints(w, p)).ravel()
     np.testing.assert_allclose(nlp.blocks.residuals(w, p).vector(), expected, atol=1e-14)
@@ -102,7 +102,7 @@ def test_condensed_step_is_that_of_the_whole_jacobian(
     scheme: str, degree: int, elements: tuple[int, ...]
 ) -> None:
     problem = nonlinear(len(elements))
-    nlp = Collocation.named(scheme, degree).transcribe(problem, elements)
+    nlp = CollocationMethod.named(scheme, degree).transcribe(problem, elements)
     assert nlp.square
     w, p = random_data(nlp, elements)
     residuals, derivatives = nlp.blocks.linearize(w, p)
@@ -114,7 +114,7 @@ def test_condensed_step_is_that_of_the_whole_jacobian(
 
 
 def test_evaluations_do_not_share_memory() -> None:
-    nlp = Collocation.named("gauss", 2).transcribe(nonlinear(1), (3,))
+    nlp = CollocationMethod.named("gauss", 2).transcribe(nonlinear(1), (3,))
     w, p = random_data(nlp, (3,))
     residuals, derivatives = nlp.blocks.linearize(w, p)
     before = [residuals.vector().copy(), derivatives.stages.copy(), derivatives.conditions.copy()]
@@ -127,8 +127,8 @@ def test_evaluations_do_not_share_memory() -> None:
 
 def test_a_finer_scheme_is_the_same_problem() -> None:
     problem = nonlinear(2)
-    coarse = Collocation.named("gauss", 2).transcribe(problem, (3, 2))
-    fine = Collocation.named("gauss", 3).transcribe(problem, (3, 2))
+    coarse = CollocationMethod.named("gauss", 2).transcribe(problem, (3, 2))
+    fine = CollocationMethod.named("gauss", 3).transcribe(problem, (3, 2))
     blocks, split = coarse.blocks.finer
     w, p = random_data(fine, (3, 2))
     assert split == 1
@@ -139,7 +139,7 @@ def test_a_finer_scheme_is_the_same_problem() -> None:
 
 def test_square_means_as_many_equations_as_unknowns() -> None:
     def transcribe(problem: BoundaryValueProblem) -> NLP:
-        return Collocation.named("gauss", 2).transcribe(problem, (3,))
+        return CollocationMethod.named("gauss", 2).transcribe(problem, (3,))
 
     problem = nonlinear(1)
     assert transcribe(problem).square
@@ -149,16 +149,16 @@ def test_square_means_as_many_equations_as_unknowns() -> None:
 
 
 def test_a_program_without_elements_has_no_blocks() -> None:
-    nlp = Collocation.named("gauss", 2).transcribe(nonlinear(1), (3,))
+    nlp = CollocationMethod.named("gauss", 2).transcribe(nonlinear(1), (3,))
     with pytest.raises(TranscriptionError, match="not made of collocation elements"):
         _ = replace(nlp, structure=None).blocks
 
 
 def test_a_mesh_needs_as_many_phases_as_the_problem() -> None:
     with pytest.raises(TranscriptionError, match="mesh has 1 phases, the problem has 2"):
-        Collocation.named("gauss", 2).transcribe(nonlinear(2), (3,))
+        CollocationMethod.named("gauss", 2).transcribe(nonlinear(2), (3,))
 
 
 def test_unknown_schemes_are_refused() -> None:
     with pytest.raises(TranscriptionError, match="found 'chebyshev', expected one of gauss, "):
-        Collocation.named("chebyshev", 2)
+        CollocationMethod.named("chebyshev", 2)

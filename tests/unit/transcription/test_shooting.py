@@ -23,9 +23,9 @@ from ribbonopt.errors import TranscriptionError
 from ribbonopt.guess import IntegratedLoads, initial_unknowns
 from ribbonopt.problem import BoundaryValueProblem, Phase, Posed, formulate
 from ribbonopt.scene import load_scene
-from ribbonopt.solvers import Ipopt, Newton, SolveReport, Status
+from ribbonopt.solvers import IpoptSolver, NewtonSolver, SolveReport, Status
 from ribbonopt.solvers.condense import CondensedSystem
-from ribbonopt.transcription import NLP, Collocation, Mesh, MultipleShooting
+from ribbonopt.transcription import NLP, CollocationMethod, Mesh, MultipleShooting
 from ribbonopt.transcription.shooting.output import ShootingOutput
 
 Array = np.ndarray
@@ -69,9 +69,9 @@ def shot(
 ) -> tuple[SolveReport, ShootingOutput]:
     nlp = shooting(problem, method, elements)
     p = Mesh.uniform(*elements).widths
-    report = Newton(nlp).solve(np.full(nlp.unknowns, start), p)
+    report = NewtonSolver(nlp).solve(np.full(nlp.unknowns, start), p)
     assert report.status is Status.CONVERGED, report.status
-    dense = nlp.blocks.dense(report.w, p)
+    dense = nlp.output(report.w, p)
     assert isinstance(dense, ShootingOutput)
     return report, dense
 
@@ -166,8 +166,11 @@ def test_condensed_and_sparse_newton_and_ipopt_give_one_answer(
     nlp = shooting(problem, method, elements)
     p = Mesh.uniform(*elements).widths
     w = np.full(nlp.unknowns, 0.6)
-    condensed = Newton(nlp).solve(w, p)
-    for other in (Newton(replace(nlp, structure=None)).solve(w, p), Ipopt(nlp).solve(w, p)):
+    condensed = NewtonSolver(nlp).solve(w, p)
+    for other in (
+        NewtonSolver(replace(nlp, structure=None)).solve(w, p),
+        IpoptSolver(nlp).solve(w, p),
+    ):
         assert condensed.status is other.status is Status.CONVERGED
         np.testing.assert_allclose(other.w, condensed.w, rtol=1e-10, atol=1e-10)
 
@@ -178,9 +181,9 @@ def test_implicit_steps_are_collocation_without_its_stages(
     problem: BoundaryValueProblem, degree: int
 ) -> None:
     _, dense = shot(problem, ("gauss", degree, 1), 4)
-    nlp = Collocation.named("gauss", degree).transcribe(problem, (4,))
+    nlp = CollocationMethod.named("gauss", degree).transcribe(problem, (4,))
     p = Mesh.uniform(4).widths
-    report = Newton(nlp).solve(np.ones(nlp.unknowns), p)
+    report = NewtonSolver(nlp).solve(np.ones(nlp.unknowns), p)
     assert report.status is Status.CONVERGED
     expected, stages, _ = nlp.layout.unpack(report.w)
     s = dense.nodes(0)
@@ -260,10 +263,10 @@ def test_the_start_of_algebraic_variables_chooses_their_sheet(sign: float) -> No
     problem = replace(problem, algebraic_start=2 * sign * problem.state)
     nlp = MultipleShooting.named("gauss", 4).transcribe(problem, (5,))
     p = Mesh.uniform(5).widths
-    report = Newton(nlp).solve(np.ones(nlp.unknowns), p)
+    report = NewtonSolver(nlp).solve(np.ones(nlp.unknowns), p)
     assert report.status is Status.CONVERGED
     s = np.linspace(0, 1, 9)
-    dense = nlp.blocks.dense(report.w, p)
+    dense = nlp.output(report.w, p)
     np.testing.assert_allclose(dense.states(0, s)[:, 0], np.exp(sign * s), rtol=1e-9)
 
 
@@ -272,7 +275,7 @@ def test_inner_equations_without_solution_are_not_a_number() -> None:
     phase = Phase(z, ca.SX(1), {}, algebraic=z**2 + 1 + x**2)
     problem = bvp(x, (phase,), lambda a, b: {"left": a - 1}, z=z)
     nlp = shooting(problem, ("gauss", 2, 1), (3,))
-    report = Newton(nlp).solve(np.ones(nlp.unknowns), Mesh.uniform(3).widths)
+    report = NewtonSolver(nlp).solve(np.ones(nlp.unknowns), Mesh.uniform(3).widths)
     assert report.status is Status.INVALID_NUMBER
 
 
@@ -302,8 +305,8 @@ def test_facts_for_reports() -> None:
         ("gauss 3 x 2", 3, 6, True),
     ]
     assert MultipleShooting.named("rk8", steps=2).name == "rk8 x 2"
-    assert Collocation.named("lobatto", 4).name == "lobatto 4"
-    blocks = Collocation.named("gauss", 6).transcribe(rational(), (2,)).blocks
+    assert CollocationMethod.named("lobatto", 4).name == "lobatto 4"
+    blocks = CollocationMethod.named("gauss", 6).transcribe(rational(), (2,)).blocks
     assert (blocks.name, blocks.degree, blocks.order, blocks.symplectic) == ("gauss 6", 6, 12, True)
 
 
@@ -375,8 +378,8 @@ def test_half_moebius_ribbon_is_that_of_the_reference(
     nlp = shooting(problem, method, (intervals,))
     p = np.concatenate([posed.values, Mesh.uniform(intervals).widths])
     guess = IntegratedLoads(ribbon, posed, scene.guess)
-    report = Newton(nlp).solve(initial_unknowns(guess, ribbon, problem, nlp.blocks, p), p)
+    report = NewtonSolver(nlp).solve(initial_unknowns(guess, ribbon, problem, nlp.blocks, p), p)
     assert report.status is Status.CONVERGED
     reference = np.concatenate([HALF_MOEBIUS["n0"], HALF_MOEBIUS["m0"]])
-    constants = nlp.blocks.dense(report.w, p).constants
+    constants = nlp.output(report.w, p).constants
     np.testing.assert_allclose(constants, reference, rtol=0, atol=tolerance * 44)

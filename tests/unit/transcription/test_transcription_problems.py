@@ -19,7 +19,7 @@ from analytic import (
 )
 
 from ribbonopt.problem import BoundaryValueProblem, Phase
-from ribbonopt.solvers import Ipopt, Newton, Status
+from ribbonopt.solvers import IpoptSolver, NewtonSolver, Status
 from ribbonopt.transcription.collocation.output import DenseOutput
 
 SWITCH = np.pi / 6
@@ -74,10 +74,10 @@ def test_position_enters_the_equations() -> None:
 
 def optimum(
     problem: BoundaryValueProblem, scheme: str, elements: int
-) -> tuple[Ipopt, np.ndarray, DenseOutput]:
+) -> tuple[IpoptSolver, np.ndarray, DenseOutput]:
     """Return the solver, the multipliers and the numbers of a minimum found from zeros."""
     nlp, p = transcribed(problem, scheme, 3, elements)
-    solver = Ipopt(nlp, tolerance=1e-11)
+    solver = IpoptSolver(nlp, tolerance=1e-11)
     report = solver.solve(np.zeros(nlp.unknowns), p)
     assert report.status is Status.CONVERGED
     return solver, report.multipliers, DenseOutput(nlp.blocks, report.w, p)
@@ -120,7 +120,7 @@ def test_an_active_inequality_holds_the_state_at_its_limit() -> None:
 @pytest.mark.parametrize("limit", [None, 0.2])
 def test_newton_refuses_to_minimise(limit: float | None) -> None:
     nlp, p = transcribed(double_integrator(limit), "gauss", 3, 4)
-    report = Newton(nlp).solve(np.zeros(nlp.unknowns), p)
+    report = NewtonSolver(nlp).solve(np.zeros(nlp.unknowns), p)
     assert report.status is Status.NOT_SQUARE
     assert "ipopt" in report.status.value
     assert report.iterations == 0
@@ -139,9 +139,9 @@ def test_sparse_and_condensed_newton_and_ipopt_give_one_answer(name: str) -> Non
     problem, elements = SQUARE[name]
     nlp, p = transcribed(problem, "radau", 3, *elements)
     w = np.full(nlp.unknowns, 0.6)
-    condensed = Newton(nlp).solve(w, p)
-    sparse = Newton(replace(nlp, structure=None)).solve(w, p)
-    interior = Ipopt(nlp).solve(w, p)
+    condensed = NewtonSolver(nlp).solve(w, p)
+    sparse = NewtonSolver(replace(nlp, structure=None)).solve(w, p)
+    interior = IpoptSolver(nlp).solve(w, p)
     reports = (condensed, sparse, interior)
     assert all(r.status is Status.CONVERGED for r in reports)
     assert condensed.iterations == sparse.iterations
@@ -161,7 +161,7 @@ def undetermined() -> BoundaryValueProblem:
 def test_singular_equations_are_told(condensed: bool) -> None:
     nlp, p = transcribed(undetermined(), "gauss", 2, 4)
     nlp = nlp if condensed else replace(nlp, structure=None)
-    assert Newton(nlp).solve(np.ones(nlp.unknowns), p).status is Status.SINGULAR
+    assert NewtonSolver(nlp).solve(np.ones(nlp.unknowns), p).status is Status.SINGULAR
 
 
 @pytest.mark.parametrize("condensed", [True, False], ids=["condensed", "sparse"])
@@ -169,11 +169,11 @@ def test_numbers_that_are_not_finite_are_told(condensed: bool) -> None:
     nlp, p = transcribed(rational(), "gauss", 2, 4)
     nlp = nlp if condensed else replace(nlp, structure=None)
     w = np.full(nlp.unknowns, np.nan)
-    assert Newton(nlp).solve(w, p).status is Status.INVALID_NUMBER
+    assert NewtonSolver(nlp).solve(w, p).status is Status.INVALID_NUMBER
 
 
-@pytest.mark.parametrize("solver", [Newton, Ipopt])
-def test_iterations_that_run_out_are_told(solver: type[Newton] | type[Ipopt]) -> None:
+@pytest.mark.parametrize("solver", [NewtonSolver, IpoptSolver])
+def test_iterations_that_run_out_are_told(solver: type[NewtonSolver] | type[IpoptSolver]) -> None:
     nlp, p = transcribed(rational(), "gauss", 4, 4)
     report = solver(nlp, max_iterations=1).solve(np.full(nlp.unknowns, 50.0), p)
     assert report.status is Status.MAX_ITERATIONS
@@ -185,7 +185,7 @@ def test_iterations_that_run_out_are_told(solver: type[Newton] | type[Ipopt]) ->
 def test_newton_leaves_the_guess_alone() -> None:
     nlp, p = transcribed(rational(), "gauss", 2, 4)
     w = np.full(nlp.unknowns, 1.0)
-    Newton(nlp).solve(w, p)
+    NewtonSolver(nlp).solve(w, p)
     np.testing.assert_array_equal(w, 1.0)
 
 
@@ -200,6 +200,6 @@ def test_newton_is_damped_where_full_steps_diverge() -> None:
 
 def test_kept_factors_save_factorisations() -> None:
     nlp, p = transcribed(rational(), "gauss", 6, 10)
-    report = Newton(nlp).solve(np.full(nlp.unknowns, 1.5), p)
+    report = NewtonSolver(nlp).solve(np.full(nlp.unknowns, 1.5), p)
     assert report.status is Status.CONVERGED
     assert report.factorizations < report.iterations
