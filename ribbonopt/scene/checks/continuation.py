@@ -9,7 +9,7 @@ from itertools import pairwise
 from typing import Literal
 
 from ribbonopt.scene.continuation import Continuation
-from ribbonopt.scene.faults import InvalidSceneError, Path, Problem, dotted
+from ribbonopt.scene.faults import InvalidSceneError, KeyPath, Problem, dotted
 from ribbonopt.scene.formulas.expressions import Shape
 from ribbonopt.scene.formulas.parsing import (
     RESERVED,
@@ -33,7 +33,7 @@ OUTPUTS: dict[str, Shape] = {
 _AT = re.compile(r"(.*)\sat\s(.*)", re.DOTALL)
 _WORD = re.compile(r"[A-Za-z_]\w*")
 _STOP = "expected 'A > B' or 'A < B', such as 'energy > 30'"
-_Located = tuple[Path, Continuation]
+_Located = tuple[KeyPath, Continuation]
 
 
 def stages_of(scene: Scene) -> tuple[Continuation, ...]:
@@ -158,7 +158,7 @@ def _parse_scalar(text: str, names: dict[str, Shape]) -> None:
 
 def _records(scene: Scene) -> Iterator[Problem]:
     for name, text in scene.record.items():
-        path: Path = ("record", name)
+        path: KeyPath = ("record", name)
         if not (name.isascii() and name.isidentifier()) or name in RESERVED - OUTPUTS.keys():
             message = "is no name for a record; use letters, digits and _, and no word of formulas"
             yield Problem(path, message)
@@ -168,7 +168,7 @@ def _records(scene: Scene) -> Iterator[Problem]:
             yield Problem(path, str(error))
 
 
-def _form(stage: Continuation, scene: Scene, path: Path) -> Iterator[Problem]:
+def _form(stage: Continuation, scene: Scene, path: KeyPath) -> Iterator[Problem]:
     """Yield what is wrong with a stage whatever its parameter is."""
     if stage.to is None and stage.values is None:
         yield Problem(path, 'found neither `to` nor `values`; add for example "to: 0.1"')
@@ -198,7 +198,7 @@ def _form(stage: Continuation, scene: Scene, path: Path) -> Iterator[Problem]:
             yield Problem((*path, "stop", index), str(error))
 
 
-def _way(stage: Continuation, scene: Scene, path: Path) -> Iterator[Problem]:
+def _way(stage: Continuation, scene: Scene, path: KeyPath) -> Iterator[Problem]:
     """Yield what is wrong with where a stage begins and ends."""
     begin, end = _begin(stage, scene), _end(stage)
     if stage.values and stage.from_ not in (None, stage.values[0]):
@@ -214,9 +214,9 @@ def _way(stage: Continuation, scene: Scene, path: Path) -> Iterator[Problem]:
             yield Problem((*path, key), message, f"{value:g}")
 
 
-def _bad_ends(stage: Continuation, scene: Scene, path: Path) -> Iterator[Problem]:
+def _bad_ends(stage: Continuation, scene: Scene, path: KeyPath) -> Iterator[Problem]:
     """Yield the end values of a stage that no scene may have."""
-    ends: dict[Path, float | None] = {("from",): stage.from_, ("to",): stage.to}
+    ends: dict[KeyPath, float | None] = {("from",): stage.from_, ("to",): stage.to}
     if stage.values:
         ends = {("values", i): stage.values[i] for i in (0, len(stage.values) - 1)}
     for key, value in ends.items():

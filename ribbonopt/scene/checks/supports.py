@@ -11,7 +11,7 @@ from collections.abc import Iterator, Mapping
 from typing import Literal, NamedTuple
 
 from ribbonopt.scene.ends import AnyVector, Boundary, End, LabVector, Support, Triple
-from ribbonopt.scene.faults import Path, Problem
+from ribbonopt.scene.faults import KeyPath, Problem
 from ribbonopt.scene.wording import given, listed, written
 
 from .frames import TOLERANCE, known, number_at
@@ -54,11 +54,11 @@ _HELD = '"end: {support: held, distance: 0.5}"'
 _NO_DIRECTION = 1e-12
 
 
-def check_supports(boundary: Boundary, values: Mapping[Path, float]) -> Iterator[Problem]:
+def check_supports(boundary: Boundary, values: Mapping[KeyPath, float]) -> Iterator[Problem]:
     """Yield what is wrong with the supports of both ends, and with the keys only they use."""
     ends: tuple[tuple[EndName, End], ...] = (("start", boundary.start), ("end", boundary.end))
     for name, end in ends:
-        path: Path = ("boundary", name)
+        path: KeyPath = ("boundary", name)
         if end.support is None:
             yield from _without_support(name, end, path)
         elif end.support == "held" and name == "start":
@@ -82,7 +82,7 @@ def _supports_with(key: str, name: EndName) -> tuple[str, str]:
     return listed(supports, "or"), f'"support: {supports[0]}"'
 
 
-def _without_support(name: EndName, end: End, path: Path) -> Iterator[Problem]:
+def _without_support(name: EndName, end: End, path: KeyPath) -> Iterator[Problem]:
     for key in _ONLY_OF_SUPPORTS:
         if getattr(end, key) is None:
             continue
@@ -91,7 +91,7 @@ def _without_support(name: EndName, end: End, path: Path) -> Iterator[Problem]:
         yield Problem((*path, key), message + example)
 
 
-def _missing(support: Support, end: End, path: Path) -> Iterator[Problem]:
+def _missing(support: Support, end: End, path: KeyPath) -> Iterator[Problem]:
     lacks = [key for key in RULES[support].needs if getattr(end, key) is None]
     if "directors" in lacks and (singles := [d for d in _DIRECTORS if getattr(end, d) is not None]):
         lacks.remove("directors")
@@ -104,7 +104,7 @@ def _missing(support: Support, end: End, path: Path) -> Iterator[Problem]:
         yield from check_whole_position(f"support: {support} needs", end.position, path)
 
 
-def _singles(support: Support, end: End, singles: list[str], path: Path) -> Iterator[Problem]:
+def _singles(support: Support, end: End, singles: list[str], path: KeyPath) -> Iterator[Problem]:
     partial = [name for name in singles if len(given(getattr(end, name))) < 3]
     if len(singles) - len(partial) < 2:
         message = f"support: {support} needs the whole frame, or two whole directors; write for "
@@ -117,7 +117,7 @@ def _singles(support: Support, end: End, singles: list[str], path: Path) -> Iter
 
 
 def check_whole_position(
-    needs: str, position: Triple | LabVector | None, path: Path
+    needs: str, position: Triple | LabVector | None, path: KeyPath
 ) -> Iterator[Problem]:
     """Yield what a position lacks of its three components, as something `needs` them."""
     found = given(position)
@@ -127,7 +127,7 @@ def check_whole_position(
         yield Problem((*path, "position"), message, written(position))
 
 
-def _contradicting(name: EndName, support: Support, end: End, path: Path) -> Iterator[Problem]:
+def _contradicting(name: EndName, support: Support, end: End, path: KeyPath) -> Iterator[Problem]:
     rule = RULES[support]
     for key in given(end):
         known_as = "directors" if key in _DIRECTORS else key
@@ -141,7 +141,7 @@ def _contradicting(name: EndName, support: Support, end: End, path: Path) -> Ite
 
 
 def _loads(
-    support: Support, end: End, path: Path, values: Mapping[Path, float]
+    support: Support, end: End, path: KeyPath, values: Mapping[KeyPath, float]
 ) -> Iterator[Problem]:
     """Yield loads whose components are not those that the support leaves to be given."""
     for key in ("force", "moment"):
@@ -181,7 +181,7 @@ def _off_line(force: Triple | AnyVector, line: list[float]) -> str:
     return ""
 
 
-def _sizes(end: End, path: Path, values: Mapping[Path, float]) -> Iterator[Problem]:
+def _sizes(end: End, path: KeyPath, values: Mapping[KeyPath, float]) -> Iterator[Problem]:
     """Yield directions and distances of no size."""
     direction = known(end.along, (*path, "along"), values)
     if len(direction) == 3 and math.hypot(*direction) < _NO_DIRECTION:
@@ -193,7 +193,7 @@ def _sizes(end: End, path: Path, values: Mapping[Path, float]) -> Iterator[Probl
         yield Problem((*path, "distance"), message, f"{distance:g}")
 
 
-def _start_of_string(start: End, path: Path) -> Iterator[Problem]:
+def _start_of_string(start: End, path: KeyPath) -> Iterator[Problem]:
     """Yield what keeps the start from being the fixed point where a string to the end begins."""
     what = "support: held at the end is a string from a fixed point, the start"
     if start.support in ("sliding", "free", "flip"):

@@ -11,7 +11,7 @@ from itertools import pairwise
 from typing import Any, get_origin
 
 from ribbonopt.scene.ends import Boundary, Loop
-from ribbonopt.scene.faults import Path, Problem
+from ribbonopt.scene.faults import KeyPath, Problem
 from ribbonopt.scene.model import Guess, MoebiusGuess, RibbonSizes, Scene
 from ribbonopt.scene.schema.annotations import branches, hints, inside
 from ribbonopt.scene.wording import written
@@ -27,7 +27,7 @@ def check(scene: Scene) -> list[Problem]:
     problems = list(_interval(scene.interval))
     formulas = dict(_formulas(boundary, Boundary, ("boundary",)))
     formulas |= _formulas(scene.guess, Guess, ("guess",))
-    values: dict[Path, float] = {}
+    values: dict[KeyPath, float] = {}
     if formulas or boundary.also or scene.parameters:
         # Imported late: a scene in plain numbers starts without the grammar of formulas.
         from .formulas import check_equations, check_parameters, values_of
@@ -73,7 +73,7 @@ def _switching(switching: tuple[float, ...], interval: tuple[float, float]) -> I
         yield Problem(("switching",), message.format(middle), f"[{found}]")
 
 
-def _formulas(value: Any, annotation: Any, path: Path) -> Iterator[tuple[Path, str]]:
+def _formulas(value: Any, annotation: Any, path: KeyPath) -> Iterator[tuple[KeyPath, str]]:
     """Yield the formulas in a value: texts that stand where the annotation has numbers as well."""
     options = branches(annotation).values()
     if isinstance(value, str):

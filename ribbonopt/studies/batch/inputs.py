@@ -14,8 +14,7 @@ from pathlib import Path
 from typing import Any, overload
 
 from ribbonopt.errors import SceneError
-from ribbonopt.scene.faults import InvalidSceneError, Problem, shown, suggestion
-from ribbonopt.scene.faults import Path as Keys
+from ribbonopt.scene.faults import InvalidSceneError, KeyPath, Problem, shown, suggestion
 from ribbonopt.scene.text.yamltext import YamlTextError, read
 
 from .draws import Draws
@@ -78,12 +77,12 @@ def rows_of(folder: Path, sweep: Any) -> Rows:
     return _product(list(parts.values()))
 
 
-def fault(path: Keys, message: str, *found: Any) -> InvalidSceneError:
+def fault(path: KeyPath, message: str, *found: Any) -> InvalidSceneError:
     """Return the error of a key of the study."""
     return InvalidSceneError([Problem(path, message, *(shown(value) for value in found))])
 
 
-def text_of(path: Path, key: Keys = ()) -> str:
+def text_of(path: Path, key: KeyPath = ()) -> str:
     """Return the text of a file, that a key of the study names; SceneError if it cannot be read."""
     try:
         return path.read_text(encoding="utf-8-sig")
@@ -193,7 +192,7 @@ def _axes(kind: str, value: Any) -> dict[str, Sequence[Any]]:
     return {str(key): _values((kind, key), item) for key, item in value.items()}
 
 
-def _values(path: Keys, item: Any) -> Sequence[Any]:
+def _values(path: KeyPath, item: Any) -> Sequence[Any]:
     """Values of one key: a list, or numbers evenly spaced between two, or between two powers."""
     if isinstance(item, list):
         return item
