@@ -11,6 +11,7 @@ import numpy as np
 
 from ribbonopt.attempt.discretize import transcription_of
 from ribbonopt.errors import OutputError
+from ribbonopt.plain import json_text
 from ribbonopt.problem import pose
 from ribbonopt.problem.switched import switched
 from ribbonopt.scene import dump_scene, load_scene
@@ -59,8 +60,7 @@ def _write(solution: Solution, folder: Path) -> None:
         **arrays,
     )
     (folder / "scene.yaml").write_text(dump_scene(solution.scene), encoding="utf-8")
-    text = json.dumps(summarize(solution), indent=2, allow_nan=False)
-    (folder / "summary.json").write_text(text + "\n", encoding="utf-8")
+    (folder / "summary.json").write_text(json_text(summarize(solution)), encoding="utf-8")
     for i, other in enumerate(solution.others, start=2):
         inner = folder / "equilibria" / str(i)
         inner.mkdir(parents=True)

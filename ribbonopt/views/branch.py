@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import math
 import textwrap
-from collections.abc import Collection, Mapping, Sequence
+from collections.abc import Collection, Sequence
 from dataclasses import replace
 from itertools import pairwise
 from pathlib import Path
@@ -16,9 +16,11 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ribbonopt.plain import Row, Rows
 from ribbonopt.solution.solution import Solution
 
 from .camera import place_camera
+from .columns import ColumnPair
 from .facets import SEAM, draw_surface
 from .pieces import Array
 from .ribbon import paint, scale_bar
@@ -31,9 +33,6 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from matplotlib.gridspec import SubplotSpec
 
-PlainRow = Mapping[str, Any]
-Rows = Sequence[PlainRow]
-Pair = tuple[str, str]
 Log = bool | Collection[str]
 
 COLOURS = (BENDING, TWIST, "#009e73", "#cc79a7", "#56b4e9", "#e69f00")  # one for each branch
@@ -99,7 +98,7 @@ def save_branch_figures(
     ribbons: Sequence[Solution],
     captions: Sequence[str],
     folder: str | Path,
-    pairs: Sequence[Pair],
+    pairs: Sequence[ColumnPair],
     *,
     log: Log = False,
 ) -> list[Path]:
@@ -110,7 +109,7 @@ def save_branch_figures(
     return save_all(figures, Path(folder))
 
 
-def _plot(rows: Rows, pairs: Sequence[Pair], log: Log, title: str = "") -> Figure:
+def _plot(rows: Rows, pairs: Sequence[ColumnPair], log: Log, title: str = "") -> Figure:
     """Draw a panel for each pair, and one legend under them."""
     most = max(len(_parameters(rows, pair)) for pair in pairs)
     columns = 1 if most > 1 or len(pairs) == 1 else 2
@@ -125,7 +124,7 @@ def _plot(rows: Rows, pairs: Sequence[Pair], log: Log, title: str = "") -> Figur
     return figure
 
 
-def _panel(figure: Figure, cell: SubplotSpec, rows: Rows, pair: Pair, log: Log) -> None:
+def _panel(figure: Figure, cell: SubplotSpec, rows: Rows, pair: ColumnPair, log: Log) -> None:
     """Draw one pair of quantities, on axes of each parameter if these differ."""
     parameters = _parameters(rows, pair)
     inner, first = cell.subgridspec(1, len(parameters)), None
@@ -143,11 +142,11 @@ def _panel(figure: Figure, cell: SubplotSpec, rows: Rows, pair: Pair, log: Log) 
         axes.tick_params(labelleft=beside is None)
 
 
-def _draw(axes: Axes, rows: Rows, pair: Pair, parameter: str) -> Array:
+def _draw(axes: Axes, rows: Rows, pair: ColumnPair, parameter: str) -> Array:
     """Draw and return the points of a parameter; "" stands for all."""
     drawn = _drawn(rows, [pair])
     here = [row for row in drawn if parameter in ("", row["parameter"])]
-    runs: dict[tuple[int, int], list[PlainRow]] = {}
+    runs: dict[tuple[int, int], list[Row]] = {}
     for row in here:
         runs.setdefault((row["branch"], row["stage"]), []).append(row)
     plain = {"lw": 1.6} if all(_state(row) == UNKNOWN for row in rows) else {}
@@ -168,7 +167,7 @@ def _draw(axes: Axes, rows: Rows, pair: Pair, parameter: str) -> Array:
     return _points(here, pair)
 
 
-def _stretches(run: Sequence[PlainRow]) -> list[tuple[str, list[PlainRow]]]:
+def _stretches(run: Sequence[Row]) -> list[tuple[str, list[Row]]]:
     """Cut a run of points where stability changes; a fold or branch point ends both stretches."""
     stretches = [(_state(run[0]), [run[0]])] if len(run) == 1 else []
     for a, b in pairwise(run):
@@ -181,21 +180,21 @@ def _stretches(run: Sequence[PlainRow]) -> list[tuple[str, list[PlainRow]]]:
     return stretches
 
 
-def _state(row: PlainRow) -> str:
+def _state(row: Row) -> str:
     return UNKNOWN if row["negative"] is None else UNSTABLE if row["negative"] else STABLE
 
 
-def _drawn(rows: Rows, pairs: Sequence[Pair]) -> list[PlainRow]:
+def _drawn(rows: Rows, pairs: Sequence[ColumnPair]) -> list[Row]:
     """Rows that have both quantities of one of some pairs."""
     return [row for row in rows if any(np.isfinite(_points([row], p)).all() for p in pairs)]
 
 
-def _points(rows: Rows, pair: Pair) -> Array:
+def _points(rows: Rows, pair: ColumnPair) -> Array:
     """Values (2, k) of both quantities, NaN where there are none."""
     return np.array([[row.get(quantity) for row in rows] for quantity in pair], float)
 
 
-def _parameters(rows: Rows, pair: Pair) -> list[str]:
+def _parameters(rows: Rows, pair: ColumnPair) -> list[str]:
     """Return the parameters that have axes of their own: "" stands for all."""
     names = list(dict.fromkeys(row["parameter"] for row in rows))
     return names if "value" in pair and names else [""]
@@ -226,7 +225,7 @@ def _scale(axes: Axes, k: int, quantity: str, values: Array, log: bool) -> None:
         axis.set_minor_locator(NullLocator())
 
 
-def _legend(figure: Figure, rows: Rows, pairs: Sequence[Pair]) -> None:
+def _legend(figure: Figure, rows: Rows, pairs: Sequence[ColumnPair]) -> None:
     """Entries for branches if there are several, and for the lines and marks that are drawn."""
     from matplotlib.lines import Line2D
 

@@ -6,10 +6,10 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from ribbonopt.plain import is_number
+from ribbonopt.plain import Rows, is_number
 
-Row = Mapping[str, Any]
-Rows = Sequence[Row]
+ColumnPair = tuple[str, str]
+"""Names of two columns, of what is drawn along x and y."""
 
 WIDE = 50.0  # largest over smallest value, from which axes are logarithmic
 NOISE = 1e-9  # relative differences below this are rounding

@@ -18,12 +18,10 @@ from typing import Any
 
 from ribbonopt.errors import OutputError
 from ribbonopt.output.staging import replacing
-from ribbonopt.plain import is_number
+from ribbonopt.plain import Row, Rows, is_number
 
 from .columns import (
     VECTORS,
-    Row,
-    Rows,
     as_text,
     columns,
     is_logarithmic,

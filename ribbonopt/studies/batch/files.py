@@ -15,14 +15,13 @@ from typing import IO, Any
 
 from ribbonopt.errors import OutputError
 from ribbonopt.output.staging import beside, replacing, unwritable
+from ribbonopt.plain import Row
 from ribbonopt.studies.lines import whole_lines
 
 from .study import Study
 
 ROWS, TABLE, STUDY, SOLUTIONS = "rows.jsonl", "table.csv", "study.json", "solutions"
 PICTURES = ("report.html", "outcomes.png", "scatter.png")  # what views write beside them
-
-Row = dict[str, Any]
 
 
 class BatchFolder:

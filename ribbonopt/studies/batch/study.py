@@ -14,7 +14,7 @@ from ribbonopt.errors import SceneError
 from ribbonopt.scene import Scene
 from ribbonopt.scene.yamlio import loads_scene
 
-from .inputs import NOTHING, Inputs, Rows
+from .inputs import NOTHING, InputRows, Inputs
 
 PAIR = re.compile(r"\\u(d[89ab][0-9a-f]{2})\\u(d[c-f][0-9a-f]{2})")
 #: of every row; a ribbon that failed has some of them only
@@ -42,7 +42,7 @@ class Sweep:
 
     source: Source
     common: Inputs = field(default_factory=dict)
-    inputs: Rows = NOTHING
+    inputs: InputRows = NOTHING
     where: Mapping[str, str] = field(default_factory=dict)
 
     def check(self) -> str:

@@ -20,7 +20,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 from ribbonopt.errors import ModelError, RibbonoptError
 from ribbonopt.pipeline.prepared import Prepared, prepare
-from ribbonopt.plain import finite
+from ribbonopt.plain import Row, finite
 from ribbonopt.problem import structure_of
 from ribbonopt.scene import Scene, loads_scene
 from ribbonopt.scene.units import in_special_units
@@ -29,7 +29,6 @@ from ribbonopt.studies.continuation.recorded import error_of, numbers_of, sample
 
 from .family import Family, solve_beside
 
-Row = dict[str, Any]
 WATCH = 2.0  # seconds between two looks whether the batch is still there
 
 

@@ -22,7 +22,7 @@ from ribbonopt.studies.machine import machine
 
 from .measure import Measurement, Profile, cost_of, errors_of, measure
 from .pairs import Pair, pairs_of
-from .rows import Cheapest, Row, cheapest, row_of
+from .rows import Cheapest, PairRow, cheapest, row_of
 
 TOLERANCES = (1e-4, 1e-6, 1e-8, 1e-10)
 FINE = Pair("inverted", "reduced", "gauss")
@@ -71,7 +71,7 @@ class Comparison:
         Relative error of the truth itself, as far as is known.
     tolerances : tuple of float
         Relative errors of n(0), m(0) that were wanted.
-    rows : tuple of Row
+    rows : tuple of PairRow
         One for each solve.
     """
 
@@ -79,7 +79,7 @@ class Comparison:
     truth: str
     truth_error: float
     tolerances: tuple[float, ...]
-    rows: tuple[Row, ...]
+    rows: tuple[PairRow, ...]
 
     @property
     def cheapest(self) -> tuple[Cheapest, ...]:
@@ -198,8 +198,8 @@ def truth_of(found: Sequence[Measurement], reference: Reference | None = None) -
 
 
 def _leaders_again(
-    rows: list[Row], built: Sequence[Prepared | None], tolerances: Iterable[float]
-) -> list[Row]:
+    rows: list[PairRow], built: Sequence[Prepared | None], tolerances: Iterable[float]
+) -> list[PairRow]:
     """Time those that might be cheapest again, interleaved: a busy machine should not decide."""
     leaders: set[int] = set()
     for tolerance in tolerances:

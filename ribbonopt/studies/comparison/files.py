@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import csv
-import json
 from pathlib import Path
 
 from ribbonopt.errors import OutputError
+from ribbonopt.plain import json_text
 
 from .benchmark import Benchmark
 from .compare import Comparison
@@ -27,7 +27,6 @@ def save_study(study: Comparison | Benchmark, folder: str | Path, name: str) -> 
             writer = csv.DictWriter(file, COLUMNS, lineterminator="\n")
             writer.writeheader()
             writer.writerows(row.plain() for row in study.rows)
-        text = json.dumps(study.plain(), indent=2, allow_nan=False)
-        (folder / f"{name}.json").write_text(text + "\n", encoding="utf-8")
+        (folder / f"{name}.json").write_text(json_text(study.plain()), encoding="utf-8")
     except OSError as error:
         raise OutputError(f"{folder}: cannot be written ({error.strerror})") from error

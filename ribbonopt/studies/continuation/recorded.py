@@ -18,9 +18,6 @@ from ribbonopt.solution.solution import Solution
 from .curve import Curve
 from .points import POINT, Point
 
-Row = Mapping[str, Any]
-
-
 #: numbers that every row has, besides what the scene records
 NUMBERS = (
     *("value", "error", "energy", "H0", "n0x", "n0y", "n0z", "m0x", "m0y", "m0z", "u2", "u3"),
@@ -120,7 +117,7 @@ def numbers_of(solution: Solution) -> dict[str, float]:
     return row | {"u2": float(solution.u0[1]), "u3": float(solution.u0[2])}
 
 
-def stopped(row: Row, stage: Continuation) -> str:
+def stopped(row: Mapping[str, Any], stage: Continuation) -> str:
     """Return the condition of a stage that a row meets, "" if none."""
     values = {
         name: np.array([float(value)])
