@@ -26,7 +26,7 @@ def outputs(section: CrossSection, law: ConstitutiveLaw, u2: ca.SX, u3: ca.SX) -
     w_leg = law.complementary_energy(m[1], m[2])
     result = {name: getattr(rod, name) for name in ("r", "d1", "d2", "d3", "n", "m")}
     result["u"] = ca.vertcat(0, u2, u3)
-    result |= {"u2": u2, "u3": u3, "eta": u3 / ca.if_else(u2 == 0, ca.inf, u2)}
+    result |= {"u1": ca.SX(0), "u2": u2, "u3": u3, "eta": u3 / ca.if_else(u2 == 0, ca.inf, u2)}
     result |= {f"n{i + 1}": n[i] for i in range(3)} | {f"m{i + 1}": m[i] for i in range(3)}
     result["energy"] = work
     result["H"] = n[2] + (work if w_leg is None else w_leg)

@@ -15,6 +15,7 @@ from ribbonopt.plain import json_text
 from ribbonopt.problem import pose
 from ribbonopt.problem.switched import switched
 from ribbonopt.scene import dump_scene, load_scene
+from ribbonopt.scene.quantities import VECTORS
 from ribbonopt.scene.units import in_special_units
 from ribbonopt.solution.solution import Solution
 from ribbonopt.solution.trajectory import Trajectory
@@ -49,9 +50,8 @@ def save_solution(solution: Solution, folder: str | Path) -> None:
 def _write(solution: Solution, folder: Path) -> None:
     s = np.linspace(*solution.scene.interval, ROWS)
     rows = solution.outputs(s)
-    names = ("r", "d1", "d2", "d3", "n", "m", "u")
     dense = solution.dense
-    arrays: dict[str, Any] = {"s": s} | {name: rows[name] for name in names}
+    arrays: dict[str, Any] = {"s": s} | {name: rows[name] for name in VECTORS}
     arrays |= {"w": dense.w, "widths": dense.blocks.widths(dense.p)}
     arrays |= {"theta": dense.theta, "multipliers": solution.multipliers}
     arrays |= {"sheets": solution.sheets, "elements": dense.blocks.layout.elements}

@@ -13,7 +13,8 @@ import casadi as ca
 
 from ribbonopt.scene.formulas.expressions import Number, Quantity, evaluate, parts
 from ribbonopt.scene.formulas.parsing import parse_equation
-from ribbonopt.scene.units import DIMENSIONS, UNIT_FORCE, UNIT_LENGTH
+from ribbonopt.scene.quantities import dimension
+from ribbonopt.scene.units import UNIT_FORCE, UNIT_LENGTH
 
 from .conditions import Context, EndName, Equation
 from .dimensions import dimension_of_equation
@@ -60,13 +61,15 @@ class _SymbolicEnv:
     def quantity(self, name: str, end: EndName) -> ca.SX:
         section = self._context.ends[end]
         value: ca.SX
-        if name in ("u2", "u3"):
+        if name == "u1":
+            value = ca.SX(0)
+        elif name in ("u2", "u3"):
             value = getattr(section, name)
         elif name[0] in "nm" and name[1:]:
             value = section.rod.along(getattr(section.rod, name[0]))[int(name[1]) - 1]
         else:
             value = getattr(section.rod, name)
-        return value if self._unit is None else value * self._unit(*DIMENSIONS.get(name, (0, 0)))
+        return value if self._unit is None else value * self._unit(*dimension(name))
 
     def vector(self, components: Sequence[ca.SX]) -> ca.SX:
         return ca.vertcat(*components)

@@ -51,7 +51,7 @@ def check(scene: Scene) -> list[Problem]:
         # Imported late: few scenes are continued.
         from .continuation import check_continuation
 
-        problems += check_continuation(scene, sound=not problems)
+        problems += check_continuation(scene, None if problems else check)
     return problems
 
 

@@ -14,7 +14,8 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, Literal, NamedTuple, Protocol
 
-Shape = Literal["scalar", "vector"]
+from ribbonopt.scene.quantities import Shape
+
 EndName = Literal["start", "end"]
 
 

@@ -14,6 +14,7 @@ from typing import NoReturn
 
 from ribbonopt.errors import SceneError
 from ribbonopt.scene.faults import suggestion
+from ribbonopt.scene.quantities import AT_ENDS, Shape
 
 from .expressions import (
     Binary,
@@ -22,7 +23,6 @@ from .expressions import (
     Node,
     Number,
     Quantity,
-    Shape,
     Unary,
     Vector,
     VectorComponent,
@@ -44,12 +44,6 @@ _FUNCTIONS: dict[str, tuple[int, Shape, Shape]] = {
     "cross": (2, "vector", "vector"),
     "norm": (1, "vector", "scalar"),
 }
-_VECTORS: tuple[str, ...] = ("r", "d1", "d2", "d3", "n", "m")
-_SCALARS: tuple[str, ...] = ("n1", "n2", "n3", "m1", "m2", "m3", "u2", "u3")
-_QUANTITIES: dict[str, Shape] = {
-    **dict.fromkeys(_VECTORS, "vector"),
-    **dict.fromkeys(_SCALARS, "scalar"),
-}
 _AXES = ("ex", "ey", "ez")
 _CONSTANTS = {"pi": math.pi, "deg": math.pi / 180}
 _SIGNS: dict[type[ast.operator], str] = {
@@ -60,7 +54,7 @@ _SIGNS: dict[type[ast.operator], str] = {
     ast.Pow: "**",
 }
 
-RESERVED = frozenset((*_FUNCTIONS, *_QUANTITIES, *_AXES, *_CONSTANTS, "start", "end"))
+RESERVED = frozenset((*_FUNCTIONS, *AT_ENDS, *_AXES, *_CONSTANTS, "start", "end"))
 """Words of the grammar, which no parameter may shadow."""
 
 _FOREIGN = re.compile(r"[^A-Za-z0-9_ \t\n.+*/()\[\],=-]")
@@ -187,19 +181,19 @@ class Parser:
         if name == "n" and self.quantities:
             # The force is constant along an unloaded ribbon.
             return Quantity("n", "start", "vector")
-        if name in _QUANTITIES and self.quantities:
+        if name in AT_ENDS and self.quantities:
             self._refuse(node, f"{name!r} needs an end: {name}(start) or {name}(end)")
-        if name in _QUANTITIES and not self.names.keys() & _QUANTITIES:
+        if name in AT_ENDS and not self.names.keys() & AT_ENDS:
             self._refuse(node, f"{name!r} is not known here; a value is numbers and parameters")
         if name in _FUNCTIONS:
             self._refuse(node, f"{name!r} is a function; write {name}(...)")
         self._unknown(node, "name", name, [*self.names, *_AXES, *_CONSTANTS])
 
     def _call(self, node: ast.Call, function: str, depth: int, exponent: bool) -> Node:
-        if function in _QUANTITIES and self.quantities:
+        if function in AT_ENDS and self.quantities:
             match node.args:
                 case [ast.Name(id="start" | "end" as end)]:
-                    return Quantity(function, end, _QUANTITIES[function])
+                    return Quantity(function, end, AT_ENDS[function])
             self._refuse(node, f"{function!r} is taken at (start) or (end)")
         if function in (*self.names, *_AXES, *_CONSTANTS):
             self._refuse(node, f"{function!r} is no function; write it without (...)")
@@ -234,7 +228,7 @@ class Parser:
         return Binary(sign, left, right, "vector")
 
     def _unknown(self, node: ast.expr, kind: str, word: str, known: list[str]) -> NoReturn:
-        ends = list(_QUANTITIES) if self.quantities else []
+        ends = list(AT_ENDS) if self.quantities else []
         listed = ", ".join(known) + (f", and {', '.join(ends)} at (start) or (end)" if ends else "")
         near = suggestion(word, [*known, *ends])
         self._refuse(node, f"unknown {kind} {word!r}{near}; known are {listed}")

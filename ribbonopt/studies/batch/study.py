@@ -12,6 +12,7 @@ from typing import Any, Literal
 
 from ribbonopt.errors import SceneError
 from ribbonopt.scene import Scene
+from ribbonopt.scene.quantities import ANSWERS
 from ribbonopt.scene.yamlio import loads_scene
 
 from .inputs import NOTHING, InputRows, Inputs
@@ -19,8 +20,7 @@ from .inputs import NOTHING, InputRows, Inputs
 PAIR = re.compile(r"\\u(d[89ab][0-9a-f]{2})\\u(d[c-f][0-9a-f]{2})")
 #: of every row; a ribbon that failed has some of them only
 COLUMNS = (
-    *("number", "scene", "status", "verified", "energy", "H0"),
-    *("n0x", "n0y", "n0z", "m0x", "m0y", "m0z", "u2", "u3", "error"),
+    *("number", "scene", "status", "verified", *ANSWERS, "error"),
     *("start", "iterations", "path", "message", "seconds"),
 )
 

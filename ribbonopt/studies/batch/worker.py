@@ -109,7 +109,7 @@ def _recorded(found: Solution, row: Row) -> Row:
     for name in scene.record:
         if name in row:
             raise ModelError(f"record.{name}: every row has that already; choose another name")
-    from ribbonopt.scene.checks.continuation import parse_record  # formulas, which few need
+    from ribbonopt.scene.stages import parse_record  # formulas, which few need
 
     return sampled(found, {name: parse_record(text, scene) for name, text in scene.record.items()})
 

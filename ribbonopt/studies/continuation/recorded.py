@@ -11,7 +11,8 @@ from ribbonopt.accuracy.estimate import relative_error
 from ribbonopt.errors import ModelError
 from ribbonopt.plain import finite
 from ribbonopt.scene import Continuation, Scene
-from ribbonopt.scene.checks.continuation import parse_record, parse_stop, stages_of, words_of
+from ribbonopt.scene.quantities import ANSWERS
+from ribbonopt.scene.stages import parse_record, parse_stop, stages_of, words_of
 from ribbonopt.solution.sampling import evaluate_formula
 from ribbonopt.solution.solution import Solution
 
@@ -20,7 +21,7 @@ from .points import POINT, Point
 
 #: numbers that every row has, besides what the scene records
 NUMBERS = (
-    *("value", "error", "energy", "H0", "n0x", "n0y", "n0z", "m0x", "m0y", "m0z", "u2", "u3"),
+    *("value", "error", *ANSWERS),
     *("number", "stage", "branch", "negative", "intervals", "iterations"),
 )
 
