@@ -73,7 +73,7 @@ class Automatic:
         """Yield what unfolds from the fundamental piece: least energy would untwist the band."""
         piece, loop = fundamental_scene(scene), scene.boundary.loop
         assert self._piece is not None and piece is not None and loop is not None
-        count = abs(loop.half_twists) * (2 if loop.piece == "whole" else 1)
+        count = loop.fundamental.pieces // loop.pieces
         place = start_place(scene)
         for guess in self._piece.guesses(piece, path):
             if isinstance(guess, Solution):

@@ -101,14 +101,8 @@ def _sizes(ribbon: RibbonSizes) -> Iterator[Problem]:
 def _fits(scene: Scene, ribbon: RibbonSizes) -> Iterator[Problem]:
     start, end = scene.interval
     if end - start > ribbon.length * (1 + 1e-9):
-        fitting = written((start, start + ribbon.length / _pieces(scene.boundary.loop)))
+        loop = scene.boundary.loop or Loop(0)  # without one, all of the ribbon is solved
+        fitting = written((start, start + ribbon.length / loop.pieces))
         message = f"is longer than the ribbon, ribbon.length: {ribbon.length:.12g}; write for "
         example = f'example "interval: {fitting}"'
         yield Problem(("interval",), message + example, written(scene.interval))
-
-
-def _pieces(loop: Loop | None) -> int:
-    """Return how many pieces make the ribbon, one of which is solved."""
-    if loop is None or loop.piece == "whole":
-        return 1
-    return 2 if loop.piece == "half" else 2 * max(abs(loop.half_twists), 1)

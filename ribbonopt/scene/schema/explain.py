@@ -17,7 +17,7 @@ from pydantic_core import ErrorDetails
 from ribbonopt.scene.faults import KeyPath, Problem, nearest, shown, suggestion
 
 from .annotations import branches, classes_of, hints, inside, types_of
-from .bounds import Bounds
+from .bounds import Bounds, InPython
 
 _KEY_OF_MAPPING = "[key]"
 
@@ -115,7 +115,11 @@ def expected(annotation: Any) -> str:
 
 def _expected_of_union(annotation: Any) -> str:
     parts = []
-    members = [branch for branch in branches(annotation).values() if branch is not NoneType]
+    members = [
+        branch
+        for branch in branches(annotation).values()
+        if branch is not NoneType and not any(isinstance(a, InPython) for a in get_args(branch))
+    ]
     types, classes = types_of(annotation), classes_of(annotation).values()
     grouped = bool(types) or len(classes) > 1
     for branch in members:
