@@ -13,6 +13,11 @@ from .compare import Comparison
 from .rows import COLUMNS
 
 
+def files_of(name: str) -> tuple[str, ...]:
+    """Return the files that a folder of a study holds: table, numbers, figure."""
+    return tuple(f"{name}.{kind}" for kind in ("csv", "json", "png"))
+
+
 def save_study(study: Comparison | Benchmark, folder: str | Path, name: str) -> None:
     """Write NAME.csv and NAME.json into an existing folder.
 
