@@ -9,7 +9,8 @@ from typing import Literal
 
 from .continuation import Continuation
 from .faults import KeyPath
-from .formulas.parsing import RESERVED, FormulaError, evaluate_value, parse_expression
+from .formulas.parsing import FormulaError, evaluate_value, parse_expression
+from .formulas.words import RESERVED
 from .lens import value_at, with_value
 from .model import Scene
 from .quantities import OUTPUTS, Shape

@@ -15,7 +15,6 @@ from ribbonopt.scene.formulas.expressions import (
     Name,
     Node,
     Number,
-    NumericEnv,
     Quantity,
     Unary,
     Vector,
@@ -23,6 +22,7 @@ from ribbonopt.scene.formulas.expressions import (
     evaluate,
     parts,
 )
+from ribbonopt.scene.formulas.numeric import NumericEnv
 from ribbonopt.scene.quantities import dimension
 
 

@@ -6,7 +6,8 @@ from collections.abc import Iterator, Mapping
 from keyword import iskeyword
 
 from ribbonopt.scene.faults import KeyPath, Problem, dotted
-from ribbonopt.scene.formulas.parsing import RESERVED, FormulaError, evaluate_value, parse_equation
+from ribbonopt.scene.formulas.parsing import FormulaError, evaluate_value, parse_equation
+from ribbonopt.scene.formulas.words import RESERVED
 
 
 def values_of(

@@ -27,35 +27,10 @@ from .expressions import (
     Vector,
     VectorComponent,
 )
+from .words import AXES, CONSTANTS, FUNCTIONS, SIGNS
 
 _LONGEST = 500
 _DEEPEST = 50
-
-# Each function: the number of its arguments, their shape and the shape of its value.
-_FUNCTIONS: dict[str, tuple[int, Shape, Shape]] = {
-    "sqrt": (1, "scalar", "scalar"),
-    "sin": (1, "scalar", "scalar"),
-    "cos": (1, "scalar", "scalar"),
-    "tan": (1, "scalar", "scalar"),
-    "exp": (1, "scalar", "scalar"),
-    "log": (1, "scalar", "scalar"),
-    "abs": (1, "scalar", "scalar"),
-    "dot": (2, "vector", "scalar"),
-    "cross": (2, "vector", "vector"),
-    "norm": (1, "vector", "scalar"),
-}
-_AXES = ("ex", "ey", "ez")
-_CONSTANTS = {"pi": math.pi, "deg": math.pi / 180}
-_SIGNS: dict[type[ast.operator], str] = {
-    ast.Add: "+",
-    ast.Sub: "-",
-    ast.Mult: "*",
-    ast.Div: "/",
-    ast.Pow: "**",
-}
-
-RESERVED = frozenset((*_FUNCTIONS, *AT_ENDS, *_AXES, *_CONSTANTS, "start", "end"))
-"""Words of the grammar, which no parameter may shadow."""
 
 _FOREIGN = re.compile(r"[^A-Za-z0-9_ \t\n.+*/()\[\],=-]")
 _WORD = re.compile(r"[A-Za-z0-9_.]+")
@@ -173,10 +148,10 @@ class Parser:
         name = node.id
         if name in self.names:
             return Name(name, self.names[name])
-        if name in _CONSTANTS:
-            return Number(_CONSTANTS[name])
-        if name in _AXES:
-            x, y, z = (Number(float(axis == name)) for axis in _AXES)
+        if name in CONSTANTS:
+            return Number(CONSTANTS[name])
+        if name in AXES:
+            x, y, z = (Number(float(axis == name)) for axis in AXES)
             return Vector((x, y, z))
         if name == "n" and self.quantities:
             # The force is constant along an unloaded ribbon.
@@ -185,9 +160,9 @@ class Parser:
             self._refuse(node, f"{name!r} needs an end: {name}(start) or {name}(end)")
         if name in AT_ENDS and not self.names.keys() & AT_ENDS:
             self._refuse(node, f"{name!r} is not known here; a value is numbers and parameters")
-        if name in _FUNCTIONS:
+        if name in FUNCTIONS:
             self._refuse(node, f"{name!r} is a function; write {name}(...)")
-        self._unknown(node, "name", name, [*self.names, *_AXES, *_CONSTANTS])
+        self._unknown(node, "name", name, [*self.names, *AXES, *CONSTANTS])
 
     def _call(self, node: ast.Call, function: str, depth: int, exponent: bool) -> Node:
         if function in AT_ENDS and self.quantities:
@@ -195,12 +170,12 @@ class Parser:
                 case [ast.Name(id="start" | "end" as end)]:
                     return Quantity(function, end, AT_ENDS[function])
             self._refuse(node, f"{function!r} is taken at (start) or (end)")
-        if function in (*self.names, *_AXES, *_CONSTANTS):
+        if function in (*self.names, *AXES, *CONSTANTS):
             self._refuse(node, f"{function!r} is no function; write it without (...)")
-        if function not in _FUNCTIONS:
-            self._unknown(node, "function", function, list(_FUNCTIONS))
+        if function not in FUNCTIONS:
+            self._unknown(node, "function", function, list(FUNCTIONS))
         arguments = [self._node(item, depth + 1, exponent=exponent) for item in node.args]
-        count, taken, given = _FUNCTIONS[function]
+        count, taken, given = FUNCTIONS[function]
         found = [argument.shape for argument in arguments]
         if found != [taken] * count:
             wanted = f"{count} {taken}{'s' if count > 1 else ''}"
@@ -208,9 +183,9 @@ class Parser:
         return Call(function, tuple(arguments), given)
 
     def _binary(self, node: ast.BinOp, depth: int, exponent: bool) -> Node:
-        if type(node.op) not in _SIGNS:
+        if type(node.op) not in SIGNS:
             self._refuse(node, f"found {self._source(node)!r}; the operators are + - * / **")
-        sign = _SIGNS[type(node.op)]
+        sign = SIGNS[type(node.op)]
         left = self._node(node.left, depth + 1, exponent=exponent)
         right = self._node(node.right, depth + 1, exponent=exponent or sign == "**")
         shapes = left.shape, right.shape

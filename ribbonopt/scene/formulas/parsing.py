@@ -14,15 +14,13 @@ from typing import NamedTuple
 
 from ribbonopt.scene.quantities import Shape
 
-from .expressions import Node, Number, NumericEnv, Quantity, evaluate, parts
-from .grammar import RESERVED, FormulaError, Parser
+from .expressions import Node, Number, Quantity, evaluate, parts
+from .grammar import FormulaError, Parser
+from .numeric import NumericEnv
 
 __all__ = [
-    "RESERVED",
     "EquationFormula",
     "FormulaError",
-    "NumericEnv",
-    "evaluate",
     "evaluate_value",
     "parse_equation",
     "parse_expression",

@@ -20,10 +20,11 @@ from ribbonopt.pipeline.prepared import Prepared
 from ribbonopt.scene import Scene
 from ribbonopt.studies.machine import machine
 
-from .compare import TOLERANCES, UNKNOWN, Numbers, Reference, fine_solves, reference_of, truth_of
+from .compare import TOLERANCES
 from .measure import Measurement, Profile, cost_of, errors_of, measure
 from .pairs import Mesh, Pair, pairs_of
 from .rows import PairRow, cheapest, row_of
+from .truth import UNKNOWN, Numbers, Reference, fine_solves, reference_of, truth_of
 
 # Relative errors between which a slope is an order.
 ROUNDING, COARSE = 1e-12, 1e-1

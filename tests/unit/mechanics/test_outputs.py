@@ -9,7 +9,8 @@ from ribbonopt.mechanics.outputs import outputs
 from ribbonopt.pipeline.prepared import solve
 from ribbonopt.problem import ribbon_of
 from ribbonopt.scene import Boundary, Sadowsky, Scene, load_scene
-from ribbonopt.scene.formulas.parsing import RESERVED, parse_equation
+from ribbonopt.scene.formulas.parsing import parse_equation
+from ribbonopt.scene.formulas.words import RESERVED
 from ribbonopt.scene.quantities import ANSWERS, AT_ENDS, OUTPUTS, QUANTITIES, VECTORS, dimension
 
 CONFIGS = Path(__file__).parents[3] / "configs"

@@ -13,11 +13,12 @@ from references import HALF_MOEBIUS
 from ribbonopt.errors import SceneError
 from ribbonopt.scene import Newton, Regularized, Scene, load_scene
 from ribbonopt.studies.comparison.benchmark import Peer, benchmark, slopes_of
-from ribbonopt.studies.comparison.compare import Comparison, Reference, compare
+from ribbonopt.studies.comparison.compare import Comparison, compare
 from ribbonopt.studies.comparison.files import save_study
 from ribbonopt.studies.comparison.pairs import FORMULATIONS, TRANSCRIPTIONS, pairs_of
 from ribbonopt.studies.comparison.rows import COLUMNS, PairRow, cheapest
 from ribbonopt.studies.comparison.table import table
+from ribbonopt.studies.comparison.truth import Reference
 from ribbonopt.views.comparison import plot_study, save_figure
 
 REFERENCE = Reference(HALF_MOEBIUS["n0"], HALF_MOEBIUS["m0"], source="28 digits")
