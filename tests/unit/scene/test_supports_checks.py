@@ -2,6 +2,7 @@
 
 import math
 from dataclasses import fields
+from pathlib import Path
 from typing import Any, get_args
 
 import pytest
@@ -29,10 +30,12 @@ from ribbonopt.scene import (
     SupportName,
     Turn,
     Turns,
+    json_schema,
     validate_scene,
 )
 from ribbonopt.scene.supports import EXAMPLES, SUPPORTS
 
+README = Path(__file__).parents[3] / "README.md"
 POINT = (0.0, 0.0, 0.0)
 FIXED = End(position=POINT)
 FREE = End()
@@ -84,6 +87,13 @@ def test_names_are_those_of_the_declarations() -> None:
     assert tuple(SUPPORTS) == NAMES
     assert set(EXAMPLES) == {key for support in SUPPORTS.values() for key in support.keys}
     assert {f.name for f in fields(End)} == {"support", *SINGLES, *EXAMPLES}
+
+
+@each_support
+def test_readme_and_editors_tell_of_every_support(support: SupportName) -> None:
+    assert f"| `{support}` |" in README.read_text(encoding="utf-8")
+    keys = json_schema()["properties"]["boundary"]["properties"]["end"]["properties"]
+    assert f"{support}: {SUPPORTS[support].says}" in keys["support"]["description"]
 
 
 @each_support
