@@ -77,16 +77,21 @@ def _missing(support: Support, end: End, path: KeyPath) -> Iterator[Problem]:
         lacks.remove("directors")
         yield from _singles(support, end, singles, path)
     if lacks:
-        example = ", ".join(EXAMPLES[key] for key in lacks)
+        example = ", ".join(_example(support, key) for key in lacks)
         message = f'support: {support.name} needs {listed(lacks)}; add for example "{example}"'
         yield Problem(path, message)
     if support.whole_position:
         yield from check_whole_position(f"support: {support.name} needs", end.position, path)
     elif support.holds and end.position is not None and {*given(end.position)} != {*support.holds}:
-        example = f'"position: {{{", ".join(f"{axis}: 0" for axis in support.holds)}}}"'
         message = f"support: {support.name} holds the components {listed(support.holds)} only; "
-        path, found = (*path, "position"), written(end.position)
-        yield Problem(path, f"{message}write for example {example}", found)
+        message += f'write for example "{_example(support, "position")}"'
+        yield Problem((*path, "position"), message, written(end.position))
+
+
+def _example(support: Support, key: str) -> str:
+    if key != "position" or support.whole_position:
+        return EXAMPLES[key]
+    return f"position: {{{', '.join(f'{axis}: 0' for axis in support.holds)}}}"
 
 
 def _singles(support: Support, end: End, singles: list[str], path: KeyPath) -> Iterator[Problem]:

@@ -77,7 +77,7 @@ def test_a_roller_takes_a_load_along_its_rail(roller: Support) -> None:
 @pytest.mark.parametrize(
     ("change", "message"),
     [
-        ({"position": None}, "support: roller needs position; add for example"),
+        ({"position": None}, 'support: roller needs position; add for example "position: {x: 0}"'),
         ({"position": LabVector(x=0, y=0)}, 'only; write for example "position: {x: 0}"'),
         (
             {"force": AnyVector(x=0)},
