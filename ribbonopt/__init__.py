@@ -1,7 +1,8 @@
 """Equilibria of elastic ribbons as optimal-control problems, from YAML scenes.
 
 `load_scene` reads a scene, `solve` finds its equilibrium, a `Solution` is sampled, saved, plotted
-or used as the next guess. Names are imported when first used.
+or used as the next guess; `Continuation`, `run_batch` and `compare` solve many. Names are imported
+when first used.
 """
 
 from __future__ import annotations
@@ -17,33 +18,60 @@ if TYPE_CHECKING:
     from .pipeline.prepared import prepare, solve
     from .scene import Scene, dump_scene, json_schema, load_scene, loads_scene
     from .solution.solution import Solution
+    from .studies.batch.batch import run_batch
+    from .studies.batch.files import load_batch
+    from .studies.batch.sweep import load_study
+    from .studies.comparison.compare import compare
+    from .studies.continuation.continuation import Continuation
+    from .studies.continuation.files import load_branch
+    from .views import plot_plane, plot_ribbon, plot_strains, save_figures
 
 __version__ = version.VERSION
 
 __all__ = [
+    "Continuation",
     "Scene",
     "Solution",
     "__version__",
+    "compare",
     "dump_scene",
     "json_schema",
+    "load_batch",
+    "load_branch",
     "load_scene",
     "load_solution",
+    "load_study",
     "loads_scene",
+    "plot_plane",
+    "plot_ribbon",
+    "plot_strains",
     "prepare",
+    "run_batch",
+    "save_figures",
     "save_solution",
     "solve",
     "summarize",
 ]
 
 _HOMES = {
+    "Continuation": "studies.continuation.continuation",
     "Scene": "scene",
     "Solution": "solution.solution",
+    "compare": "studies.comparison.compare",
     "dump_scene": "scene",
     "json_schema": "scene",
+    "load_batch": "studies.batch.files",
+    "load_branch": "studies.continuation.files",
     "load_scene": "scene",
     "load_solution": "output.results",
+    "load_study": "studies.batch.sweep",
     "loads_scene": "scene",
+    "plot_plane": "views",
+    "plot_ribbon": "views",
+    "plot_strains": "views",
     "prepare": "pipeline.prepared",
+    "run_batch": "studies.batch.batch",
+    "save_figures": "views",
     "save_solution": "output.results",
     "solve": "pipeline.prepared",
     "summarize": "output.summary",
@@ -54,3 +82,7 @@ def __getattr__(name: str) -> Any:
     if name not in _HOMES:
         raise AttributeError(f"module 'ribbonopt' has no attribute {name!r}")
     return getattr(import_module(f"ribbonopt.{_HOMES[name]}"), name)
+
+
+def __dir__() -> list[str]:
+    return [*__all__, "__doc__", "__file__", "__name__", "__path__"]

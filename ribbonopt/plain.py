@@ -1,9 +1,15 @@
-"""Plain data, as YAML and JSON have them: which are numbers, and which JSON can say."""
+"""Plain data, as YAML and JSON have them: rows, which values are numbers, and what JSON can say."""
 
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from typing import Any
+
+Row = dict[str, Any]
+"""What one ribbon of a study came to: plain values by the names of columns."""
+
+Rows = Sequence[Row]
 
 
 def is_number(value: Any) -> bool:
@@ -25,3 +31,10 @@ def finite(value: Any) -> Any:
     if isinstance(value, float) and not math.isfinite(value):
         return None
     return value
+
+
+def json_text(value: Any) -> str:
+    """Return what a file of JSON holds, on lines of its own; not for numbers JSON cannot say."""
+    import json  # most commands print text
+
+    return json.dumps(value, indent=2, allow_nan=False) + "\n"

@@ -25,9 +25,9 @@ import peer_scipy
 
 from ribbonopt.scene import load_scene
 from ribbonopt.studies.comparison.benchmark import Peer, benchmark
-from ribbonopt.studies.comparison.compare import Reference
 from ribbonopt.studies.comparison.files import save_study
 from ribbonopt.studies.comparison.table import table
+from ribbonopt.studies.comparison.truth import Reference
 from ribbonopt.views.comparison import save_figure
 
 SCENE = Path(__file__).resolve().parent.parent / "configs" / "moebius_half.yaml"

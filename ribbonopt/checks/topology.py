@@ -155,7 +155,7 @@ def declared(solution: Solution, loop: Loop) -> ClosedBand:
     ends = solution.outputs(s)
     if loop.piece == "whole":
         return _whole(solution, ends, -1.0 if loop.half_twists % 2 else 1.0)
-    copies = 1 if loop.piece == "half" else abs(loop.half_twists)
+    copies = loop.pieces // 2
     odd = loop.piece == "fundamental" or loop.half_twists % 2
     first, last = flip_at(ends, s, 0, "d1"), flip_at(ends, s, 1, "d2" if odd else "d1")
     # The flip at the start, then that at the end, carries a piece to the next but one.

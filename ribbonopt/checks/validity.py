@@ -53,9 +53,8 @@ def _width_of_loop(solution: Solution, ribbon: RibbonSizes) -> list[str]:
     loop = solution.scene.boundary.loop
     if loop is None or loop.half_twists % 2 == 0:
         return []
-    pieces = {"whole": 1, "half": 2, "fundamental": 2 * abs(loop.half_twists)}[loop.piece]
     start, end = solution.scene.interval
-    share = ribbon.width / (pieces * (end - start))
+    share = ribbon.width / (loop.pieces * (end - start))
     if share < WIDEST:
         return []
     return [

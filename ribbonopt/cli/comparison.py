@@ -42,12 +42,11 @@ def _study(
     gc.enable()  # many scenes, and most of what they build is soon done with
     if options.out:
         from ribbonopt.output.staging import staged_result
-        from ribbonopt.studies.comparison.files import save_study
+        from ribbonopt.studies.comparison.files import files_of, save_study
         from ribbonopt.views.comparison import save_figure
 
         # The place is known to be good before minutes are spent.
-        own = frozenset(f"{name}.{kind}" for kind in ("csv", "json", "png"))
-        with staged_result(options.out, own) as stage:
+        with staged_result(options.out, files_of(name)) as stage:
             study = run()
             save_study(study, stage.folder, name)
             save_figure(study.plain(), stage.folder / f"{name}.png")

@@ -13,6 +13,7 @@ from .common import NOT_CONVERGED, load, pairs_of, print_json
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from ribbonopt.output.exports import Export
     from ribbonopt.solution.solution import Solution
 
 
@@ -29,11 +30,12 @@ def solve(options: argparse.Namespace) -> int:
     # Claimed before solving, so that a folder that cannot be written costs no solve.
     with staged_result(options.out or f"results/{scene.name}") as stage:
         solution = solve(scene)
-        save_solution(solution, stage.folder)
+        exports: list[Export] = []
         if options.plot:
-            from ribbonopt.views import save_figures
+            from ribbonopt.views import Pictures
 
-            save_figures(solution, stage.folder)
+            exports = [Pictures()]
+        save_solution(solution, stage.folder, exports)
         written = stage.commit(solution.status.failure)
     return _tell(options, solution, import_seconds, written)
 

@@ -89,12 +89,11 @@ def loop_shape(posed: Posed, loop: Loop) -> TwistedCircle:
     """
     if loop.piece == "fundamental" and not loop.half_twists:
         raise ModelError("guess: a circle without half twists has no fundamental piece", "guess")
-    pieces = {"whole": 1, "half": 2, "fundamental": 2 * abs(loop.half_twists)}[loop.piece]
     length, place = posed.length, posed.start
     if loop.piece == "fundamental":
-        radius = pieces * length / (2 * np.pi)
+        radius = loop.pieces * length / (2 * np.pi)
         place = np.array([-radius, 0.0, 0.0]), np.eye(3)
-    share = 1 / pieces
+    share = 1 / loop.pieces
     return TwistedCircle(*place, 2 * np.pi * share, np.pi * loop.half_twists * share, length)
 
 

@@ -3,8 +3,8 @@
 from __future__ import annotations
 
 import json
+from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import Any
 from zipfile import BadZipFile
 
 import numpy as np
@@ -12,57 +12,60 @@ import numpy as np
 from ribbonopt.attempt.structure import Structure
 from ribbonopt.errors import OutputError
 from ribbonopt.problem import Posed
-from ribbonopt.scene import dump_scene, load_scene
+from ribbonopt.scene import load_scene
 from ribbonopt.solution.made import solution_at
 from ribbonopt.solution.solution import Solution
 from ribbonopt.solution.verification import Verification
 from ribbonopt.solvers import Status
 
-from .staging import unwritable
-from .summary import summarize
+from .declared import declare
+from .exports import EQUILIBRIA, STANDARD, Export
+from .staging import OWN_FILES, unwritable
 
-ROWS = 201
 
-
-def save_solution(solution: Solution, folder: str | Path) -> None:
+def save_solution(solution: Solution, folder: str | Path, exports: Iterable[Export] = ()) -> None:
     """Write the files of a solution into an existing folder.
 
     `solution.npz` holds rows along s: `s` (k,), `r`, `d1`, `d2`, `d3`, `n`, `m` (k, 3, lab frame),
     `u` (k, 3, along the directors), all in the units of the scene, and what a reload needs, in
     units Dw = L = 1: `w`, `widths`, `theta`. Other equilibria go to `equilibria/2`, and so on.
 
+    Parameters
+    ----------
+    solution
+        What to write.
+    folder
+        Where; files of these names are replaced.
+    exports
+        What to write besides.
+
     Raises
     ------
     OutputError
-        If they cannot be written.
+        If they cannot be written, or two exports want the same file.
     """
-    folder = Path(folder)
+    folder, more = Path(folder), tuple(exports)
+    _refuse_twice((*STANDARD, *more))
     try:
-        _write(solution, folder)
+        for export in (*STANDARD, *more):
+            export.write(solution, folder)
+        declare(folder, {name for export in more for name in export.files} - OWN_FILES)
+    except OutputError:  # an OSError too, but one that says what to do
+        raise
     except OSError as error:
         raise unwritable(folder, error) from error
 
 
-def _write(solution: Solution, folder: Path) -> None:
-    s = np.linspace(*solution.scene.interval, ROWS)
-    rows = solution.outputs(s)
-    names = ("r", "d1", "d2", "d3", "n", "m", "u")
-    dense = solution.dense
-    arrays: dict[str, Any] = {"s": s} | {name: rows[name] for name in names}
-    arrays |= {"w": dense.w, "widths": dense.blocks.widths(dense.p)}
-    arrays |= {"theta": dense.theta, "multipliers": solution.multipliers}
-    arrays |= {"sheets": solution.sheets, "elements": dense.blocks.layout.elements}
-    np.savez(
-        folder / "solution.npz",
-        **arrays,
-    )
-    (folder / "scene.yaml").write_text(dump_scene(solution.scene), encoding="utf-8")
-    text = json.dumps(summarize(solution), indent=2, allow_nan=False)
-    (folder / "summary.json").write_text(text + "\n", encoding="utf-8")
-    for i, other in enumerate(solution.others, start=2):
-        inner = folder / "equilibria" / str(i)
-        inner.mkdir(parents=True)
-        _write(other, inner)
+def _refuse_twice(exports: Sequence[Export]) -> None:
+    writers = {EQUILIBRIA: "other equilibria"}
+    for export in exports:
+        for name in export.files:
+            if name in writers:
+                raise OutputError(
+                    f"export {export.name!r} writes {name}, as {writers[name]!r} does; choose "
+                    "another name"
+                )
+            writers[name] = export.name
 
 
 def load_solution(path: str | Path) -> Solution:

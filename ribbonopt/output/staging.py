@@ -9,7 +9,7 @@ from __future__ import annotations
 import os
 import shutil
 import tempfile
-from collections.abc import Iterator
+from collections.abc import Collection, Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
 from pathlib import Path
@@ -17,17 +17,10 @@ from typing import IO
 
 from ribbonopt.errors import OutputError
 
-OWN_FILES = frozenset(
-    (
-        "scene.yaml",
-        "summary.json",
-        "solution.npz",
-        "strains.png",
-        "plane.png",
-        "ribbon.png",
-        "equilibria",
-    )
-)
+from .declared import PICTURES, foreign_in
+
+#: files of a result that every version knows; others are declared by the folder itself
+OWN_FILES = frozenset(("scene.yaml", "summary.json", "solution.npz", "equilibria", *PICTURES))
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,7 +29,7 @@ class Stage:
 
     folder: Path
     target: Path
-    own: frozenset[str]
+    own: Collection[str]
 
     def commit(self, failure: str = "") -> Path:
         """Put the files in place and return where: a failed solve never hides an older result.
@@ -52,10 +45,11 @@ class Stage:
 
 
 @contextmanager
-def staged_result(target: str | Path, own: frozenset[str] = OWN_FILES) -> Iterator[Stage]:
+def staged_result(target: str | Path, own: Collection[str] = OWN_FILES) -> Iterator[Stage]:
     """Give a stage to write into; what is not committed leaves no trace.
 
-    `own` names the files that an older result may consist of: what it would replace.
+    `own` names the files that an older result may consist of, besides those that it declares: what
+    would be replaced.
 
     Raises
     ------
@@ -121,14 +115,13 @@ def picture_folder(target: str | Path) -> Path:
     return folder
 
 
-def _refuse_foreign(target: Path, own: frozenset[str]) -> None:
+def _refuse_foreign(target: Path, own: Collection[str]) -> None:
     try:
-        found = sorted(os.listdir(target)) if target.exists() else []
+        foreign = foreign_in(target, own) if target.exists() else []
     except NotADirectoryError as error:
         raise OutputError(f"{target}: is a file, expected a folder for results") from error
     except OSError as error:
         raise OutputError(f"{target}: cannot be read ({error.strerror})") from error
-    foreign = [name for name in found if name not in own]
     if foreign:
         raise OutputError(
             f"{target}: holds files that are not a result of ribbonopt ({', '.join(foreign[:3])}); "

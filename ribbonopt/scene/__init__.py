@@ -13,7 +13,6 @@ from .ends import (
     Quaternion,
     Rotation,
     RotationVector,
-    Support,
     Turn,
     Turns,
     Value,
@@ -40,6 +39,7 @@ from .model import (
     SolutionGuess,
     StrainGuess,
 )
+from .supports import Support, SupportName
 from .yamlio import dump_scene, json_schema, load_scene, loads_scene, locate, validate_scene
 
 __all__ = [
@@ -79,6 +79,7 @@ __all__ = [
     "SolutionGuess",
     "StrainGuess",
     "Support",
+    "SupportName",
     "Turn",
     "Turns",
     "Value",

@@ -7,7 +7,10 @@ are in the lab frame unless named along directors; angles are in radians.
 from __future__ import annotations
 
 from dataclasses import dataclass
-from typing import Literal
+from typing import Annotated, Literal
+
+from .schema.bounds import InPython
+from .supports import SUPPORTS, Support, SupportName
 
 Value = float | str
 Triple = tuple[Value, Value, Value]
@@ -78,7 +81,6 @@ class Turns:
 
 
 Rotation = Literal["identity"] | Directors | Quaternion | RotationVector | Turns
-Support = Literal["clamped", "pinned", "hinged", "sliding", "free", "held", "flip"]
 
 
 @dataclass(frozen=True)
@@ -86,20 +88,11 @@ class End:
     """What is prescribed at one end; without a `support`, everything not named is free.
 
     A support says what is held and makes the loads that go with what is free vanish, unless they
-    are given (`force`, `moment`: dead loads):
-
-    - clamped: `position` and `directors`;
-    - pinned: `position`; moment zero;
-    - hinged: `position`, the director `axis` points `along`; no moment about it;
-    - sliding: `directors`, and the point lies on the line through `position` `along` a direction;
-      no force along it;
-    - free: force and moment zero;
-    - held (end only): at a `distance` from the start, by a string: force along it, moment zero;
-    - flip: on an axis of two-fold symmetry, the line through `position` `along` a direction, with
-      the director `axis` along it; no force and no moment along it.
+    are given (`force`, `moment`: dead loads). They are declared in `ribbonopt.scene.supports`;
+    a declaration of one's own may stand in the place of a name, in Python.
     """
 
-    support: Support | None = None
+    support: SupportName | Annotated[Support, InPython()] | None = None
     position: Triple | LabVector | None = None
     directors: Rotation | None = None
     d1: Triple | LabVector | None = None
@@ -110,6 +103,11 @@ class End:
     distance: Value | None = None
     force: Triple | AnyVector | None = None
     moment: Triple | AnyVector | None = None
+
+    @property
+    def declared_support(self) -> Support | None:
+        """What the support holds and leaves free; None without one."""
+        return SUPPORTS[self.support] if isinstance(self.support, str) else self.support
 
 
 @dataclass(frozen=True)
@@ -122,6 +120,16 @@ class Loop:
 
     half_twists: int
     piece: Literal["whole", "half", "fundamental"] = "whole"
+
+    @property
+    def pieces(self) -> int:
+        """How many pieces make the whole loop, one of which is solved."""
+        return {"whole": 1, "half": 2, "fundamental": 2 * max(abs(self.half_twists), 1)}[self.piece]
+
+    @property
+    def fundamental(self) -> Loop:
+        """The same loop, of which the fundamental piece is solved."""
+        return Loop(self.half_twists, "fundamental")
 
 
 @dataclass(frozen=True)

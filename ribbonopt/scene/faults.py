@@ -8,7 +8,7 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import NamedTuple
 
-Path = tuple[str | int, ...]
+KeyPath = tuple[str | int, ...]
 
 _LONGEST = 60
 
@@ -26,7 +26,7 @@ class Problem(NamedTuple):
         The faulty value as shown to the user; empty where nothing was found or it does not help.
     """
 
-    path: Path
+    path: KeyPath
     message: str
     found: str = ""
 
@@ -54,7 +54,7 @@ class Place(NamedTuple):
         return f"--set {self.override}" if self.override else f"line {self.line}"
 
 
-def dotted(path: Path) -> str:
+def dotted(path: KeyPath) -> str:
     """Return a path in the notation of overrides, such as `boundary.end.position.2`."""
     return ".".join(str(key) for key in path)
 
@@ -83,7 +83,7 @@ def nearest(word: str, known: Iterable[str]) -> str:
     return near[0] if near else ""
 
 
-def report(source: str, problems: Iterable[Problem], places: Mapping[Path, Place]) -> str:
+def report(source: str, problems: Iterable[Problem], places: Mapping[KeyPath, Place]) -> str:
     """Return the one message that names every problem with its line or override.
 
     Parameters
@@ -106,7 +106,7 @@ def report(source: str, problems: Iterable[Problem], places: Mapping[Path, Place
     return "\n  ".join([f"{source}: {len(lines)} problems", *lines])
 
 
-def _place(path: Path, places: Mapping[Path, Place]) -> Place:
+def _place(path: KeyPath, places: Mapping[KeyPath, Place]) -> Place:
     for length in range(len(path), 0, -1):
         if path[:length] in places:
             return places[path[:length]]

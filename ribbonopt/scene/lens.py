@@ -17,12 +17,12 @@ from typing import Annotated, Any, NamedTuple, get_args, get_origin
 
 from ribbonopt.errors import SceneError
 
-from .faults import Path, dotted, nearest
+from .faults import KeyPath, dotted, nearest
 from .model import Scene
 from .schema.annotations import branches, hints
 from .wording import listed
 
-_ROOTS: tuple[Path, ...] = (
+_ROOTS: tuple[KeyPath, ...] = (
     ("law",),
     ("interval",),
     ("parameters",),
@@ -39,7 +39,7 @@ _WORD = re.compile(r"[A-Za-z_]\w*")
 class _Part(NamedTuple):
     """What a path leads to: the steps to it, the value, and whether its place takes any number."""
 
-    steps: Path
+    steps: KeyPath
     value: Any
     varies: bool
 
@@ -109,11 +109,11 @@ def _ours(part: _Part) -> bool:
     return any(part.steps[: len(root)] == root for root in _ROOTS)
 
 
-def _part(scene: Scene, keys: Path) -> _Part | None:
+def _part(scene: Scene, keys: KeyPath) -> _Part | None:
     """Follow a path as far as something is given; None where it leads nowhere."""
     holder: Any = None
     value: Any = scene
-    steps: Path = ()
+    steps: KeyPath = ()
     for key in keys:
         if value is None:
             break
@@ -163,7 +163,7 @@ def _is_real(value: Any) -> bool:
     return isinstance(value, Real) and not isinstance(value, bool)
 
 
-def _numbers(value: Any, varies: bool, path: Path) -> Iterator[str]:
+def _numbers(value: Any, varies: bool, path: KeyPath) -> Iterator[str]:
     """Yield the paths of the numbers that vary inside a value."""
     if is_dataclass(value):
         for name in (member.name for member in fields(value)):
@@ -179,7 +179,7 @@ def _numbers(value: Any, varies: bool, path: Path) -> Iterator[str]:
         yield dotted(path)
 
 
-def _replaced(holder: Any, steps: Path, value: float) -> Any:
+def _replaced(holder: Any, steps: KeyPath, value: float) -> Any:
     """Return a value with a number replaced inside it, all else as it was."""
     if not steps:
         return value

@@ -17,17 +17,9 @@ from typing import Any
 from .ends import Boundary, End
 from .loads import Loads
 from .model import Guess, LoadGuess, Reference, Scene, StrainGuess
+from .quantities import dimension
 
 UNIT_LENGTH, UNIT_FORCE = "units.length", "units.force"
-
-#: exponents of (length, force) in named quantities; what is not listed is a number without unit
-DIMENSIONS: Mapping[str, tuple[int, int]] = {
-    "r": (1, 0),
-    **dict.fromkeys(("n", "n1", "n2", "n3", "energy", "H"), (0, 1)),
-    **dict.fromkeys(("m", "m1", "m2", "m3", "switching", "leap"), (1, 1)),
-    **dict.fromkeys(("u", "u1", "u2", "u3", "law_residual"), (-1, 0)),
-    "n_dot_m": (1, 2),
-}
 
 
 @dataclass(frozen=True)
@@ -58,7 +50,7 @@ class Units:
 
     def of(self, quantity: str) -> float:
         """Return the unit of a named quantity."""
-        length, force = DIMENSIONS.get(quantity, (0, 0))
+        length, force = dimension(quantity)
         return self.length**length * self.force**force
 
 

@@ -14,6 +14,7 @@ from .faults import InvalidSceneError, Problem, report
 from .laws import Sadowsky
 from .model import Scene
 from .schema.validation import validate
+from .supports import SUPPORTS
 from .text.yamltext import PlainData, YamlTextError, read
 
 
@@ -163,7 +164,11 @@ def json_schema() -> dict[str, Any]:
         json_schema_of,  # imports pydantic itself, slower than all of this room
     )
 
-    return json_schema_of(Scene)
+    schema = json_schema_of(Scene)
+    for end in ("start", "end"):
+        keys = schema["properties"]["boundary"]["properties"][end]["properties"]
+        keys["support"]["description"] = "\n".join(f"{s.name}: {s.says}" for s in SUPPORTS.values())
+    return schema
 
 
 def _validated(data: object) -> Scene:

@@ -8,8 +8,9 @@ from dataclasses import dataclass
 import numpy as np
 
 from ribbonopt.arrays import Array
-from ribbonopt.scene.formulas.expressions import Shape, evaluate
+from ribbonopt.scene.formulas.expressions import evaluate
 from ribbonopt.scene.formulas.parsing import parse_expression
+from ribbonopt.scene.quantities import Shape
 
 
 def evaluate_formula(text: str, values: Mapping[str, Array]) -> Array:

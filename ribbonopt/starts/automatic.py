@@ -76,7 +76,7 @@ class Automatic:
         """Yield what unfolds from the fundamental piece: least energy would untwist the band."""
         piece, loop = fundamental_scene(posed.scene), posed.scene.boundary.loop
         assert self._piece is not None and piece is not None and loop is not None
-        count = abs(loop.half_twists) * (2 if loop.piece == "whole" else 1)
+        count = loop.fundamental.pieces // loop.pieces
         for guess in self._piece.guesses(Posed.of(piece), ledger):
             if isinstance(guess, Solution):
                 yield Unfolded(guess, loop.half_twists, count, *posed.start)

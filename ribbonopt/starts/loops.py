@@ -60,9 +60,9 @@ def fundamental_scene(scene: Scene) -> Scene | None:
     loop = scene.boundary.loop
     if loop is None or loop.piece == "fundamental" or abs(loop.half_twists) < 2:
         return None
-    pieces = abs(loop.half_twists) * (2 if loop.piece == "whole" else 1)
+    pieces = loop.fundamental.pieces // loop.pieces
     length = (scene.interval[1] - scene.interval[0]) / pieces
-    boundary = Boundary(loop=Loop(loop.half_twists, "fundamental"))
+    boundary = Boundary(loop=loop.fundamental)
     return replace(scene, boundary=boundary, interval=(0.0, length), guess="auto")
 
 

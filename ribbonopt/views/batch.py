@@ -9,10 +9,10 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ribbonopt.plain import is_number
+from ribbonopt.plain import Rows, is_number
 
 from .branch import COLOURS
-from .columns import Rows, as_text, is_logarithmic, is_numeric, numbers, varied, words
+from .columns import ColumnPair, as_text, is_logarithmic, is_numeric, numbers, varied, words
 from .histogram import histogram_of
 from .style import BENDING, FAINT, INK, TWIST, blank, save_all, tidy
 
@@ -20,7 +20,6 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-Pair = tuple[str, str]
 OUTCOMES = ("energy", "error", "seconds", "H0", "u2")  # those that vary, three of them
 MOST = 4  # panels of a figure
 PALETTE = tuple(colour for colour in COLOURS if colour != TWIST)  # which tells what failed
@@ -28,7 +27,7 @@ LETTERS = 40  # of a text in a figure
 
 
 def save_batch_figures(
-    rows: Rows, inputs: Sequence[str], folder: str | Path, pairs: Sequence[Pair] = ()
+    rows: Rows, inputs: Sequence[str], folder: str | Path, pairs: Sequence[ColumnPair] = ()
 ) -> list[Path]:
     """Write outcomes.png and scatter.png into an existing folder and return where.
 
@@ -56,7 +55,7 @@ def save_batch_figures(
     return save_all(figures, Path(folder))
 
 
-def usual_pairs(rows: Rows, inputs: Sequence[str]) -> list[Pair]:
+def usual_pairs(rows: Rows, inputs: Sequence[str]) -> list[ColumnPair]:
     """Return what is worth seeing: the inputs against the energy, and against each other."""
     swept = [key for key in inputs if is_numeric(rows, key)]
     if not swept:
@@ -92,7 +91,7 @@ def plot_outcomes(rows: Rows) -> Figure:
     return figure
 
 
-def plot_scatter(rows: Rows, pairs: Sequence[Pair], inputs: Sequence[str] = ()) -> Figure:
+def plot_scatter(rows: Rows, pairs: Sequence[ColumnPair], inputs: Sequence[str] = ()) -> Figure:
     """Draw pairs of columns, a panel each, the first four; failed ribbons as crosses.
 
     Where x is an input, colour tells another input; where x and y are both, the energy.
@@ -107,7 +106,7 @@ def plot_scatter(rows: Rows, pairs: Sequence[Pair], inputs: Sequence[str] = ()) 
     return figure
 
 
-def _shade(rows: Rows, pair: Pair, inputs: Sequence[str]) -> str:
+def _shade(rows: Rows, pair: ColumnPair, inputs: Sequence[str]) -> str:
     """Return the column that colours a panel; "" for none."""
     numeric = [key for key in inputs if varied(rows, key)]
     few = [key for key in inputs if 1 < len(words(rows, key)) <= len(PALETTE)]
@@ -117,7 +116,7 @@ def _shade(rows: Rows, pair: Pair, inputs: Sequence[str]) -> str:
     return next((name for name in chosen if name not in pair and words(good, name)[1:]), "")
 
 
-def _panel(figure: Figure, axes: Axes, rows: Rows, pair: Pair, shade: str) -> None:
+def _panel(figure: Figure, axes: Axes, rows: Rows, pair: ColumnPair, shade: str) -> None:
     good = [row for row in rows if row["verified"]]
     bad = [row for row in rows if not row["verified"]]
     scales = [_scale(rows, name) for name in pair]
@@ -194,7 +193,7 @@ def _scale(rows: Rows, name: str) -> str | list[str]:
     return words(rows, name)
 
 
-def _points(rows: Rows, pair: Pair, scales: Sequence[str | list[str]]) -> np.ndarray:
+def _points(rows: Rows, pair: ColumnPair, scales: Sequence[str | list[str]]) -> np.ndarray:
     """Places (k, 2) of rows, NaN where there are none."""
     places = [
         {word: i for i, word in enumerate(scale)} if isinstance(scale, list) else scale

@@ -1,4 +1,4 @@
-"""Figures of a branch of equilibria: quantities against the parameter, and ribbons along it.
+"""Figures of a branch of equilibria: quantities against the parameter.
 
 Points are plain mappings, one for each accepted point in order: `stage`, `branch`, `parameter` (a
 dotted path), `value`, `kind`, `negative` (negative directions, None unknown) and quantities.
@@ -7,33 +7,26 @@ dotted path), `value`, `kind`, `negative` (negative directions, None unknown) an
 from __future__ import annotations
 
 import math
-import textwrap
-from collections.abc import Collection, Mapping, Sequence
-from dataclasses import replace
+from collections.abc import Collection, Sequence
 from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
+from ribbonopt.plain import Row, Rows
 from ribbonopt.solution.solution import Solution
 
-from .camera import place_camera
-from .facets import SEAM, draw_surface
+from .columns import ColumnPair
 from .pieces import Array
-from .ribbon import paint, scale_bar
+from .strip import plot_strip
 from .style import BENDING, FAINT, INK, TWIST, blank, save_all, tidy
-from .subject import subject_of
-from .surface import sweep
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
     from matplotlib.gridspec import SubplotSpec
 
-PlainRow = Mapping[str, Any]
-Rows = Sequence[PlainRow]
-Pair = tuple[str, str]
 Log = bool | Collection[str]
 
 COLOURS = (BENDING, TWIST, "#009e73", "#cc79a7", "#56b4e9", "#e69f00")  # one for each branch
@@ -50,7 +43,6 @@ STYLES: dict[str, dict[str, Any]] = {
 }
 DOT = {"marker": "o", "ms": 3.5, "zorder": 4.5}  # a point alone
 LABELS = {"number": "point", "negative": "negative directions", "error": "estimated error"}
-PICTURE, ROW, TALLEST, NARROWEST = 3.0, 14.0, 3.2, 1.7  # inches, of a strip
 
 
 def plot_branch(rows: Rows, x: str, y: str, *, log: Log = False, title: str = "") -> Figure:
@@ -62,44 +54,12 @@ def plot_branch(rows: Rows, x: str, y: str, *, log: Log = False, title: str = ""
     return _plot(rows, [(x, y)], log, title)
 
 
-def plot_strip(ribbons: Sequence[Solution], captions: Sequence[str]) -> Figure:
-    """Draw ribbons in a row, to one scale, in one view of one frame; bands whole."""
-    subjects = [subject_of(solution, complete=True) for solution in ribbons]
-    lines = [np.concatenate([p.r for p in subject.pieces]) for subject in subjects]
-    camera = place_camera(
-        np.concatenate([line - line.mean(axis=0) for line in lines]),
-        np.concatenate([p.d1 for subject in subjects for p in subject.pieces]),
-    )
-    usual = min(sweep(subject.pieces).half_width for subject in subjects)
-    drawings = [draw_surface(sweep(s.pieces, s.half_width or usual), camera) for s in subjects]
-    corners = np.concatenate([drawing.corners.reshape(-1, 2) for drawing in drawings])
-    (left, low), (right, high) = corners.min(axis=0), corners.max(axis=0)
-    size = max(right - left, (high - low) / 2)
-    box = (left - 0.04 * size, right + 0.04 * size, low - 0.2 * size, high + 0.04 * size)
-    tall = (box[3] - box[2]) / (box[1] - box[0])
-    width = max(min(PICTURE, ROW / len(subjects), TALLEST / tall), NARROWEST)
-    fill = textwrap.TextWrapper(round(13 * width)).fill
-    texts = ["\n".join(map(fill, caption.splitlines())) for caption in captions]
-    below = 0.6 + 0.17 * max(text.count("\n") for text in texts)
-    figure = blank(max(width * len(subjects), 3.4), min(width * tall, TALLEST) + below)
-    panels = figure.subplots(1, len(subjects), squeeze=False)[0]
-    for axes, drawing, text in zip(panels, drawings, texts, strict=True):
-        paint(axes, replace(drawing, line_widths=np.maximum(0.6 * drawing.line_widths, SEAM)))
-        axes.set(xlim=box[:2], ylim=box[2:], aspect="equal", xticks=[], yticks=[])
-        axes.spines[:].set_visible(False)
-        axes.set_xlabel(text, fontsize=9, color=INK)
-    scale_bar(panels[0], box, size, " m" if subjects[0].units.si else "")
-    note = "; light: by symmetry" if any(subject.mirrored for subject in subjects) else ""
-    figure.supxlabel(f"one scale, one view{note}", fontsize=8.5, color=FAINT)
-    return figure
-
-
 def save_branch_figures(
     rows: Rows,
     ribbons: Sequence[Solution],
     captions: Sequence[str],
     folder: str | Path,
-    pairs: Sequence[Pair],
+    pairs: Sequence[ColumnPair],
     *,
     log: Log = False,
 ) -> list[Path]:
@@ -110,7 +70,7 @@ def save_branch_figures(
     return save_all(figures, Path(folder))
 
 
-def _plot(rows: Rows, pairs: Sequence[Pair], log: Log, title: str = "") -> Figure:
+def _plot(rows: Rows, pairs: Sequence[ColumnPair], log: Log, title: str = "") -> Figure:
     """Draw a panel for each pair, and one legend under them."""
     most = max(len(_parameters(rows, pair)) for pair in pairs)
     columns = 1 if most > 1 or len(pairs) == 1 else 2
@@ -125,7 +85,7 @@ def _plot(rows: Rows, pairs: Sequence[Pair], log: Log, title: str = "") -> Figur
     return figure
 
 
-def _panel(figure: Figure, cell: SubplotSpec, rows: Rows, pair: Pair, log: Log) -> None:
+def _panel(figure: Figure, cell: SubplotSpec, rows: Rows, pair: ColumnPair, log: Log) -> None:
     """Draw one pair of quantities, on axes of each parameter if these differ."""
     parameters = _parameters(rows, pair)
     inner, first = cell.subgridspec(1, len(parameters)), None
@@ -143,11 +103,11 @@ def _panel(figure: Figure, cell: SubplotSpec, rows: Rows, pair: Pair, log: Log) 
         axes.tick_params(labelleft=beside is None)
 
 
-def _draw(axes: Axes, rows: Rows, pair: Pair, parameter: str) -> Array:
+def _draw(axes: Axes, rows: Rows, pair: ColumnPair, parameter: str) -> Array:
     """Draw and return the points of a parameter; "" stands for all."""
     drawn = _drawn(rows, [pair])
     here = [row for row in drawn if parameter in ("", row["parameter"])]
-    runs: dict[tuple[int, int], list[PlainRow]] = {}
+    runs: dict[tuple[int, int], list[Row]] = {}
     for row in here:
         runs.setdefault((row["branch"], row["stage"]), []).append(row)
     plain = {"lw": 1.6} if all(_state(row) == UNKNOWN for row in rows) else {}
@@ -168,7 +128,7 @@ def _draw(axes: Axes, rows: Rows, pair: Pair, parameter: str) -> Array:
     return _points(here, pair)
 
 
-def _stretches(run: Sequence[PlainRow]) -> list[tuple[str, list[PlainRow]]]:
+def _stretches(run: Sequence[Row]) -> list[tuple[str, list[Row]]]:
     """Cut a run of points where stability changes; a fold or branch point ends both stretches."""
     stretches = [(_state(run[0]), [run[0]])] if len(run) == 1 else []
     for a, b in pairwise(run):
@@ -181,21 +141,21 @@ def _stretches(run: Sequence[PlainRow]) -> list[tuple[str, list[PlainRow]]]:
     return stretches
 
 
-def _state(row: PlainRow) -> str:
+def _state(row: Row) -> str:
     return UNKNOWN if row["negative"] is None else UNSTABLE if row["negative"] else STABLE
 
 
-def _drawn(rows: Rows, pairs: Sequence[Pair]) -> list[PlainRow]:
+def _drawn(rows: Rows, pairs: Sequence[ColumnPair]) -> list[Row]:
     """Rows that have both quantities of one of some pairs."""
     return [row for row in rows if any(np.isfinite(_points([row], p)).all() for p in pairs)]
 
 
-def _points(rows: Rows, pair: Pair) -> Array:
+def _points(rows: Rows, pair: ColumnPair) -> Array:
     """Values (2, k) of both quantities, NaN where there are none."""
     return np.array([[row.get(quantity) for row in rows] for quantity in pair], float)
 
 
-def _parameters(rows: Rows, pair: Pair) -> list[str]:
+def _parameters(rows: Rows, pair: ColumnPair) -> list[str]:
     """Return the parameters that have axes of their own: "" stands for all."""
     names = list(dict.fromkeys(row["parameter"] for row in rows))
     return names if "value" in pair and names else [""]
@@ -226,7 +186,7 @@ def _scale(axes: Axes, k: int, quantity: str, values: Array, log: bool) -> None:
         axis.set_minor_locator(NullLocator())
 
 
-def _legend(figure: Figure, rows: Rows, pairs: Sequence[Pair]) -> None:
+def _legend(figure: Figure, rows: Rows, pairs: Sequence[ColumnPair]) -> None:
     """Entries for branches if there are several, and for the lines and marks that are drawn."""
     from matplotlib.lines import Line2D
 

@@ -6,22 +6,21 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from ribbonopt.plain import is_number
+from ribbonopt.plain import Rows, is_number
+from ribbonopt.scene.quantities import ANSWERS, START_VECTORS
 
-Row = Mapping[str, Any]
-Rows = Sequence[Row]
+ColumnPair = tuple[str, str]
+"""Names of two columns, of what is drawn along x and y."""
 
 WIDE = 50.0  # largest over smallest value, from which axes are logarithmic
 NOISE = 1e-9  # relative differences below this are rounding
-VECTORS = (("n0x", "n0y", "n0z"), ("m0x", "m0y", "m0z"), ("u2", "u3"))
-ANSWERS = ("energy", "H0", *(part for vector in VECTORS for part in vector), "error")
 COSTS = ("start", "iterations", "path", "seconds", "message")
 
 
 def columns(rows: Rows, inputs: Sequence[str] = ()) -> list[str]:
     """Return the names of all columns: inputs, how it ended, what came out, what it cost."""
     found = list(dict.fromkeys(name for row in rows for name in row))
-    first = ("number", "scene", *inputs, "status", "verified", *ANSWERS)
+    first = ("number", "scene", *inputs, "status", "verified", *ANSWERS, "error")
     others = [name for name in found if name not in (*first, *COSTS)]
     return [name for name in dict.fromkeys((*first, *others, *COSTS)) if name in found]
 
@@ -37,7 +36,7 @@ def varied(rows: Rows, name: str) -> list[float]:
     A component of a vector is measured by the vector: what symmetry makes zero is no column.
     """
     values = numbers(rows, name)
-    vector = next((vector for vector in VECTORS if name in vector), (name,))
+    vector = next((vector for vector in START_VECTORS if name in vector), (name,))
     largest = max((abs(value) for part in vector for value in numbers(rows, part)), default=0.0)
     return values if values and max(values) - min(values) > NOISE * largest else []
 

@@ -5,10 +5,12 @@ They take rows as plain mappings, as `comparison.json` and `benchmark.json` hold
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from itertools import cycle
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
+
+from ribbonopt.plain import Row, Rows
 
 from .style import FAINT, INK, blank, save_all, tidy
 
@@ -17,7 +19,6 @@ if TYPE_CHECKING:
     from matplotlib.axis import Axis
     from matplotlib.figure import Figure
 
-PlainRow = Mapping[str, Any]
 
 # A colour for each formulation, a marker for each transcription, a dash for the states.
 COLOURS = ("#1f5fa8", "#c2410c", "#2f7d32", "#7b3fa0", "#8a6d00", "#444444")
@@ -57,7 +58,7 @@ def save_figure(study: Mapping[str, Any], path: str | Path) -> None:
     save_all({path.name: plot_study(study)}, path.parent)
 
 
-def _work_precision(axes: Axes, rows: Sequence[PlainRow], peers: Sequence[PlainRow]) -> None:
+def _work_precision(axes: Axes, rows: Rows, peers: Rows) -> None:
     rows = _drawn(rows)
     styles = _styles(rows)
     for (pair,), points in _grouped(rows, ("pair",)).items():
@@ -111,7 +112,7 @@ def _orders(axes: Axes, study: Mapping[str, Any]) -> None:
     tidy(axes)
 
 
-def _legend(axes: Axes, rows: Sequence[PlainRow]) -> None:
+def _legend(axes: Axes, rows: Rows) -> None:
     """One entry for each colour, marker and dash: there may be fifty pairs."""
     from matplotlib.lines import Line2D
 
@@ -143,30 +144,28 @@ def _plain_ticks(axis: Axis) -> None:
     axis.set_minor_locator(NullLocator())
 
 
-def _drawn(rows: Sequence[PlainRow]) -> list[PlainRow]:
+def _drawn(rows: Rows) -> list[Row]:
     return [row for row in rows if row["verified"] and row["error"] is not None]
 
 
-def _colours(rows: Sequence[PlainRow]) -> dict[str, str]:
+def _colours(rows: Rows) -> dict[str, str]:
     names = dict.fromkeys(row["formulation"] for row in rows)
     return dict(zip(names, cycle(COLOURS), strict=False))
 
 
-def _markers(rows: Sequence[PlainRow]) -> dict[str, str]:
+def _markers(rows: Rows) -> dict[str, str]:
     names = dict.fromkeys(row["transcription"] for row in rows)
     return dict(zip(names, cycle(MARKERS), strict=False))
 
 
-def _grouped(
-    rows: Sequence[PlainRow], keys: tuple[str, ...]
-) -> dict[tuple[Any, ...], list[PlainRow]]:
-    groups: dict[tuple[Any, ...], list[PlainRow]] = {}
+def _grouped(rows: Rows, keys: tuple[str, ...]) -> dict[tuple[Any, ...], list[Row]]:
+    groups: dict[tuple[Any, ...], list[Row]] = {}
     for row in rows:
         groups.setdefault(tuple(row[key] for key in keys), []).append(row)
     return groups
 
 
-def _styles(rows: Sequence[PlainRow]) -> dict[str, dict[str, Any]]:
+def _styles(rows: Rows) -> dict[str, dict[str, Any]]:
     colours, markers = _colours(rows), _markers(rows)
     return {
         row["pair"]: {

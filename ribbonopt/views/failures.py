@@ -8,7 +8,9 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from html import escape
 
-from .columns import Row, Rows, is_logarithmic, is_numeric, numbers, words
+from ribbonopt.plain import Row, Rows
+
+from .columns import is_logarithmic, is_numeric, numbers, words
 
 NUMERIC = re.compile(r"[-+]?\d+(\.\d*)?(e[-+]?\d+)?", re.IGNORECASE)
 NUMBERED = 20  # ribbons of a group that are named

@@ -6,6 +6,7 @@ from dataclasses import replace
 from pathlib import Path
 
 from ribbonopt.errors import OutputError
+from ribbonopt.output.declared import PICTURES
 from ribbonopt.solution.solution import Solution
 
 from .plane import draw_plane
@@ -64,3 +65,13 @@ def _save(subject: Subject, folder: Path, half_width: float | None) -> list[Path
         "ribbon.png": draw_ribbon(subject, half_width),
     }
     return save_all(figures, folder)
+
+
+class Pictures:
+    """Strains, their path in the plane, and the ribbon in space, as an export of a solution."""
+
+    name, files = "pictures", PICTURES
+
+    def write(self, solution: Solution, folder: Path) -> None:
+        """Draw the pictures of a solution and of its other equilibria."""
+        save_figures(solution, folder)

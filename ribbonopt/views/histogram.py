@@ -11,9 +11,9 @@ from dataclasses import dataclass
 from html import escape
 from itertools import pairwise
 
-from ribbonopt.plain import is_number
+from ribbonopt.plain import Rows, is_number
 
-from .columns import Rows, as_text, columns, is_logarithmic, is_missing, is_numeric, varied, words
+from .columns import as_text, columns, is_logarithmic, is_missing, is_numeric, varied, words
 
 BINS = (6, 24)  # least and most, if values do not recur
 MOST_BARS = 60  # of values that recur, and in the room of which they lie

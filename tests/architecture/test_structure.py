@@ -1,16 +1,12 @@
 """The house rules: who imports whom, who prints, and what a command does not load."""
 
 import ast
-import os
 import re
-import subprocess
-import sys
 from collections.abc import Iterator
 from pathlib import Path
 
 import pytest
-
-import ribbonopt
+from fresh import loaded_by
 
 ROOT = Path(__file__).parents[2]
 PACKAGE = ROOT / "ribbonopt"
@@ -130,25 +126,6 @@ def test_no_error_is_swallowed(path: Path) -> None:
             assert getattr(node.exc.func, "id", "") != "Exception", node.lineno
 
 
-def python(code: str) -> subprocess.CompletedProcess[str]:
-    path = os.pathsep.join(filter(None, [str(ROOT), os.environ.get("PYTHONPATH", "")]))
-    return subprocess.run(
-        [sys.executable, "-c", code],
-        capture_output=True,
-        text=True,
-        check=False,
-        env=os.environ | {"PYTHONPATH": path},
-    )
-
-
-def loaded_by(code: str) -> set[str]:
-    """Return the top-level modules that a fresh interpreter has loaded after some code."""
-    tail = "\nimport sys\nprint(*{name.partition('.')[0] for name in sys.modules})"
-    done = python(code + tail)
-    assert done.returncode == 0, done.stderr
-    return set(done.stdout.split())
-
-
 def test_import_alone_is_light() -> None:
     heavy = {"casadi", "numpy", "matplotlib", "scipy", "pydantic", "pydantic_core", "yaml"}
     assert not heavy & loaded_by("import ribbonopt")
@@ -171,31 +148,3 @@ def test_bad_scenes_are_refused_without_casadi() -> None:
 
 def test_scene_room_knows_no_casadi() -> None:
     assert "casadi" not in loaded_by("import ribbonopt.scene")
-
-
-@pytest.mark.parametrize("name", ribbonopt.__all__)
-def test_public_names_exist(name: str) -> None:
-    assert getattr(ribbonopt, name) is not None
-
-
-def test_public_names_are_those_of_the_design() -> None:
-    promised = {"Scene", "Solution", "load_scene", "dump_scene", "json_schema", "solve"}
-    assert promised <= set(ribbonopt.__all__)
-
-
-def test_other_names_do_not_exist() -> None:
-    with pytest.raises(AttributeError, match="no attribute 'slove'"):
-        _ = ribbonopt.slove
-
-
-def test_solve_is_a_function_however_often_it_is_asked_for() -> None:
-    done = python("import ribbonopt\n" + 2 * "assert callable(ribbonopt.solve)\n")
-    assert done.returncode == 0, done.stderr
-
-
-@pytest.mark.parametrize(
-    "first", ["ribbonopt.pipeline.prepared", "ribbonopt.cli", "ribbonopt.pipeline.check"]
-)
-def test_solve_is_a_function_whatever_was_imported_before(first: str) -> None:
-    done = python(f"import {first}\nfrom ribbonopt import solve\nassert callable(solve)")
-    assert done.returncode == 0, done.stderr

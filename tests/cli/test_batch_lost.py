@@ -17,7 +17,8 @@ import pytest
 from batches import COMMAND, STUDY, lost, on_purpose, without_times, written
 from disks import Full
 
-from ribbonopt.output import results, staging
+from ribbonopt.output import staging
+from ribbonopt.output.exports import Fields
 from ribbonopt.studies.batch import files as batch_files
 from ribbonopt.studies.batch import worker
 from ribbonopt.studies.batch.batch import run_batch
@@ -192,7 +193,7 @@ def test_full_solutions_that_find_no_room_are_told(
     def refuse(*_: object) -> None:
         raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
 
-    monkeypatch.setattr(results, "_write", refuse)
+    monkeypatch.setattr(Fields, "write", refuse)
     study.write_text(STUDY.replace("count: 30", "count: 2"))
     (chunk, *_) = chunks_of(load_study([study]))
     asked = message(chunk, [], (), "all", str(tmp_path))

@@ -6,8 +6,9 @@ import numpy as np
 
 from ribbonopt.scene import Boundary, End, Scene
 
-from .conditions import Component, Condition, Direction, EndName, Frame
-from .frames import DIRECTORS, Parameters, components, frame_of, number
+from .conditions import Condition, EndName
+from .frames import Parameters, components, frame_of, number
+from .named import named_at
 
 ENDS: tuple[EndName, EndName] = ("start", "end")
 
@@ -48,40 +49,23 @@ def gap_between_ends(scene: Scene) -> float:
     distance = scene.boundary.end.distance
     if distance is not None:
         return number(distance, scene.parameters)
-    start, end = (
-        components(e.position, scene.parameters) if e.support not in ("sliding", "flip") else {}
-        for e in (scene.boundary.start, scene.boundary.end)
-    )
+    ends = (scene.boundary.start, scene.boundary.end)
+    start, end = (_held(e, scene.parameters) for e in ends)
     return float(np.linalg.norm([end[a] - start[a] for a in start if a in end]))
 
 
 def _at_end(name: EndName, end: End, parameters: Parameters) -> list[Condition]:
-    if end.support is not None:
-        from .supports import SUPPORTS  # scenes that name every component do without
+    support = end.declared_support
+    if support is None:
+        return named_at(name, end, parameters)
+    from .supports import conditions_at  # scenes that name every component do without
 
-        return SUPPORTS[end.support](name, end, parameters)
-    result: list[Condition] = [
-        Component(name, "position", axis, value)
-        for axis, value in components(end.position, parameters).items()
-    ]
-    result += directors_at(name, end, parameters)
-    for quantity in ("force", "moment"):
-        prescribed = components(getattr(end, quantity), parameters)
-        result += [Component(name, quantity, axis, v) for axis, v in prescribed.items()]
-    return result
+    return conditions_at(name, support, end, parameters)
 
 
-def directors_at(name: EndName, end: End, parameters: Parameters) -> list[Condition]:
-    """Return the conditions on the directors of an end."""
-    frame = frame_of(end, parameters)
-    result: list[Condition] = []
-    if frame is not None:
-        result.append(Frame(name, tuple(frame.ravel().tolist())))
-    for director in DIRECTORS:
-        prescribed = components(getattr(end, director), parameters)
-        if len(prescribed) < 3:
-            result += [Component(name, director, a, v) for a, v in prescribed.items()]
-        elif frame is None:
-            x, y, z = (prescribed[axis] for axis in "xyz")
-            result.append(Direction(name, director, (x, y, z)))
-    return result
+def _held(end: End, parameters: Parameters) -> dict[str, float]:
+    """Return the lab components of the position that are held."""
+    support, place = end.declared_support, components(end.position, parameters)
+    if support is None:
+        return place
+    return {axis: value for axis, value in place.items() if axis in support.holds}

@@ -15,7 +15,6 @@ from ribbonopt.scene.formulas.expressions import (
     Name,
     Node,
     Number,
-    NumericEnv,
     Quantity,
     Unary,
     Vector,
@@ -23,7 +22,8 @@ from ribbonopt.scene.formulas.expressions import (
     evaluate,
     parts,
 )
-from ribbonopt.scene.units import DIMENSIONS
+from ribbonopt.scene.formulas.numeric import NumericEnv
+from ribbonopt.scene.quantities import dimension
 
 
 class Dimension(NamedTuple):
@@ -50,7 +50,7 @@ def dimension_of(node: Node) -> Dimension:
         case Number() | Name():
             return UNKNOWN
         case Quantity():
-            return Dimension(*DIMENSIONS.get(node.name, (0, 0)))
+            return Dimension(*dimension(node.name))
         case Vector():
             return _best(*(dimension_of(component) for component in node.components))
         case VectorComponent():

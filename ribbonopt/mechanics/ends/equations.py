@@ -13,7 +13,8 @@ import casadi as ca
 
 from ribbonopt.scene.formulas.expressions import Number, Quantity, evaluate, parts
 from ribbonopt.scene.formulas.parsing import parse_equation
-from ribbonopt.scene.units import DIMENSIONS, UNIT_FORCE, UNIT_LENGTH
+from ribbonopt.scene.quantities import dimension
+from ribbonopt.scene.units import UNIT_FORCE, UNIT_LENGTH
 
 from .conditions import Context, EndName, Equation
 from .dimensions import dimension_of_equation
@@ -66,7 +67,7 @@ class _SymbolicEnv:
             value = section.rod.along(getattr(section.rod, name[0]))[int(name[1]) - 1]
         else:
             value = getattr(section.rod, name)
-        return value if self._unit is None else value * self._unit(*DIMENSIONS.get(name, (0, 0)))
+        return value if self._unit is None else value * self._unit(*dimension(name))
 
     def vector(self, components: Sequence[ca.SX]) -> ca.SX:
         return ca.vertcat(*components)

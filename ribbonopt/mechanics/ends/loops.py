@@ -31,7 +31,7 @@ def loop_conditions(
 ) -> list[Condition]:
     """Return the conditions of a loop; `closed` prescribes all of the gap and not n1(0) = 0."""
     if loop.piece == "fundamental":
-        return _fundamental(loop.half_twists)
+        return _fundamental(loop)
     place = components(start.position, parameters) or dict.fromkeys("xyz", 0.0)
     frame = frame_of(start, parameters)
     frame = np.eye(3) if frame is None else frame
@@ -79,9 +79,8 @@ def _half(half_twists: int, place: tuple[float, ...], frame: np.ndarray) -> list
     ]
 
 
-def _fundamental(half_twists: int) -> list[Condition]:
-    angle = np.pi / abs(half_twists)
-    director, direction = axis_at_end(half_twists, angle)
+def _fundamental(loop: Loop) -> list[Condition]:
+    director, direction = axis_at_end(loop.half_twists, 2 * np.pi / loop.pieces)
     return [
         OnLine("start", (0.0, 0.0, 0.0), (1.0, 0.0, 0.0)),
         Direction("start", "d1", (1.0, 0.0, 0.0)),

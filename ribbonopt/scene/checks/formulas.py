@@ -5,13 +5,14 @@ from __future__ import annotations
 from collections.abc import Iterator, Mapping
 from keyword import iskeyword
 
-from ribbonopt.scene.faults import Path, Problem, dotted
-from ribbonopt.scene.formulas.parsing import RESERVED, FormulaError, evaluate_value, parse_equation
+from ribbonopt.scene.faults import KeyPath, Problem, dotted
+from ribbonopt.scene.formulas.parsing import FormulaError, evaluate_value, parse_equation
+from ribbonopt.scene.formulas.words import RESERVED
 
 
 def values_of(
-    formulas: Mapping[Path, str], parameters: Mapping[str, float]
-) -> tuple[dict[Path, float], list[Problem]]:
+    formulas: Mapping[KeyPath, str], parameters: Mapping[str, float]
+) -> tuple[dict[KeyPath, float], list[Problem]]:
     """Return the values of formulas by path, and a problem for each that has none."""
     values, problems = {}, []
     for path, formula in formulas.items():
@@ -37,7 +38,7 @@ def check_equations(equations: tuple[str, ...], parameters: Mapping[str, float])
     problems = []
     first: dict[str, int] = {}
     for index, text in enumerate(equations):
-        path: Path = ("boundary", "also", index)
+        path: KeyPath = ("boundary", "also", index)
         try:
             parse_equation(text, parameters)
         except FormulaError as error:

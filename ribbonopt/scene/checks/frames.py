@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from itertools import combinations
 
 from ribbonopt.scene.ends import Directors, End, LabVector, Quaternion, Turn, Turns, Value
-from ribbonopt.scene.faults import Path, Problem
+from ribbonopt.scene.faults import KeyPath, Problem
 from ribbonopt.scene.wording import given, written
 
 TOLERANCE = 1e-6
@@ -18,7 +18,7 @@ _AXES = ("x", "y", "z")
 _TURN = "{x: 90*deg}"
 
 
-def check_frame(end: End, path: Path, values: Mapping[Path, float]) -> Iterator[Problem]:
+def check_frame(end: End, path: KeyPath, values: Mapping[KeyPath, float]) -> Iterator[Problem]:
     """Yield contradictions among the directors prescribed at one end."""
     yield from _rotation(end, (*path, "directors"), values)
     whole = end.directors if isinstance(end.directors, Directors) else None
@@ -40,7 +40,7 @@ def check_frame(end: End, path: Path, values: Mapping[Path, float]) -> Iterator[
 
 
 def known(
-    vector: tuple[Value, ...] | LabVector | None, path: Path, values: Mapping[Path, float]
+    vector: tuple[Value, ...] | LabVector | None, path: KeyPath, values: Mapping[KeyPath, float]
 ) -> list[float]:
     """Return the components that are prescribed and have a value; a bad formula tells its own."""
     if isinstance(vector, LabVector):
@@ -51,14 +51,14 @@ def known(
     return [number for number in numbers if number is not None]
 
 
-def number_at(value: Value | None, path: Path, values: Mapping[Path, float]) -> float | None:
+def number_at(value: Value | None, path: KeyPath, values: Mapping[KeyPath, float]) -> float | None:
     """Return a number or the value of a formula; None for what is not given or has no value."""
     if value is None:
         return None
     return values.get(path) if isinstance(value, str) else float(value)
 
 
-def _rotation(end: End, path: Path, values: Mapping[Path, float]) -> Iterator[Problem]:
+def _rotation(end: End, path: KeyPath, values: Mapping[KeyPath, float]) -> Iterator[Problem]:
     match end.directors:
         case Directors() as frame if sum(getattr(frame, name) is not None for name in _NAMES) < 2:
             message = "needs two or three of d1, d2, d3; "
@@ -74,7 +74,7 @@ def _rotation(end: End, path: Path, values: Mapping[Path, float]) -> Iterator[Pr
                 yield from _turn(turn, (*path, "turns", index))
 
 
-def _quaternion(numbers: list[float], path: Path) -> Iterator[Problem]:
+def _quaternion(numbers: list[float], path: KeyPath) -> Iterator[Problem]:
     length = math.hypot(*numbers)
     if len(numbers) == 4 and abs(length - 1) > TOLERANCE:
         unit = [number / length for number in numbers] if length else [1, 0, 0, 0]
@@ -82,7 +82,7 @@ def _quaternion(numbers: list[float], path: Path) -> Iterator[Problem]:
         yield Problem(path, f"has length {length:.6g}, expected 1 (it is no rotation); {example}")
 
 
-def _turn(turn: Turn, path: Path) -> Iterator[Problem]:
+def _turn(turn: Turn, path: KeyPath) -> Iterator[Problem]:
     found = given(turn)
     if len(found) != 1:
         example = ", ".join(written(Turn(**{axis: angle})) for axis, angle in found.items())
@@ -99,7 +99,7 @@ def _not_unit(components: list[float]) -> str:
     return ""
 
 
-def _not_orthonormal(units: Mapping[str, list[float]], path: Path) -> Iterator[Problem]:
+def _not_orthonormal(units: Mapping[str, list[float]], path: KeyPath) -> Iterator[Problem]:
     orthogonal = True
     for first, second in combinations(units, 2):
         product = sum(a * b for a, b in zip(units[first], units[second], strict=True))

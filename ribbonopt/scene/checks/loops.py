@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from ribbonopt.scene.ends import Boundary, End, Loop
-from ribbonopt.scene.faults import Path, Problem
+from ribbonopt.scene.faults import KeyPath, Problem
 from ribbonopt.scene.model import Band, Guess, MoebiusGuess
 from ribbonopt.scene.wording import given, listed, written
 
@@ -26,7 +26,7 @@ def check_loop(loop: Loop, boundary: Boundary, guess: Guess) -> Iterator[Problem
     yield from _guess(loop, guess)
 
 
-def check_piece(loop: Loop | Band, path: Path) -> Iterator[Problem]:
+def check_piece(loop: Loop | Band, path: KeyPath) -> Iterator[Problem]:
     """Yield the piece that a band of no half twist, or of one, does not have."""
     if loop.piece == "fundamental" and abs(loop.half_twists) < 2:
         found = str(loop.half_twists)
@@ -34,7 +34,7 @@ def check_piece(loop: Loop | Band, path: Path) -> Iterator[Problem]:
         yield Problem((*path, "half_twists"), f'{message}for example "piece: half"', found)
 
 
-def _start(loop: Loop, start: End, path: Path) -> Iterator[Problem]:
+def _start(loop: Loop, start: End, path: KeyPath) -> Iterator[Problem]:
     for key in given(start):
         if loop.piece == "fundamental":
             message = "a fundamental piece lies where the symmetry of its loop puts it; remove it"
@@ -52,7 +52,7 @@ def _start(loop: Loop, start: End, path: Path) -> Iterator[Problem]:
 def _guess(loop: Loop, guess: Guess) -> Iterator[Problem]:
     half_twists = loop.half_twists
     if isinstance(guess, MoebiusGuess) and guess.moebius.half_twists != half_twists:
-        path: Path = ("guess", "moebius", "half_twists")
+        path: KeyPath = ("guess", "moebius", "half_twists")
         found = str(guess.moebius.half_twists)
         example = f"half_twists: {half_twists}"
     elif guess == "circle" and half_twists != 0:

@@ -1,88 +1,68 @@
 """What is wrong with the supports of a scene: keys that they lack, contradict or do not know.
 
-Which keys a support needs and takes is data, `RULES`. The frame stands there as `directors`, which
-may as well be given as two or three whole directors.
+What a support needs and takes follows from the parts it is composed of (`scene.supports`). The
+frame stands there as `directors`, which may as well be given as two or three whole directors.
 """
 
 from __future__ import annotations
 
 import math
 from collections.abc import Iterator, Mapping
-from typing import Literal, NamedTuple
+from typing import Literal
 
-from ribbonopt.scene.ends import AnyVector, Boundary, End, LabVector, Support, Triple
-from ribbonopt.scene.faults import Path, Problem
+from ribbonopt.scene.ends import Boundary, End, LabVector, Triple
+from ribbonopt.scene.faults import KeyPath, Problem
+from ribbonopt.scene.supports import EXAMPLES, SUPPORTS, Support
 from ribbonopt.scene.wording import given, listed, written
 
-from .frames import TOLERANCE, known, number_at
+from .frames import known, number_at
+from .support_loads import check_loads
 
 EndName = Literal["start", "end"]
 
-
-class Rule(NamedTuple):
-    """Keys that a support needs, and those that it takes beside them."""
-
-    needs: tuple[str, ...]
-    takes: tuple[str, ...] = ()
-
-    @property
-    def keys(self) -> tuple[str, ...]:
-        """All keys it knows."""
-        return self.needs + self.takes
-
-
-RULES: dict[Support, Rule] = {
-    "clamped": Rule(("position", "directors")),
-    "pinned": Rule(("position",), ("moment",)),
-    "hinged": Rule(("position", "axis", "along"), ("moment",)),
-    "sliding": Rule(("position", "directors", "along"), ("force",)),
-    "free": Rule((), ("force", "moment")),
-    "held": Rule(("distance",), ("moment",)),
-    "flip": Rule(("position", "axis", "along")),
-}
-EXAMPLES = {
-    "position": "position: [0, 0, 0]",
-    "directors": "directors: identity",
-    "axis": "axis: d2",
-    "along": "along: [0, 1, 0]",
-    "distance": "distance: 0.5",
-}
 _ONLY_OF_SUPPORTS = ("axis", "along", "distance")
 _DIRECTORS = ("d1", "d2", "d3")
 _AXES = ("x", "y", "z")
-_HELD = '"end: {support: held, distance: 0.5}"'
 _NO_DIRECTION = 1e-12
 
 
-def check_supports(boundary: Boundary, values: Mapping[Path, float]) -> Iterator[Problem]:
+def check_supports(boundary: Boundary, values: Mapping[KeyPath, float]) -> Iterator[Problem]:
     """Yield what is wrong with the supports of both ends, and with the keys only they use."""
     ends: tuple[tuple[EndName, End], ...] = (("start", boundary.start), ("end", boundary.end))
     for name, end in ends:
-        path: Path = ("boundary", name)
-        if end.support is None:
+        path: KeyPath = ("boundary", name)
+        support = end.declared_support
+        if support is None:
             yield from _without_support(name, end, path)
-        elif end.support == "held" and name == "start":
+        elif support.of_chord and name == "start":
             message = "which only the end can be, by a string from the start; write for example "
-            yield Problem((*path, "support"), message + _HELD, "'held'")
+            yield Problem((*path, "support"), message + _at_end(support), repr(support.name))
         else:
-            yield from _missing(end.support, end, path)
-            yield from _contradicting(name, end.support, end, path)
-            yield from _loads(end.support, end, path, values)
+            yield from _missing(support, end, path)
+            yield from _contradicting(name, support, end, path)
+            yield from check_loads(support, end, path, values)
         yield from _sizes(end, path, values)
-    if boundary.end.support == "held":
-        yield from _start_of_string(boundary.start, ("boundary", "start"))
+    support = boundary.end.declared_support
+    if support is not None and support.of_chord:
+        yield from _start_of_chord(support.name, boundary.start, ("boundary", "start"))
 
 
 def _supports_with(key: str, name: EndName) -> tuple[str, str]:
     """Return the supports that know a key, and an example of one at this end, quoted."""
     key = "directors" if key in _DIRECTORS else key
-    supports = [support for support, rule in RULES.items() if key in rule.keys]
-    if name == "start" and supports == ["held"]:
-        return "held, of the end", _HELD
-    return listed(supports, "or"), f'"support: {supports[0]}"'
+    supports = [support for support in SUPPORTS.values() if key in support.keys]
+    if name == "start" and all(support.of_chord for support in supports):
+        return f"{listed(s.name for s in supports)}, of the end", _at_end(supports[0])
+    return listed((s.name for s in supports), "or"), f'"support: {supports[0].name}"'
 
 
-def _without_support(name: EndName, end: End, path: Path) -> Iterator[Problem]:
+def _at_end(support: Support) -> str:
+    """Return an example of a support that only the end can have, quoted."""
+    keys = ", ".join(EXAMPLES[key] for key in support.needs)
+    return f'"end: {{support: {support.name}, {keys}}}"'
+
+
+def _without_support(name: EndName, end: End, path: KeyPath) -> Iterator[Problem]:
     for key in _ONLY_OF_SUPPORTS:
         if getattr(end, key) is None:
             continue
@@ -91,24 +71,34 @@ def _without_support(name: EndName, end: End, path: Path) -> Iterator[Problem]:
         yield Problem((*path, key), message + example)
 
 
-def _missing(support: Support, end: End, path: Path) -> Iterator[Problem]:
-    lacks = [key for key in RULES[support].needs if getattr(end, key) is None]
+def _missing(support: Support, end: End, path: KeyPath) -> Iterator[Problem]:
+    lacks = [key for key in support.needs if getattr(end, key) is None]
     if "directors" in lacks and (singles := [d for d in _DIRECTORS if getattr(end, d) is not None]):
         lacks.remove("directors")
         yield from _singles(support, end, singles, path)
     if lacks:
-        example = ", ".join(EXAMPLES[key] for key in lacks)
-        message = f'support: {support} needs {listed(lacks)}; add for example "{example}"'
+        example = ", ".join(_example(support, key) for key in lacks)
+        message = f'support: {support.name} needs {listed(lacks)}; add for example "{example}"'
         yield Problem(path, message)
-    if "position" in RULES[support].needs:
-        yield from check_whole_position(f"support: {support} needs", end.position, path)
+    if support.whole_position:
+        yield from check_whole_position(f"support: {support.name} needs", end.position, path)
+    elif support.holds and end.position is not None and {*given(end.position)} != {*support.holds}:
+        message = f"support: {support.name} holds the components {listed(support.holds)} only; "
+        message += f'write for example "{_example(support, "position")}"'
+        yield Problem((*path, "position"), message, written(end.position))
 
 
-def _singles(support: Support, end: End, singles: list[str], path: Path) -> Iterator[Problem]:
+def _example(support: Support, key: str) -> str:
+    if key != "position" or support.whole_position:
+        return EXAMPLES[key]
+    return f"position: {{{', '.join(f'{axis}: 0' for axis in support.holds)}}}"
+
+
+def _singles(support: Support, end: End, singles: list[str], path: KeyPath) -> Iterator[Problem]:
     partial = [name for name in singles if len(given(getattr(end, name))) < 3]
     if len(singles) - len(partial) < 2:
-        message = f"support: {support} needs the whole frame, or two whole directors; write for "
-        example = f'example "directors: identity" in place of {listed(singles)}'
+        message = f"support: {support.name} needs the whole frame, or two whole directors; write "
+        example = f'for example "directors: identity" in place of {listed(singles)}'
         yield Problem(path, message + example)
         return
     for name in partial:
@@ -117,7 +107,7 @@ def _singles(support: Support, end: End, singles: list[str], path: Path) -> Iter
 
 
 def check_whole_position(
-    needs: str, position: Triple | LabVector | None, path: Path
+    needs: str, position: Triple | LabVector | None, path: KeyPath
 ) -> Iterator[Problem]:
     """Yield what a position lacks of its three components, as something `needs` them."""
     found = given(position)
@@ -127,61 +117,19 @@ def check_whole_position(
         yield Problem((*path, "position"), message, written(position))
 
 
-def _contradicting(name: EndName, support: Support, end: End, path: Path) -> Iterator[Problem]:
-    rule = RULES[support]
+def _contradicting(name: EndName, support: Support, end: End, path: KeyPath) -> Iterator[Problem]:
     for key in given(end):
         known_as = "directors" if key in _DIRECTORS else key
-        if key == "support" or known_as in rule.keys:
+        if key == "support" or known_as in support.keys:
             continue
-        message = f"contradicts support: {support}, which takes only {listed(rule.keys)}"
+        message = f"contradicts support: {support.name}, which takes only {listed(support.keys)}"
         if key in ("force", "moment"):
             message += " (this load is a reaction there, or zero)"
         _, example = _supports_with(key, name)
         yield Problem((*path, key), f"{message}; remove it, or write for example {example}")
 
 
-def _loads(
-    support: Support, end: End, path: Path, values: Mapping[Path, float]
-) -> Iterator[Problem]:
-    """Yield loads whose components are not those that the support leaves to be given."""
-    for key in ("force", "moment"):
-        load: Triple | AnyVector | None = getattr(end, key)
-        if load is None or key not in RULES[support].keys:
-            continue
-        if support == "hinged":
-            message = _off_hinge(load, end.axis or "d2")
-        elif support == "sliding":
-            message = _off_line(load, known(end.along, (*path, "along"), values))
-        elif set(given(load)) in (set(_AXES), set(_DIRECTORS)):
-            message = ""
-        else:
-            message = "needs all its components, of one frame; write for example "
-            message += f'"{key}: [0, 0, 0]" or "{key}: {{d1: 0, d2: 0, d3: 0}}"'
-        if message:
-            yield Problem((*path, key), f"support: {support} {message}", written(load))
-
-
-def _off_hinge(moment: Triple | AnyVector, axis: str) -> str:
-    if isinstance(moment, AnyVector) and set(given(moment)) == {axis}:
-        return ""
-    example = f'write for example "moment: {{{axis}: 0}}"'
-    return f"takes the moment about the hinge, {axis}, and no other; {example}"
-
-
-def _off_line(force: Triple | AnyVector, line: list[float]) -> str:
-    """Say what is wrong with a dead load on a slider, of which the part along the line acts."""
-    sizes = dict(zip(_AXES, map(abs, line), strict=True)) if len(line) == 3 else {}
-    longest = max(sizes, key=lambda axis: sizes[axis], default="z")
-    example = f'write for example "force: {{{longest}: 0}}"'
-    found = given(force)
-    if set(found) & set(_DIRECTORS):
-        return f"takes a load in lab components, of which the part along the line acts; {example}"
-    if all(axis in sizes and sizes[axis] < TOLERANCE * sizes[longest] for axis in found):
-        return f"takes the load along the line; {listed(found)} is across it; {example}"
-    return ""
-
-
-def _sizes(end: End, path: Path, values: Mapping[Path, float]) -> Iterator[Problem]:
+def _sizes(end: End, path: KeyPath, values: Mapping[KeyPath, float]) -> Iterator[Problem]:
     """Yield directions and distances of no size."""
     direction = known(end.along, (*path, "along"), values)
     if len(direction) == 3 and math.hypot(*direction) < _NO_DIRECTION:
@@ -193,13 +141,15 @@ def _sizes(end: End, path: Path, values: Mapping[Path, float]) -> Iterator[Probl
         yield Problem((*path, "distance"), message, f"{distance:g}")
 
 
-def _start_of_string(start: End, path: Path) -> Iterator[Problem]:
+def _start_of_chord(support: str, start: End, path: KeyPath) -> Iterator[Problem]:
     """Yield what keeps the start from being the fixed point where a string to the end begins."""
-    what = "support: held at the end is a string from a fixed point, the start"
-    if start.support in ("sliding", "free", "flip"):
-        message = f'{what}, which {start.support} is not; write for example "support: pinned"'
-        yield Problem((*path, "support"), message, repr(start.support))
-    elif start.support is None and start.position is None:
+    own = start.declared_support
+    what = f"support: {support} at the end is a string from a fixed point, the start"
+    if own is not None:
+        if own.holds != "xyz" and not own.of_chord:
+            message = f'{what}, which {own.name} is not; write for example "support: pinned"'
+            yield Problem((*path, "support"), message, repr(own.name))
+    elif start.position is None:
         yield Problem(path, f'{what}; add for example "{EXAMPLES["position"]}"')
-    elif start.support is None:
+    else:
         yield from check_whole_position(f"{what}, and needs", start.position, path)

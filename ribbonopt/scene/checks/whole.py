@@ -11,7 +11,7 @@ from itertools import pairwise
 from typing import Any, get_origin
 
 from ribbonopt.scene.ends import Boundary, Loop
-from ribbonopt.scene.faults import Path, Problem
+from ribbonopt.scene.faults import KeyPath, Problem
 from ribbonopt.scene.loads import Loads
 from ribbonopt.scene.model import Guess, MoebiusGuess, RibbonSizes, Scene
 from ribbonopt.scene.schema.annotations import branches, hints, inside
@@ -29,7 +29,7 @@ def check(scene: Scene) -> list[Problem]:
     formulas = dict(_formulas(boundary, Boundary, ("boundary",)))
     formulas |= _formulas(scene.loads, Loads, ("loads",))
     formulas |= _formulas(scene.guess, Guess, ("guess",))
-    values: dict[Path, float] = {}
+    values: dict[KeyPath, float] = {}
     if formulas or boundary.also or scene.parameters:
         # Imported late: a scene in plain numbers starts without the grammar of formulas.
         from .formulas import check_equations, check_parameters, values_of
@@ -53,7 +53,7 @@ def check(scene: Scene) -> list[Problem]:
         # Imported late: few scenes are continued.
         from .continuation import check_continuation
 
-        problems += check_continuation(scene, sound=not problems)
+        problems += check_continuation(scene, None if problems else check)
     return problems
 
 
@@ -75,7 +75,7 @@ def _switching(switching: tuple[float, ...], interval: tuple[float, float]) -> I
         yield Problem(("switching",), message.format(middle), f"[{found}]")
 
 
-def _formulas(value: Any, annotation: Any, path: Path) -> Iterator[tuple[Path, str]]:
+def _formulas(value: Any, annotation: Any, path: KeyPath) -> Iterator[tuple[KeyPath, str]]:
     """Yield the formulas in a value: texts that stand where the annotation has numbers as well."""
     options = branches(annotation).values()
     if isinstance(value, str):
@@ -103,14 +103,8 @@ def _sizes(ribbon: RibbonSizes) -> Iterator[Problem]:
 def _fits(scene: Scene, ribbon: RibbonSizes) -> Iterator[Problem]:
     start, end = scene.interval
     if end - start > ribbon.length * (1 + 1e-9):
-        fitting = written((start, start + ribbon.length / _pieces(scene.boundary.loop)))
+        loop = scene.boundary.loop or Loop(0)  # without one, all of the ribbon is solved
+        fitting = written((start, start + ribbon.length / loop.pieces))
         message = f"is longer than the ribbon, ribbon.length: {ribbon.length:.12g}; write for "
         example = f'example "interval: {fitting}"'
         yield Problem(("interval",), message + example, written(scene.interval))
-
-
-def _pieces(loop: Loop | None) -> int:
-    """Return how many pieces make the ribbon, one of which is solved."""
-    if loop is None or loop.piece == "whole":
-        return 1
-    return 2 if loop.piece == "half" else 2 * max(abs(loop.half_twists), 1)

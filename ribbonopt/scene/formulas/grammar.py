@@ -14,6 +14,7 @@ from typing import NoReturn
 
 from ribbonopt.errors import SceneError
 from ribbonopt.scene.faults import suggestion
+from ribbonopt.scene.quantities import AT_ENDS, Shape
 
 from .expressions import (
     Binary,
@@ -22,46 +23,14 @@ from .expressions import (
     Node,
     Number,
     Quantity,
-    Shape,
     Unary,
     Vector,
     VectorComponent,
 )
+from .words import AXES, CONSTANTS, FUNCTIONS, SIGNS
 
 _LONGEST = 500
 _DEEPEST = 50
-
-# Each function: the number of its arguments, their shape and the shape of its value.
-_FUNCTIONS: dict[str, tuple[int, Shape, Shape]] = {
-    "sqrt": (1, "scalar", "scalar"),
-    "sin": (1, "scalar", "scalar"),
-    "cos": (1, "scalar", "scalar"),
-    "tan": (1, "scalar", "scalar"),
-    "exp": (1, "scalar", "scalar"),
-    "log": (1, "scalar", "scalar"),
-    "abs": (1, "scalar", "scalar"),
-    "dot": (2, "vector", "scalar"),
-    "cross": (2, "vector", "vector"),
-    "norm": (1, "vector", "scalar"),
-}
-_VECTORS: tuple[str, ...] = ("r", "d1", "d2", "d3", "n", "m")
-_SCALARS: tuple[str, ...] = ("n1", "n2", "n3", "m1", "m2", "m3", "u2", "u3")
-_QUANTITIES: dict[str, Shape] = {
-    **dict.fromkeys(_VECTORS, "vector"),
-    **dict.fromkeys(_SCALARS, "scalar"),
-}
-_AXES = ("ex", "ey", "ez")
-_CONSTANTS = {"pi": math.pi, "deg": math.pi / 180}
-_SIGNS: dict[type[ast.operator], str] = {
-    ast.Add: "+",
-    ast.Sub: "-",
-    ast.Mult: "*",
-    ast.Div: "/",
-    ast.Pow: "**",
-}
-
-RESERVED = frozenset((*_FUNCTIONS, *_QUANTITIES, *_AXES, *_CONSTANTS, "start", "end"))
-"""Words of the grammar, which no parameter may shadow."""
 
 _FOREIGN = re.compile(r"[^A-Za-z0-9_ \t\n.+*/()\[\],=-]")
 _WORD = re.compile(r"[A-Za-z0-9_.]+")
@@ -179,34 +148,34 @@ class Parser:
         name = node.id
         if name in self.names:
             return Name(name, self.names[name])
-        if name in _CONSTANTS:
-            return Number(_CONSTANTS[name])
-        if name in _AXES:
-            x, y, z = (Number(float(axis == name)) for axis in _AXES)
+        if name in CONSTANTS:
+            return Number(CONSTANTS[name])
+        if name in AXES:
+            x, y, z = (Number(float(axis == name)) for axis in AXES)
             return Vector((x, y, z))
         if name == "n" and self.quantities:
             # The force is constant along an unloaded ribbon.
             return Quantity("n", "start", "vector")
-        if name in _QUANTITIES and self.quantities:
+        if name in AT_ENDS and self.quantities:
             self._refuse(node, f"{name!r} needs an end: {name}(start) or {name}(end)")
-        if name in _QUANTITIES and not self.names.keys() & _QUANTITIES:
+        if name in AT_ENDS and not self.names.keys() & AT_ENDS:
             self._refuse(node, f"{name!r} is not known here; a value is numbers and parameters")
-        if name in _FUNCTIONS:
+        if name in FUNCTIONS:
             self._refuse(node, f"{name!r} is a function; write {name}(...)")
-        self._unknown(node, "name", name, [*self.names, *_AXES, *_CONSTANTS])
+        self._unknown(node, "name", name, [*self.names, *AXES, *CONSTANTS])
 
     def _call(self, node: ast.Call, function: str, depth: int, exponent: bool) -> Node:
-        if function in _QUANTITIES and self.quantities:
+        if function in AT_ENDS and self.quantities:
             match node.args:
                 case [ast.Name(id="start" | "end" as end)]:
-                    return Quantity(function, end, _QUANTITIES[function])
+                    return Quantity(function, end, AT_ENDS[function])
             self._refuse(node, f"{function!r} is taken at (start) or (end)")
-        if function in (*self.names, *_AXES, *_CONSTANTS):
+        if function in (*self.names, *AXES, *CONSTANTS):
             self._refuse(node, f"{function!r} is no function; write it without (...)")
-        if function not in _FUNCTIONS:
-            self._unknown(node, "function", function, list(_FUNCTIONS))
+        if function not in FUNCTIONS:
+            self._unknown(node, "function", function, list(FUNCTIONS))
         arguments = [self._node(item, depth + 1, exponent=exponent) for item in node.args]
-        count, taken, given = _FUNCTIONS[function]
+        count, taken, given = FUNCTIONS[function]
         found = [argument.shape for argument in arguments]
         if found != [taken] * count:
             wanted = f"{count} {taken}{'s' if count > 1 else ''}"
@@ -214,9 +183,9 @@ class Parser:
         return Call(function, tuple(arguments), given)
 
     def _binary(self, node: ast.BinOp, depth: int, exponent: bool) -> Node:
-        if type(node.op) not in _SIGNS:
+        if type(node.op) not in SIGNS:
             self._refuse(node, f"found {self._source(node)!r}; the operators are + - * / **")
-        sign = _SIGNS[type(node.op)]
+        sign = SIGNS[type(node.op)]
         left = self._node(node.left, depth + 1, exponent=exponent)
         right = self._node(node.right, depth + 1, exponent=exponent or sign == "**")
         shapes = left.shape, right.shape
@@ -234,7 +203,7 @@ class Parser:
         return Binary(sign, left, right, "vector")
 
     def _unknown(self, node: ast.expr, kind: str, word: str, known: list[str]) -> NoReturn:
-        ends = list(_QUANTITIES) if self.quantities else []
+        ends = list(AT_ENDS) if self.quantities else []
         listed = ", ".join(known) + (f", and {', '.join(ends)} at (start) or (end)" if ends else "")
         near = suggestion(word, [*known, *ends])
         self._refuse(node, f"unknown {kind} {word!r}{near}; known are {listed}")

@@ -2,7 +2,8 @@
 
 They hold numbers, + - * / **, parentheses, pi, deg (pi/180), the lab axes ex, ey, ez, vectors
 [a, b, c], `.x .y .z`, sqrt sin cos tan exp log abs dot cross norm, parameters by name, and in
-equations the vectors r d1 d2 d3 n m and scalars n1 n2 n3 m1 m2 m3 u2 u3 at `(start)` or `(end)`.
+equations the vectors r d1 d2 d3 n m and scalars n1 n2 n3 m1 m2 m3 u1 u2 u3 at
+`(start)` or `(end)`.
 """
 
 from __future__ import annotations
@@ -11,15 +12,15 @@ import math
 from collections.abc import Iterable, Mapping
 from typing import NamedTuple
 
-from .expressions import Node, Number, NumericEnv, Quantity, Shape, evaluate, parts
-from .grammar import RESERVED, FormulaError, Parser
+from ribbonopt.scene.quantities import Shape
+
+from .expressions import Node, Number, Quantity, evaluate, parts
+from .grammar import FormulaError, Parser
+from .numeric import NumericEnv
 
 __all__ = [
-    "RESERVED",
     "EquationFormula",
     "FormulaError",
-    "NumericEnv",
-    "evaluate",
     "evaluate_value",
     "parse_equation",
     "parse_expression",

@@ -1,4 +1,4 @@
-"""Bounds on a number of a scene, written in its type: `Annotated[float, Bounds(gt=0)]`."""
+"""What a type of the scene says beside itself, such as `Annotated[float, Bounds(gt=0)]`."""
 
 from __future__ import annotations
 
@@ -13,3 +13,8 @@ class Bounds:
     ge: float | None = None
     lt: float | None = None
     le: float | None = None
+
+
+@dataclass(frozen=True)
+class InPython:
+    """Marks a class whose instances stand in scenes built in Python; no file can say them."""

@@ -14,10 +14,10 @@ from typing import Annotated, Any, Literal, NamedTuple, get_args, get_origin
 
 from pydantic_core import ErrorDetails
 
-from ribbonopt.scene.faults import Path, Problem, nearest, shown, suggestion
+from ribbonopt.scene.faults import KeyPath, Problem, nearest, shown, suggestion
 
 from .annotations import branches, classes_of, hints, inside, types_of
-from .bounds import Bounds
+from .bounds import Bounds, InPython
 
 _KEY_OF_MAPPING = "[key]"
 
@@ -25,7 +25,7 @@ _KEY_OF_MAPPING = "[key]"
 class _Place(NamedTuple):
     """Where an error is: its path, and the annotations of the value and of what holds it."""
 
-    path: Path
+    path: KeyPath
     annotation: Any
     owner: Any
     union: Any
@@ -42,7 +42,7 @@ def explain(cls: type, errors: Iterable[ErrorDetails]) -> list[Problem]:
         What `ValidationError.errors()` tells.
     """
     placed = [(_place(cls, error), error) for error in errors]
-    excused: set[Path] = set()
+    excused: set[KeyPath] = set()
     for place, error in placed:
         if error["type"] == "unexpected_keyword_argument":
             excused.update((*place.path[:-1], name) for name in _meant(place))
@@ -55,7 +55,7 @@ def explain(cls: type, errors: Iterable[ErrorDetails]) -> list[Problem]:
 
 def _place(cls: type, error: ErrorDetails) -> _Place:
     """Follow the location of an error, which holds tags of unions, as the path does not."""
-    path: Path = ()
+    path: KeyPath = ()
     annotation: Any = cls
     union: Any = None
     owner: Any = None
@@ -115,7 +115,11 @@ def expected(annotation: Any) -> str:
 
 def _expected_of_union(annotation: Any) -> str:
     parts = []
-    members = [branch for branch in branches(annotation).values() if branch is not NoneType]
+    members = [
+        branch
+        for branch in branches(annotation).values()
+        if branch is not NoneType and not any(isinstance(a, InPython) for a in get_args(branch))
+    ]
     types, classes = types_of(annotation), classes_of(annotation).values()
     grouped = bool(types) or len(classes) > 1
     for branch in members:
@@ -154,7 +158,7 @@ def _literals(annotation: Any) -> tuple[Any, ...]:
     return get_args(annotation) if get_origin(annotation) is Literal else ()
 
 
-def _without_type(path: Path, value: dict[str, Any], types: dict[str, str]) -> Problem:
+def _without_type(path: KeyPath, value: dict[str, Any], types: dict[str, str]) -> Problem:
     if "type" not in value:
         return Problem(path, f"missing; expected {_one_of(types)}")
     name = value["type"]

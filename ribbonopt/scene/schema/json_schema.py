@@ -5,7 +5,9 @@ from __future__ import annotations
 from dataclasses import is_dataclass
 from typing import Any, get_args
 
-from pydantic.json_schema import GenerateJsonSchema
+from pydantic.json_schema import GenerateJsonSchema, JsonSchemaValue
+from pydantic_core import PydanticOmit
+from pydantic_core.core_schema import IsInstanceSchema
 
 from .annotations import hints
 from .validation import schema_of
@@ -13,8 +15,15 @@ from .validation import schema_of
 
 def json_schema_of(cls: type) -> dict[str, Any]:
     """Return the JSON schema of a dataclass and of all that it contains."""
-    schema = _tidied(GenerateJsonSchema().generate(schema_of(cls)), _descriptions(cls))
+    schema = _tidied(_Generator().generate(schema_of(cls)), _descriptions(cls))
     return {"$schema": GenerateJsonSchema.schema_dialect, **schema}
+
+
+class _Generator(GenerateJsonSchema):
+    """Leaves out what no file can say."""
+
+    def is_instance_schema(self, schema: IsInstanceSchema) -> JsonSchemaValue:
+        raise PydanticOmit
 
 
 def _descriptions(annotation: Any) -> dict[str, str]:

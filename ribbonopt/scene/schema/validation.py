@@ -19,7 +19,7 @@ from pydantic_core.core_schema import CoreSchema
 from ribbonopt.scene.faults import InvalidSceneError
 
 from .annotations import branches, classes_of, hints, key_of, tag_chooser
-from .bounds import Bounds
+from .bounds import Bounds, InPython
 
 T = TypeVar("T")
 
@@ -66,12 +66,14 @@ def schema_of(annotation: Any, *, type_required: bool = False) -> CoreSchema:
     Parameters
     ----------
     annotation
-        float, int, bool, str, None, Literal, tuple, dict, a dataclass, Annotated with `Bounds`, or
-        a union of those.
+        float, int, bool, str, None, Literal, tuple, dict, a dataclass, Annotated with `Bounds` or
+        `InPython`, or a union of those.
     type_required
         Whether the field `type` of a dataclass must be given because it picks the dataclass.
     """
     origin, arguments = get_origin(annotation), get_args(annotation)
+    if origin is Annotated and isinstance(arguments[1], InPython):
+        return core_schema.is_instance_schema(arguments[0])
     if origin is Annotated and arguments[0] in (float, int):
         return _number(arguments[0], *arguments[1:])
     if annotation in (float, int):

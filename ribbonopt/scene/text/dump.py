@@ -7,8 +7,10 @@ from typing import Any
 
 import yaml
 
+from ribbonopt.errors import SceneError
 from ribbonopt.scene.model import Scene
 from ribbonopt.scene.schema.annotations import key_of
+from ribbonopt.scene.supports import SUPPORTS, Support
 
 from .yamltext import scalar
 
@@ -52,6 +54,8 @@ _Dumper.add_representer(float, _write_float)
 
 
 def _plain(value: Any) -> Any:
+    if isinstance(value, Support):
+        return _name_of(value)
     if is_dataclass(value):
         kept = [member for member in fields(value) if _is_told(member, value)]
         return {key_of(member.name): _plain(getattr(value, member.name)) for member in kept}
@@ -65,3 +69,12 @@ def _is_told(member: Field[Any], owner: Any) -> bool:
     if member.default_factory is not MISSING:
         default = member.default_factory()
     return member.name == "type" or bool(getattr(owner, member.name) != default)
+
+
+def _name_of(support: Support) -> str:
+    if SUPPORTS.get(support.name) != support:
+        raise SceneError(
+            f"support {support.name!r} is declared in Python, which no file can say; name one of "
+            f"{', '.join(SUPPORTS)}, or write the conditions of that end one by one"
+        )
+    return support.name

@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from ribbonopt.errors import SceneError
-from ribbonopt.scene.faults import Path, Place, dotted, shown
+from ribbonopt.scene.faults import KeyPath, Place, dotted, shown
 
 from .yamltext import PlainData, YamlTextError, read
 
@@ -52,9 +52,9 @@ def _parse(text: str) -> tuple[list[str], PlainData]:
         raise SceneError(f"--set {text}: the value is {error}") from None
 
 
-def _put(data: Any, path: list[str], value: Any, text: str) -> Path:
+def _put(data: Any, path: list[str], value: Any, text: str) -> KeyPath:
     """Put a value at a path and return the path with its list indices as numbers."""
-    steps: Path = ()
+    steps: KeyPath = ()
     holder = data
     for depth, name in enumerate(path):
         step = _step(holder, name, steps, text)
@@ -69,7 +69,7 @@ def _put(data: Any, path: list[str], value: Any, text: str) -> Path:
     return steps
 
 
-def _step(holder: Any, name: str, steps: Path, text: str) -> str | int:
+def _step(holder: Any, name: str, steps: KeyPath, text: str) -> str | int:
     where = dotted(steps) or "the scene"
     if isinstance(holder, dict):
         return name

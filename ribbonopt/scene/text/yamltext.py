@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 
 import yaml
 
-from ribbonopt.scene.faults import Path, Place, Problem, shown
+from ribbonopt.scene.faults import KeyPath, Place, Problem, shown
 
 _DEEPEST = 50
 _MOST_VALUES = 100_000
@@ -42,7 +42,7 @@ class PlainData(NamedTuple):
     """What a YAML text says: data, the places of its values, and faults that hide no others."""
 
     data: Any
-    places: dict[Path, Place]
+    places: dict[KeyPath, Place]
     problems: list[Problem]
 
 
@@ -104,7 +104,7 @@ class _Reader:
         self, events: Iterator[Any], problems: list[Problem], anchors: dict[str, Any]
     ) -> None:
         self.events, self.problems, self.anchors = events, problems, anchors
-        self.places: dict[Path, Place] = {}
+        self.places: dict[KeyPath, Place] = {}
         self.values = 0
 
     def document(self) -> PlainData:
@@ -119,7 +119,7 @@ class _Reader:
                 data = self._value(next(self.events), ())
         return PlainData(data, self.places, self.problems)
 
-    def _value(self, event: Any, path: Path) -> Any:
+    def _value(self, event: Any, path: KeyPath) -> Any:
         line = _line_of(event)
         self.places.setdefault(path, Place(line))
         self.values += 1
@@ -143,13 +143,13 @@ class _Reader:
             self.anchors[event.anchor] = data
         return data
 
-    def _sequence(self, path: Path) -> list[Any]:
+    def _sequence(self, path: KeyPath) -> list[Any]:
         items: list[Any] = []
         while not isinstance(event := next(self.events), yaml.SequenceEndEvent):
             items.append(self._value(event, (*path, len(items))))
         return items
 
-    def _mapping(self, path: Path) -> dict[str, Any]:
+    def _mapping(self, path: KeyPath) -> dict[str, Any]:
         data: dict[str, Any] = {}
         while not isinstance(event := next(self.events), yaml.MappingEndEvent):
             line = _line_of(event)
@@ -168,7 +168,7 @@ class _Reader:
                 data[key] = self._value(value_event, place)
         return data
 
-    def _aside(self, event: Any, path: Path) -> Any:
+    def _aside(self, event: Any, path: KeyPath) -> Any:
         """Read what is no value of the scene (a key, a duplicate): its places do not count."""
         aside = _Reader(self.events, self.problems, self.anchors)
         return aside._value(event, (*path, "?"))

@@ -13,15 +13,13 @@ import queue
 import threading
 from collections.abc import Generator, Mapping
 from contextlib import suppress
-from typing import Any
 
+from ribbonopt.plain import Row
 from ribbonopt.studies.machine import cores
 
 from .chunks import Chunk, chunks_of
 from .processes import WorkerProcess
 from .study import Study
-
-Row = dict[str, Any]
 
 
 def run_batch(

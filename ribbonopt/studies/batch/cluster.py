@@ -16,6 +16,7 @@ from uuid import uuid4
 
 from ribbonopt.errors import ConvergenceError, SceneError
 from ribbonopt.output.staging import staged_result
+from ribbonopt.plain import Row
 from ribbonopt.version import VERSION
 
 from .chunks import Chunk
@@ -31,7 +32,6 @@ except ImportError:
         "--scheduler: needs Dask; install it by pip install 'ribbonopt[distributed]'"
     ) from None
 
-Row = dict[str, Any]
 Files = dict[str, bytes]
 PATIENCE = 30.0  # seconds to wait for the first worker
 

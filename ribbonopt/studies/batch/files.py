@@ -14,15 +14,14 @@ from pathlib import Path
 from typing import IO, Any
 
 from ribbonopt.errors import OutputError
+from ribbonopt.output.declared import BATCH_PICTURES, foreign_in
 from ribbonopt.output.staging import beside, replacing, unwritable
+from ribbonopt.plain import Row
 from ribbonopt.studies.lines import whole_lines
 
 from .study import Study
 
 ROWS, TABLE, STUDY, SOLUTIONS = "rows.jsonl", "table.csv", "study.json", "solutions"
-PICTURES = ("report.html", "outcomes.png", "scatter.png")  # what views write beside them
-
-Row = dict[str, Any]
 
 
 class BatchFolder:
@@ -90,10 +89,9 @@ class BatchFolder:
 
     def _claim(self, resume: bool) -> None:
         self.folder.mkdir(parents=True, exist_ok=True)
-        found = sorted(path.name for path in self.folder.iterdir())
-        files = (ROWS, TABLE, STUDY, *PICTURES)
+        files = (ROWS, TABLE, STUDY, *BATCH_PICTURES)
         own = {SOLUTIONS, *files, *(beside(Path(name)).name for name in files)}
-        foreign = [name for name in found if name not in own]
+        foreign = foreign_in(self.folder, own)
         if foreign:
             raise OutputError(
                 f"{self.folder}: holds files that are no batch ({', '.join(foreign[:3])}); choose "
@@ -109,7 +107,7 @@ class BatchFolder:
             self._lock = refused.enter_context(_locked(self.folder / STUDY))
             if (self.folder / STUDY).stat().st_size:
                 self._go_on(str(record["digest"]), resume)
-            elif ROWS in found and (self.folder / ROWS).stat().st_size:
+            elif (self.folder / ROWS).is_file() and (self.folder / ROWS).stat().st_size:
                 raise OutputError(
                     f"{self.folder}: holds rows without {STUDY}, which said of what study; choose "
                     "another folder"

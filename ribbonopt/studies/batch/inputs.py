@@ -14,8 +14,7 @@ from pathlib import Path
 from typing import Any, overload
 
 from ribbonopt.errors import SceneError
-from ribbonopt.scene.faults import InvalidSceneError, Problem, shown, suggestion
-from ribbonopt.scene.faults import Path as Keys
+from ribbonopt.scene.faults import InvalidSceneError, KeyPath, Problem, shown, suggestion
 from ribbonopt.scene.text.yamltext import YamlTextError, read
 
 from .draws import Draws
@@ -25,7 +24,7 @@ Inputs = dict[str, Any]
 
 
 @dataclass(frozen=True)
-class Rows(Sequence[Inputs]):
+class InputRows(Sequence[Inputs]):
     """Inputs of ribbons: how many, which keys they set, and each by its index."""
 
     size: int
@@ -53,17 +52,17 @@ class Rows(Sequence[Inputs]):
         return map(self.at, range(self.size))
 
 
-NOTHING = Rows(1, (), lambda index: {})
+NOTHING = InputRows(1, (), lambda index: {})
 
 
-def rows_of(folder: Path, sweep: Any) -> Rows:
+def rows_of(folder: Path, sweep: Any) -> InputRows:
     """Return the inputs of a `sweep`: the product of all kinds that are given.
 
     Files are looked for in a folder. InvalidSceneError says what is wrong.
     """
     if not isinstance(sweep, dict) or not sweep:
         raise fault((), f"expected one or more of {', '.join(KINDS)}", sweep)
-    parts: dict[str, Rows] = {}
+    parts: dict[str, InputRows] = {}
     for kind, value in sweep.items():
         if kind not in KINDS:
             known = f"unknown kind of sweep; expected {', '.join(KINDS)}"
@@ -78,12 +77,12 @@ def rows_of(folder: Path, sweep: Any) -> Rows:
     return _product(list(parts.values()))
 
 
-def fault(path: Keys, message: str, *found: Any) -> InvalidSceneError:
+def fault(path: KeyPath, message: str, *found: Any) -> InvalidSceneError:
     """Return the error of a key of the study."""
     return InvalidSceneError([Problem(path, message, *(shown(value) for value in found))])
 
 
-def text_of(path: Path, key: Keys = ()) -> str:
+def text_of(path: Path, key: KeyPath = ()) -> str:
     """Return the text of a file, that a key of the study names; SceneError if it cannot be read."""
     try:
         return path.read_text(encoding="utf-8-sig")
@@ -94,7 +93,7 @@ def text_of(path: Path, key: Keys = ()) -> str:
     raise fault(key, message) if key else SceneError(message)
 
 
-def _product(parts: Sequence[Rows]) -> Rows:
+def _product(parts: Sequence[InputRows]) -> InputRows:
     """All combinations, the last part changing fastest."""
     counts = [part.size for part in parts]
 
@@ -105,7 +104,7 @@ def _product(parts: Sequence[Rows]) -> Rows:
         return chosen
 
     keys = tuple(key for part in parts for key in part.keys)
-    return Rows(math.prod(counts), keys, at)
+    return InputRows(math.prod(counts), keys, at)
 
 
 def _digits(index: int, counts: Sequence[int]) -> list[int]:
@@ -116,34 +115,34 @@ def _digits(index: int, counts: Sequence[int]) -> list[int]:
     return digits[::-1]
 
 
-def _grid(_: Path, value: Any) -> Rows:
+def _grid(_: Path, value: Any) -> InputRows:
     axes = _axes("grid", value)
     return _product([_column(key, values) for key, values in axes.items()])
 
 
-def _zip(_: Path, value: Any) -> Rows:
+def _zip(_: Path, value: Any) -> InputRows:
     axes = _axes("zip", value)
     lengths = {key: len(values) for key, values in axes.items()}
     if len(set(lengths.values())) > 1:
         found = ", ".join(f"{key}: {length}" for key, length in lengths.items())
         raise fault(("zip",), f"lists of unequal length ({found}); make them equal")
     count = next(iter(lengths.values()))
-    return Rows(count, tuple(axes), lambda i: {key: values[i] for key, values in axes.items()})
+    return InputRows(count, tuple(axes), lambda i: {key: values[i] for key, values in axes.items()})
 
 
-def _list(_: Path, value: Any) -> Rows:
+def _list(_: Path, value: Any) -> InputRows:
     if not isinstance(value, list) or not all(isinstance(item, dict) for item in value):
         example = "expected a list of mappings such as - {law.epsilon: 0.1}"
         raise fault(("list",), example, value)
     return _table([{str(key): item for key, item in row.items()} for row in value])
 
 
-def _random(_: Path, value: Any) -> Rows:
+def _random(_: Path, value: Any) -> InputRows:
     draws = Draws.read(value)
-    return Rows(draws.count, tuple(draws.over), lambda i: draws.rows[i])
+    return InputRows(draws.count, tuple(draws.over), lambda i: draws.rows[i])
 
 
-def _csv(folder: Path, value: Any) -> Rows:
+def _csv(folder: Path, value: Any) -> InputRows:
     if not isinstance(value, str):
         raise fault(("csv",), "expected the name of a CSV file", value)
     path = folder / value
@@ -177,13 +176,13 @@ def _cell(text: str, where: str) -> Any:
         raise SceneError(f"{where}: found {text!r}, which is {error}") from None
 
 
-def _table(rows: list[Inputs]) -> Rows:
+def _table(rows: list[Inputs]) -> InputRows:
     keys = tuple(dict.fromkeys(key for row in rows for key in row))
-    return Rows(len(rows), keys, rows.__getitem__)
+    return InputRows(len(rows), keys, rows.__getitem__)
 
 
-def _column(key: str, values: Sequence[Any]) -> Rows:
-    return Rows(len(values), (key,), lambda i: {key: values[i]})
+def _column(key: str, values: Sequence[Any]) -> InputRows:
+    return InputRows(len(values), (key,), lambda i: {key: values[i]})
 
 
 def _axes(kind: str, value: Any) -> dict[str, Sequence[Any]]:
@@ -193,7 +192,7 @@ def _axes(kind: str, value: Any) -> dict[str, Sequence[Any]]:
     return {str(key): _values((kind, key), item) for key, item in value.items()}
 
 
-def _values(path: Keys, item: Any) -> Sequence[Any]:
+def _values(path: KeyPath, item: Any) -> Sequence[Any]:
     """Values of one key: a list, or numbers evenly spaced between two, or between two powers."""
     if isinstance(item, list):
         return item
@@ -206,7 +205,7 @@ def _values(path: Keys, item: Any) -> Sequence[Any]:
     raise fault(path, example, item)
 
 
-KINDS: Mapping[str, Callable[[Path, Any], Rows]] = {
+KINDS: Mapping[str, Callable[[Path, Any], InputRows]] = {
     "grid": _grid,
     "zip": _zip,
     "list": _list,

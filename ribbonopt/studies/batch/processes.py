@@ -12,10 +12,11 @@ from collections.abc import Iterator, Mapping, Sequence
 from contextlib import suppress
 from typing import Any
 
+from ribbonopt.plain import Row
+
 from .chunks import Chunk
 from .study import StudyRibbon
 
-Row = dict[str, Any]
 LOST = ("crashed", "timed_out")  # statuses of ribbons that took their worker with them
 STARTING = 60.0  # seconds that a new process may take before its first ribbon is counted
 ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}

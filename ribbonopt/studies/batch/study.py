@@ -12,15 +12,15 @@ from typing import Any, Literal
 
 from ribbonopt.errors import SceneError
 from ribbonopt.scene import Scene
+from ribbonopt.scene.quantities import ANSWERS
 from ribbonopt.scene.yamlio import loads_scene
 
-from .inputs import NOTHING, Inputs, Rows
+from .inputs import NOTHING, InputRows, Inputs
 
 PAIR = re.compile(r"\\u(d[89ab][0-9a-f]{2})\\u(d[c-f][0-9a-f]{2})")
 #: of every row; a ribbon that failed has some of them only
 COLUMNS = (
-    *("number", "scene", "status", "verified", "energy", "H0"),
-    *("n0x", "n0y", "n0z", "m0x", "m0y", "m0z", "u2", "u3", "error"),
+    *("number", "scene", "status", "verified", *ANSWERS, "error"),
     *("start", "iterations", "path", "message", "seconds"),
 )
 
@@ -42,7 +42,7 @@ class Sweep:
 
     source: Source
     common: Inputs = field(default_factory=dict)
-    inputs: Rows = NOTHING
+    inputs: InputRows = NOTHING
     where: Mapping[str, str] = field(default_factory=dict)
 
     def check(self) -> str:

@@ -25,8 +25,7 @@ from typing import Any
 
 from ribbonopt.errors import SceneError
 from ribbonopt.plain import is_number
-from ribbonopt.scene.faults import InvalidSceneError, Place, dotted, report, suggestion
-from ribbonopt.scene.faults import Path as Keys
+from ribbonopt.scene.faults import InvalidSceneError, KeyPath, Place, dotted, report, suggestion
 from ribbonopt.scene.yamlio import plain_yaml, read_yaml
 
 from .inputs import NOTHING, Inputs, fault, rows_of, text_of
@@ -88,7 +87,7 @@ def _files(path: str) -> list[Path]:
 
 
 def _study(
-    file: Path, text: str, data: dict[str, Any], places: Mapping[Keys, Place], common: Inputs
+    file: Path, text: str, data: dict[str, Any], places: Mapping[KeyPath, Place], common: Inputs
 ) -> list[Sweep]:
     for key in data:
         if key not in KEYS:
@@ -131,7 +130,7 @@ def _study(
     ]
 
 
-def _source(file: Path, text: str, item: Any, places: Mapping[Keys, Place]) -> Source:
+def _source(file: Path, text: str, item: Any, places: Mapping[KeyPath, Place]) -> Source:
     if isinstance(item, str):
         path = file.parent / item
         return Source(str(path), text_of(path, ("scene",)))

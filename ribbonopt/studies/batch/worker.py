@@ -20,7 +20,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 from ribbonopt.errors import ModelError, RibbonoptError
 from ribbonopt.pipeline.prepared import Prepared, prepare
-from ribbonopt.plain import finite
+from ribbonopt.plain import Row, finite
 from ribbonopt.problem import Posed
 from ribbonopt.scene import Scene, loads_scene
 from ribbonopt.solution.solution import Solution
@@ -28,7 +28,6 @@ from ribbonopt.studies.continuation.recorded import error_of, numbers_of, sample
 
 from .family import Family, solve_beside
 
-Row = dict[str, Any]
 WATCH = 2.0  # seconds between two looks whether the batch is still there
 
 
@@ -109,7 +108,7 @@ def _recorded(found: Solution, row: Row) -> Row:
     for name in scene.record:
         if name in row:
             raise ModelError(f"record.{name}: every row has that already; choose another name")
-    from ribbonopt.scene.checks.continuation import parse_record  # formulas, which few need
+    from ribbonopt.scene.stages import parse_record  # formulas, which few need
 
     return sampled(found, {name: parse_record(text, scene) for name, text in scene.record.items()})
 

@@ -20,10 +20,11 @@ from ribbonopt.pipeline.prepared import Prepared
 from ribbonopt.scene import Scene
 from ribbonopt.studies.machine import machine
 
-from .compare import TOLERANCES, UNKNOWN, Numbers, Reference, fine_solves, reference_of, truth_of
+from .compare import TOLERANCES
 from .measure import Measurement, Profile, cost_of, errors_of, measure
 from .pairs import Mesh, Pair, pairs_of
-from .rows import Row, cheapest, row_of
+from .rows import PairRow, cheapest, row_of
+from .truth import UNKNOWN, Numbers, Reference, fine_solves, reference_of, truth_of
 
 # Relative errors between which a slope is an order.
 ROUNDING, COARSE = 1e-12, 1e-1
@@ -67,7 +68,7 @@ class Benchmark:
     name: str
     truth: str
     repeat: int
-    rows: tuple[Row, ...]
+    rows: tuple[PairRow, ...]
     rivals: tuple[PeerRow, ...]
 
     @property
@@ -144,7 +145,7 @@ def benchmark(
     return Benchmark(scene.name, source, repeat, rows, rivals)
 
 
-def slopes_of(rows: Sequence[Row]) -> tuple[Slope, ...]:
+def slopes_of(rows: Sequence[PairRow]) -> tuple[Slope, ...]:
     """Measured order of every pair and degree, by least squares."""
     groups: dict[tuple[str, int], list[tuple[float, float]]] = {}
     for row in rows:
@@ -205,7 +206,7 @@ def _timed(
     return [median(s) if s else None for s in ours], [median(s) for s in theirs]
 
 
-def _with_time(row: Row, seconds: float | None) -> Row:
+def _with_time(row: PairRow, seconds: float | None) -> PairRow:
     return row if seconds is None else replace(row, solve=seconds)
 
 

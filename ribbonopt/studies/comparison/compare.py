@@ -13,48 +13,23 @@ from dataclasses import dataclass, replace
 from statistics import median
 from typing import Any
 
-import numpy as np
-
 from ribbonopt.output.summary import versions
 from ribbonopt.pipeline.prepared import Prepared
-from ribbonopt.scene import Collocation, Scene
+from ribbonopt.scene import Scene
 from ribbonopt.studies.machine import machine
 
-from .measure import Measurement, Profile, cost_of, errors_of, measure
+from .measure import Measurement, cost_of, errors_of, measure
 from .pairs import Pair, pairs_of
-from .rows import Cheapest, Row, cheapest, row_of
+from .rows import Cheapest, PairRow, cheapest, row_of
+from .truth import UNKNOWN, Reference, Truth, fine_solves, reference_of, truth_of
 
 TOLERANCES = (1e-4, 1e-6, 1e-8, 1e-10)
-FINE = Pair("inverted", "reduced", "gauss")
-FINE_INTERVALS = (24, 96, 384)
 # Seconds after which a pair climbs no further, and unverified solves in a row after which it gives
 # up: coarse meshes may fail where finer ones do not.
 PATIENCE = 3.0
 FAILURES = 4
 # Rows up to NEAR times as slow as the quickest are timed again, ROUNDS times.
 NEAR, ROUNDS = 3.0, 7
-
-UNKNOWN = "unknown: nothing solved"
-
-Numbers = Sequence[float]
-
-
-@dataclass(frozen=True)
-class Reference:
-    """Known n, m (lab frame, units of the scene) at the start, and where they come from."""
-
-    n0: Numbers
-    m0: Numbers
-    source: str = "the reference given"
-
-
-@dataclass(frozen=True, eq=False)
-class Truth:
-    """What errors are measured against, where it comes from, and how well it is known."""
-
-    profile: Profile
-    source: str
-    error: float = 0.0
 
 
 @dataclass(frozen=True)
@@ -71,7 +46,7 @@ class Comparison:
         Relative error of the truth itself, as far as is known.
     tolerances : tuple of float
         Relative errors of n(0), m(0) that were wanted.
-    rows : tuple of Row
+    rows : tuple of PairRow
         One for each solve.
     """
 
@@ -79,7 +54,7 @@ class Comparison:
     truth: str
     truth_error: float
     tolerances: tuple[float, ...]
-    rows: tuple[Row, ...]
+    rows: tuple[PairRow, ...]
 
     @property
     def cheapest(self) -> tuple[Cheapest, ...]:
@@ -157,49 +132,9 @@ def compare(
     return Comparison(scene.name, source, error, wanted, tuple(rows))
 
 
-def reference_of(scene: Scene) -> Reference | None:
-    """Return the truth that a scene states, if it does."""
-    known = scene.reference
-    return None if known is None else Reference(known.n0, known.m0, "the reference of the scene")
-
-
-def fine_solves(scene: Scene, wanted: float) -> list[Measurement]:
-    """Solve the inverted form on fine meshes until its own estimate is well below what is wanted.
-
-    Where m2 changes sign the order is low and the first mesh is not enough.
-    """
-    found = []
-    for intervals in FINE_INTERVALS:
-        mesh = Collocation(scheme="gauss", degree=10, intervals=intervals)
-        found.append(measure(FINE, scene, mesh, repeat=1)[0])
-        if found[-1].refused or (found[-1].estimate or 1.0) < wanted / 10:
-            break
-    return found
-
-
-def truth_of(found: Sequence[Measurement], reference: Reference | None = None) -> Truth | None:
-    """Return the reference, or the verified solution whose own estimate is smallest.
-
-    A reference says nothing of u along s: that comes from the best solution in any case.
-    """
-    best, profile = None, None
-    for one in found:
-        if one.verified and one.estimate is not None and one.profile is not None:
-            if best is None or one.estimate < (best.estimate or 0.0):
-                best, profile = one, one.profile
-    if best is None or profile is None:
-        return None
-    if reference is None:
-        row = row_of(best, None)
-        source = f"{row.name}, {row.mesh}, by its own estimate within {best.estimate:.0e}"
-        return Truth(profile, source, best.estimate or 0.0)
-    given = replace(profile, n0=np.array(reference.n0), m0=np.array(reference.m0))
-    return Truth(given, reference.source)
-
-
 def _leaders_again(
-    rows: list[Row], built: Sequence[Prepared | None], tolerances: Iterable[float]
-) -> list[Row]:
+    rows: list[PairRow], built: Sequence[Prepared | None], tolerances: Iterable[float]
+) -> list[PairRow]:
     """Time those that might be cheapest again, interleaved: a busy machine should not decide."""
     leaders: set[int] = set()
     for tolerance in tolerances:

@@ -3,14 +3,19 @@
 from __future__ import annotations
 
 import csv
-import json
 from pathlib import Path
 
 from ribbonopt.errors import OutputError
+from ribbonopt.plain import json_text
 
 from .benchmark import Benchmark
 from .compare import Comparison
 from .rows import COLUMNS
+
+
+def files_of(name: str) -> tuple[str, ...]:
+    """Return the files that a folder of a study holds: table, numbers, figure."""
+    return tuple(f"{name}.{kind}" for kind in ("csv", "json", "png"))
 
 
 def save_study(study: Comparison | Benchmark, folder: str | Path, name: str) -> None:
@@ -27,7 +32,6 @@ def save_study(study: Comparison | Benchmark, folder: str | Path, name: str) -> 
             writer = csv.DictWriter(file, COLUMNS, lineterminator="\n")
             writer.writeheader()
             writer.writerows(row.plain() for row in study.rows)
-        text = json.dumps(study.plain(), indent=2, allow_nan=False)
-        (folder / f"{name}.json").write_text(text + "\n", encoding="utf-8")
+        (folder / f"{name}.json").write_text(json_text(study.plain()), encoding="utf-8")
     except OSError as error:
         raise OutputError(f"{folder}: cannot be written ({error.strerror})") from error

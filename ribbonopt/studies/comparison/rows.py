@@ -13,7 +13,7 @@ from .measure import Measurement, Profile, errors_of
 
 
 @dataclass(frozen=True)
-class Row:
+class PairRow:
     """One solve, compared with the truth; None where not known.
 
     Attributes
@@ -89,10 +89,10 @@ class Row:
         return {"pair": self.name} | asdict(self) | {"error": self.error}
 
 
-COLUMNS = ("pair", *(f.name for f in fields(Row)), "error")
+COLUMNS = ("pair", *(f.name for f in fields(PairRow)), "error")
 
 
-def row_of(found: Measurement, truth: Profile | None) -> Row:
+def row_of(found: Measurement, truth: Profile | None) -> PairRow:
     """Return the row of a measurement, its errors against the truth."""
     mesh = found.mesh
     # Shooting by an explicit scheme has no degree, collocation no steps.
@@ -101,7 +101,7 @@ def row_of(found: Measurement, truth: Profile | None) -> Row:
     if found.profile is not None and truth is not None:
         values |= errors_of(found.profile, truth)
     values |= {"estimate": found.estimate}
-    return Row(
+    return PairRow(
         formulation=found.pair.formulation,
         states=found.pair.states,
         transcription=found.pair.transcription,
@@ -123,8 +123,8 @@ class Cheapest:
     """
 
     tolerance: float
-    winner: Row | None
-    runner_up: Row | None
+    winner: PairRow | None
+    runner_up: PairRow | None
 
     @property
     def ratio(self) -> float | None:
@@ -157,7 +157,7 @@ class Cheapest:
         }
 
 
-def cheapest(rows: Sequence[Row], tolerance: float) -> Cheapest:
+def cheapest(rows: Sequence[PairRow], tolerance: float) -> Cheapest:
     """Find the quickest pair within a tolerance, and the next."""
     good = sorted((row for row in rows if row.meets(tolerance)), key=_time)
     winner = good[0] if good else None
@@ -165,9 +165,9 @@ def cheapest(rows: Sequence[Row], tolerance: float) -> Cheapest:
     return Cheapest(tolerance, winner, others[0] if others else None)
 
 
-def _time(row: Row) -> float:
+def _time(row: PairRow) -> float:
     return math.inf if row.solve is None else row.solve
 
 
-def _cost(row: Row) -> str:
+def _cost(row: PairRow) -> str:
     return f"{1e3 * _time(row):.1f} ms ({row.mesh})"

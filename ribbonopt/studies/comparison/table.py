@@ -6,7 +6,7 @@ from collections.abc import Iterable, Mapping, Sequence
 
 from .benchmark import Benchmark
 from .compare import Comparison
-from .rows import Row
+from .rows import PairRow
 
 HEAD = (
     *("pair", "mesh", "unknowns", "nonzeros", "iter"),
@@ -70,16 +70,16 @@ def aligned(rows: Sequence[Sequence[str]], left: int = LEFT) -> list[str]:
     return lines
 
 
-def _finest(rows: Iterable[Row]) -> list[Row]:
+def _finest(rows: Iterable[PairRow]) -> list[PairRow]:
     """Last row of each pair: that which met the tightest tolerance, or came closest to it."""
-    last: dict[str, Row] = {}
+    last: dict[str, PairRow] = {}
     for row in rows:
         if row.verified or row.name not in last or not last[row.name].verified:
             last[row.name] = row
     return list(last.values())
 
 
-def _cells(row: Row) -> tuple[str, ...]:
+def _cells(row: PairRow) -> tuple[str, ...]:
     counts = (row.unknowns, row.nonzeros, row.iterations)
     times = (row.build, row.evaluate, row.linear, row.solve)
     values = row.plain()
@@ -93,7 +93,7 @@ def _cells(row: Row) -> tuple[str, ...]:
     )
 
 
-def _mesh(row: Row) -> str:
+def _mesh(row: PairRow) -> str:
     sizes: Mapping[str, int] = {"": row.degree, "x": row.intervals}
     text = "".join(f"{sign}{size}" for sign, size in sizes.items() if size)
     return f"{text}x{row.steps}" if row.steps > 1 else text

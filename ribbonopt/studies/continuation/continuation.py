@@ -18,8 +18,8 @@ from ribbonopt.errors import ConvergenceError, ModelError
 from ribbonopt.pipeline.prepared import Prepared, prepare
 from ribbonopt.problem import BoundaryValueProblem
 from ribbonopt.scene import Scene
-from ribbonopt.scene.checks.continuation import stages_of
 from ribbonopt.scene.lens import value_at
+from ribbonopt.scene.stages import stages_of
 from ribbonopt.solution.solution import Solution
 from ribbonopt.solvers import Status
 

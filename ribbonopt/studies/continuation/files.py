@@ -14,6 +14,7 @@ from pathlib import Path
 from typing import Any
 
 from ribbonopt.errors import OutputError
+from ribbonopt.output.declared import BRANCH_PICTURES, foreign_in
 from ribbonopt.output.staging import beside, replacing, unwritable
 from ribbonopt.scene import Scene, dump_scene, load_scene
 from ribbonopt.studies.lines import whole_lines
@@ -24,7 +25,6 @@ from .points import POINT, Point
 from .stored import Stored, state_of
 
 FILE, TABLE, SCENE = "branch.jsonl", "branch.csv", "scene.yaml"
-FIGURES = ("branch.png", "ribbons.png")
 
 
 class BranchFolder:
@@ -42,11 +42,11 @@ class BranchFolder:
         self.folder, self.scene = Path(folder), scene
         self.lines: list[dict[str, Any]] = []
         files = (FILE, SCENE)
-        own = {TABLE, *FIGURES, *files, *(beside(Path(name)).name for name in files)}
+        own = {TABLE, *BRANCH_PICTURES, *files, *(beside(Path(name)).name for name in files)}
         try:
             self.folder.mkdir(parents=True, exist_ok=True)
             found = sorted(path.name for path in self.folder.iterdir())
-            foreign = [name for name in found if name not in own]
+            foreign = foreign_in(self.folder, own)
             if foreign:
                 raise OutputError(
                     f"{folder}: holds files that are no branch ({', '.join(foreign[:3])}); choose "

@@ -11,19 +11,17 @@ from ribbonopt.accuracy.estimate import relative_error
 from ribbonopt.errors import ModelError
 from ribbonopt.plain import finite
 from ribbonopt.scene import Continuation, Scene
-from ribbonopt.scene.checks.continuation import parse_record, parse_stop, stages_of, words_of
+from ribbonopt.scene.quantities import ANSWERS
+from ribbonopt.scene.stages import parse_record, parse_stop, stages_of, words_of
 from ribbonopt.solution.sampling import evaluate_formula
 from ribbonopt.solution.solution import Solution
 
 from .curve import Curve
 from .points import POINT, Point
 
-Row = Mapping[str, Any]
-
-
 #: numbers that every row has, besides what the scene records
 NUMBERS = (
-    *("value", "error", "energy", "H0", "n0x", "n0y", "n0z", "m0x", "m0y", "m0z", "u2", "u3"),
+    *("value", "error", *ANSWERS),
     *("number", "stage", "branch", "negative", "intervals", "iterations"),
 )
 
@@ -120,7 +118,7 @@ def numbers_of(solution: Solution) -> dict[str, float]:
     return row | {"u2": float(solution.u0[1]), "u3": float(solution.u0[2])}
 
 
-def stopped(row: Row, stage: Continuation) -> str:
+def stopped(row: Mapping[str, Any], stage: Continuation) -> str:
     """Return the condition of a stage that a row meets, "" if none."""
     values = {
         name: np.array([float(value)])

@@ -32,7 +32,7 @@ from ribbonopt.scene import (
     Regularized,
     Sadowsky,
     Scene,
-    Support,
+    SupportName,
     Turn,
     Turns,
     Variational,
@@ -40,9 +40,9 @@ from ribbonopt.scene import (
 from ribbonopt.solution.solution import Solution
 
 Array = np.ndarray
-SUPPORTS: tuple[Support, ...] = get_args(Support)
-AT_START = tuple(s for s in SUPPORTS if s != "held")
-each_support = pytest.mark.parametrize("support", SUPPORTS)
+NAMES: tuple[SupportName, ...] = get_args(SupportName)
+AT_START = tuple(s for s in NAMES if s != "held")
+each_support = pytest.mark.parametrize("support", NAMES)
 each_seed = pytest.mark.parametrize("seed", range(2))
 each_model = pytest.mark.parametrize("states", ["reduced", "full"])
 
@@ -99,7 +99,7 @@ class Case:
         return Scene("support", Variational(delta=0.1), Boundary(*ends))
 
 
-def case(support: Support, at: int, seed: int) -> Case:
+def case(support: SupportName, at: int, seed: int) -> Case:
     """Return a support at random; all that it does not ask of the state is random."""
     rng = np.random.default_rng(seed)
     r, (n, m) = rng.uniform(-1, 1, (2, 3)), rng.uniform(-5, 5, (2, 3))
@@ -140,15 +140,15 @@ def case(support: Support, at: int, seed: int) -> Case:
     return Case(end, State(r, frames, n, m, at), basis)
 
 
-def cases() -> list[tuple[Support, int]]:
-    return [*((s, 0) for s in AT_START), *((s, 1) for s in SUPPORTS)]
+def cases() -> list[tuple[SupportName, int]]:
+    return [*((s, 0) for s in AT_START), *((s, 1) for s in NAMES)]
 
 
 each_case = pytest.mark.parametrize(("support", "at"), cases())
 
 
 @cache
-def functions(support: Support, at: int, seed: int, states: str) -> tuple[Any, list[str], int]:
+def functions(support: SupportName, at: int, seed: int, states: str) -> tuple[Any, list[str], int]:
     """Residuals and verdicts of a case at a state, names, and how many speak of no loads."""
     scene = replace(case(support, at, seed).scene, states=states)
     posed = Posed.of(scene)
@@ -179,7 +179,7 @@ def functions(support: Support, at: int, seed: int, states: str) -> tuple[Any, l
 @each_seed
 @each_case
 def test_ends_that_meet_a_support_have_no_residual(
-    support: Support, at: int, seed: int, states: str
+    support: SupportName, at: int, seed: int, states: str
 ) -> None:
     residuals, names, _ = functions(support, at, seed, states)
     values, verdicts = residuals(case(support, at, seed).state)
@@ -189,7 +189,7 @@ def test_ends_that_meet_a_support_have_no_residual(
 
 
 @each_case
-def test_a_support_makes_six_conditions_of_its_own_end(support: Support, at: int) -> None:
+def test_a_support_makes_six_conditions_of_its_own_end(support: SupportName, at: int) -> None:
     name = ("start", "end")[at]
     _, names, _ = functions(support, at, 0, "reduced")
     assert sum(n.startswith(f"boundary.{name}.") for n in names) == 6
@@ -199,7 +199,7 @@ def test_a_support_makes_six_conditions_of_its_own_end(support: Support, at: int
 @each_seed
 @each_case
 def test_loads_that_vanish_are_those_that_work_on_what_is_free(
-    support: Support, at: int, seed: int, states: str
+    support: SupportName, at: int, seed: int, states: str
 ) -> None:
     # Motions that the support leaves free times the reactions that it can bear: no work, and
     # together as many as there are components. Then minima of the energy are equilibria.
@@ -243,7 +243,7 @@ OFF = {
 @pytest.mark.parametrize("change", ["move", "turn", "force", "moment"])
 @pytest.mark.parametrize("across", [False, True])
 def test_a_support_opposes_what_it_holds_and_nothing_else(
-    support: Support, at: int, change: str, across: bool
+    support: SupportName, at: int, change: str, across: bool
 ) -> None:
     residuals, *_ = functions(support, at, 1, "reduced")
     this = case(support, at, 1)
@@ -266,7 +266,7 @@ def test_a_support_opposes_what_it_holds_and_nothing_else(
 
 
 @pytest.mark.parametrize("support", ["hinged", "flip"])
-def test_a_hinge_turned_by_half_a_turn_is_a_root_but_no_answer(support: Support) -> None:
+def test_a_hinge_turned_by_half_a_turn_is_a_root_but_no_answer(support: SupportName) -> None:
     residuals, *_ = functions(support, 1, 0, "reduced")
     this = case(support, 1, 0)
     turned = this.state.turned(np.pi * this.basis[:, 1])

@@ -7,7 +7,7 @@ import numpy as np
 import pytest
 
 from ribbonopt.errors import OutputError
-from ribbonopt.output import results
+from ribbonopt.output import exports
 from ribbonopt.output.results import load_solution, save_solution
 from ribbonopt.output.staging import staged_result
 from ribbonopt.pipeline.prepared import prepare, solve
@@ -128,7 +128,7 @@ def test_failure_while_writing_leaves_the_old_result(
     def fail(_: object) -> str:
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(results, victim, fail)
+    monkeypatch.setattr(exports, victim, fail)
     with pytest.raises(KeyboardInterrupt):
         store(solved("helix"), saved)
     assert contents(saved) == before

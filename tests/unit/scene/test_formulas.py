@@ -8,12 +8,11 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from ribbonopt.errors import SceneError
-from ribbonopt.scene.formulas.expressions import Binary, Name, Number, Quantity, parts
+from ribbonopt.scene.formulas.expressions import Binary, Name, Number, Quantity, evaluate, parts
+from ribbonopt.scene.formulas.numeric import NumericEnv
 from ribbonopt.scene.formulas.parsing import (
     EquationFormula,
     FormulaError,
-    NumericEnv,
-    evaluate,
     evaluate_value,
     parse_equation,
     parse_expression,

@@ -5,12 +5,9 @@ import math
 from pathlib import Path
 from typing import Any
 
-import casadi as ca
 import pytest
 
 from ribbonopt.errors import SceneError
-from ribbonopt.mechanics.outputs import outputs
-from ribbonopt.problem import Posed, Ribbon
 from ribbonopt.scene import (
     AnyVector,
     Boundary,
@@ -35,11 +32,11 @@ from ribbonopt.scene import (
     loads_scene,
     validate_scene,
 )
-from ribbonopt.scene.checks.continuation import OUTPUTS, parse_record, parse_stop, stages_of
 from ribbonopt.scene.faults import InvalidSceneError
 from ribbonopt.scene.formulas.parsing import FormulaError
 from ribbonopt.scene.lens import fault_of, paths_of, value_at, with_value
 from ribbonopt.scene.schema.validation import validate
+from ribbonopt.scene.stages import parse_record, parse_stop, stages_of
 
 HEAD = """\
 name: arch
@@ -292,16 +289,6 @@ def test_stops_parsed() -> None:
     assert parse_stop(" deflection<-0.2*pull ") == ("deflection", "<", "-0.2*pull")
     with pytest.raises(FormulaError, match="no sign"):
         parse_stop("energy")
-
-
-def test_records_know_what_a_solution_has() -> None:
-    ribbon = Ribbon.of(Posed.of(scene()))
-    x, c = (ca.SX.sym("x", len(names)) for names in (ribbon.model.states, ribbon.model.constants))
-    section = ribbon.section(x, c)
-    had = outputs(section, ribbon.law, section.u)
-    checks = ("law_residual", "orthonormality")
-    shapes = {1: "scalar", 3: "vector"}
-    assert {name: shapes[had[name].numel()] for name in had if name not in checks} == OUTPUTS
 
 
 SEEN = Scene(

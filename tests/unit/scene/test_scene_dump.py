@@ -110,7 +110,7 @@ loose = st.one_of(
     st.builds(room.End, st.just("flip"), triples, axis=st.just("d1"), along=along),
 )
 loops = st.builds(room.Loop, st.integers(), st.sampled_from(["whole", "half"])) | st.builds(
-    room.Loop, st.integers(max_value=-1), st.just("fundamental")
+    room.Loop, st.integers(max_value=-2), st.just("fundamental")
 )
 boundaries = st.one_of(
     st.builds(room.Boundary, supports, supports | loose | held),

@@ -1,6 +1,8 @@
 """Supports, rotations, loops, guesses and sizes that a scene cannot have, and those it can."""
 
 import math
+from dataclasses import fields
+from pathlib import Path
 from typing import Any, get_args
 
 import pytest
@@ -25,13 +27,15 @@ from ribbonopt.scene import (
     RotationVector,
     Sadowsky,
     Scene,
-    Support,
+    SupportName,
     Turn,
     Turns,
+    json_schema,
     validate_scene,
 )
-from ribbonopt.scene.checks.supports import EXAMPLES, RULES
+from ribbonopt.scene.supports import EXAMPLES, SUPPORTS
 
+README = Path(__file__).parents[3] / "README.md"
 POINT = (0.0, 0.0, 0.0)
 FIXED = End(position=POINT)
 FREE = End()
@@ -49,14 +53,14 @@ GIVEN: dict[str, Any] = {
     "moment": POINT,
 }
 SINGLES = ("d1", "d2", "d3")
-SUPPORTS: tuple[Support, ...] = get_args(Support)
+NAMES: tuple[SupportName, ...] = get_args(SupportName)
 SIZES = RibbonSizes(1.0, 0.1, 1e-3, 2e9, 0.3)
-each_support = pytest.mark.parametrize("support", SUPPORTS)
+each_support = pytest.mark.parametrize("support", NAMES)
 
 
-def supported(support: Support, **more: Any) -> End:
+def supported(support: SupportName, **more: Any) -> End:
     """Return an end with a support, all keys that it needs, and more."""
-    return End(support, **{key: GIVEN[key] for key in RULES[support].needs} | more)
+    return End(support, **{key: GIVEN[key] for key in SUPPORTS[support].needs} | more)
 
 
 def scene(end: End = FREE, start: End = FIXED, *, loop: Any = None, **values: Any) -> Scene:
@@ -79,13 +83,21 @@ def refusal(path: str, *ends: End, **values: Any) -> str:
     return messages[path]
 
 
-def test_every_support_has_a_rule_with_an_example_of_each_need() -> None:
-    assert set(RULES) == set(SUPPORTS)
-    assert set(EXAMPLES) == {key for rule in RULES.values() for key in rule.needs}
+def test_names_are_those_of_the_declarations() -> None:
+    assert tuple(SUPPORTS) == NAMES
+    assert set(EXAMPLES) == {key for support in SUPPORTS.values() for key in support.keys}
+    assert {f.name for f in fields(End)} == {"support", *SINGLES, *EXAMPLES}
 
 
 @each_support
-def test_a_support_is_content_with_what_it_needs(support: Support) -> None:
+def test_readme_and_editors_tell_of_every_support(support: SupportName) -> None:
+    assert f"| `{support}` |" in README.read_text(encoding="utf-8")
+    keys = json_schema()["properties"]["boundary"]["properties"]["end"]["properties"]
+    assert f"{support}: {SUPPORTS[support].says}" in keys["support"]["description"]
+
+
+@each_support
+def test_a_support_is_content_with_what_it_needs(support: SupportName) -> None:
     validate_scene(scene(supported(support)))
 
 
@@ -112,12 +124,12 @@ def test_what_a_support_takes(end: End) -> None:
 
 
 @each_support
-def test_a_support_says_what_it_lacks(support: Support) -> None:
-    for key in RULES[support].needs:
+def test_a_support_says_what_it_lacks(support: SupportName) -> None:
+    for key in SUPPORTS[support].needs:
         end = supported(support, **{key: None})
         message = refusal("boundary.end", end)
         assert message == f'support: {support} needs {key}; add for example "{EXAMPLES[key]}"'
-    if needs := RULES[support].needs:
+    if needs := SUPPORTS[support].needs:
         message = refusal("boundary.end", End(support))
         assert all(EXAMPLES[key] in message for key in needs)
 
@@ -130,8 +142,8 @@ def test_what_is_lacking_is_listed_with_an_example() -> None:
 
 @each_support
 @pytest.mark.parametrize("key", GIVEN)
-def test_a_support_contradicts_every_other_key(support: Support, key: str) -> None:
-    knows = RULES[support].keys
+def test_a_support_contradicts_every_other_key(support: SupportName, key: str) -> None:
+    knows = SUPPORTS[support].keys
     if key in knows or (key in SINGLES and "directors" in knows):
         return
     messages = refused(supported(support, **{key: GIVEN[key]}))
@@ -195,7 +207,7 @@ def test_single_directors_are_no_frame() -> None:
 @pytest.mark.parametrize("key", ["axis", "along", "distance"])
 def test_keys_of_supports_are_nothing_without_one(key: str) -> None:
     message = refusal(f"boundary.end.{key}", End(**{key: GIVEN[key]}))
-    users = [support for support in SUPPORTS if key in RULES[support].keys]
+    users = [support for support in SUPPORTS if key in SUPPORTS[support].keys]
     assert message.startswith("is used only with support: ")
     assert all(user in message for user in users)
     assert f'write for example "support: {users[0]}"' in message
@@ -209,7 +221,7 @@ def test_held_is_of_the_end() -> None:
 
 
 @pytest.mark.parametrize("start", ["clamped", "pinned", "hinged"])
-def test_a_string_goes_to_a_fixed_start(start: Support) -> None:
+def test_a_string_goes_to_a_fixed_start(start: SupportName) -> None:
     validate_scene(scene(supported("held"), supported(start)))
 
 

@@ -13,7 +13,7 @@ from hypothesis import given
 from hypothesis import strategies as st
 
 from ribbonopt.studies.batch.chunks import Chunk, chunks_of
-from ribbonopt.studies.batch.inputs import Rows, rows_of
+from ribbonopt.studies.batch.inputs import InputRows, rows_of
 from ribbonopt.studies.batch.study import Source, Study, StudyRibbon, Sweep
 from ribbonopt.studies.batch.sweep import load_study
 
@@ -98,7 +98,7 @@ def test_each_ribbon_is_the_nearest_of_those_left(count: int) -> None:
         assert gap(walk[i], walk[i + 1]) == pytest.approx(nearest, abs=1e-12)
 
 
-def with_constant(inputs: Rows) -> Rows:
+def with_constant(inputs: InputRows) -> InputRows:
     """Add a key that has no range."""
     return replace(inputs, keys=(*inputs.keys, "d"), at=lambda i: inputs.at(i) | {"d": 7})
 

@@ -13,11 +13,12 @@ from references import HALF_MOEBIUS
 from ribbonopt.errors import SceneError
 from ribbonopt.scene import Newton, Regularized, Scene, load_scene
 from ribbonopt.studies.comparison.benchmark import Peer, benchmark, slopes_of
-from ribbonopt.studies.comparison.compare import Comparison, Reference, compare
+from ribbonopt.studies.comparison.compare import Comparison, compare
 from ribbonopt.studies.comparison.files import save_study
 from ribbonopt.studies.comparison.pairs import FORMULATIONS, TRANSCRIPTIONS, pairs_of
-from ribbonopt.studies.comparison.rows import COLUMNS, Row, cheapest
+from ribbonopt.studies.comparison.rows import COLUMNS, PairRow, cheapest
 from ribbonopt.studies.comparison.table import table
+from ribbonopt.studies.comparison.truth import Reference
 from ribbonopt.views.comparison import plot_study, save_figure
 
 REFERENCE = Reference(HALF_MOEBIUS["n0"], HALF_MOEBIUS["m0"], source="28 digits")
@@ -34,9 +35,9 @@ def compared(half: Scene) -> Comparison:
     return compare(half, ["inverted"], ["gauss", "radau"], TOLERANCES)
 
 
-def row(pair: str, error: float, solve: float, verified: bool = True) -> Row:
+def row(pair: str, error: float, solve: float, verified: bool = True) -> PairRow:
     formulation, states, transcription = pair.split()
-    return Row(
+    return PairRow(
         *(formulation, states, transcription, 4, 10, 1),
         solve=solve,
         error_n0=error,
@@ -204,7 +205,7 @@ def test_figures_of_failures_alone_are_drawn() -> None:
     assert plot_study(study.plain()).axes
 
 
-def order_rows(order: float, intervals: Sequence[int]) -> list[Row]:
+def order_rows(order: float, intervals: Sequence[int]) -> list[PairRow]:
     return [
         replace(MADE_UP[0], intervals=n, error_n0=10.0 * n**-order, error_m0=0.0) for n in intervals
     ]

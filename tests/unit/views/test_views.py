@@ -13,7 +13,7 @@ from matplotlib.text import Text
 
 from ribbonopt.checks.flip import find_flip
 from ribbonopt.errors import ModelError, OutputError
-from ribbonopt.output.staging import OWN_FILES
+from ribbonopt.output.declared import PICTURES
 from ribbonopt.pipeline.prepared import solve
 from ribbonopt.scene import load_scene
 from ribbonopt.solution.solution import Solution
@@ -224,7 +224,7 @@ def test_the_ribbon_says_what_it_shows():
 @pytest.mark.parametrize("name", SCENES)
 def test_pictures_are_written(name, tmp_path):
     paths = save_figures(solved(name), tmp_path)
-    assert {p.name for p in paths} == {n for n in OWN_FILES if n.endswith(".png")}
+    assert {p.name for p in paths} == set(PICTURES)
     for path in paths:
         pixels = imread(path)
         assert min(pixels.shape[:2]) > 300

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from matplotlib.text import Text
 
-from ribbonopt.output.staging import OWN_FILES
+from ribbonopt.output.declared import PICTURES
 from ribbonopt.pipeline.prepared import solve
 from ribbonopt.scene import load_scene
 from ribbonopt.solution.solution import Solution
@@ -150,7 +150,7 @@ def test_figures_say_how_much_follows_by_symmetry(plot):
 def test_other_equilibria_are_drawn_into_their_folders(tmp_path):
     solution = solved(3, "fundamental")
     paths = save_figures(replace(solution, others=(solution, solution)), tmp_path)
-    names = {name for name in OWN_FILES if name.endswith(".png")}
+    names = set(PICTURES)
     folders = [tmp_path, *(tmp_path / "equilibria" / i for i in "23")]
     assert set(paths) == {folder / name for folder in folders for name in names}
     assert all(path.is_file() for path in paths)

@@ -14,7 +14,8 @@ from ribbonopt.pipeline.prepared import solve
 from ribbonopt.scene import load_scene
 from ribbonopt.solution.solution import Solution
 from ribbonopt.views import plot_ribbon
-from ribbonopt.views.branch import COLOURS, plot_branch, plot_strip, save_branch_figures
+from ribbonopt.views.branch import COLOURS, plot_branch, save_branch_figures
+from ribbonopt.views.strip import plot_strip
 
 CONFIGS = Path(__file__).parents[3] / "configs"
 STATES = ("stable", "unstable", "stability unknown")

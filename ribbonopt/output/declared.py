@@ -1,0 +1,54 @@
+"""Which files of a folder are ours: each is declared by who writes it, so that it may be replaced.
+
+What every version knows is passed as `own`. Whoever writes more says so to the folder itself
+(`declare`), in `exports.json`: the next result there then knows it, whoever writes that.
+"""
+
+from __future__ import annotations
+
+import json
+import os
+from collections.abc import Collection, Iterable
+from pathlib import Path
+
+from ribbonopt.plain import json_text
+
+MANIFEST = "exports.json"
+
+NONE: frozenset[str] = frozenset()
+
+#: what `ribbonopt.views` writes beside a solution, a branch and a batch
+PICTURES = ("strains.png", "plane.png", "ribbon.png")
+BRANCH_PICTURES = ("branch.png", "ribbons.png")
+BATCH_PICTURES = ("report.html", "outcomes.png", "scatter.png")
+
+
+def declare(folder: Path, names: Iterable[str]) -> None:
+    """Add names of files or folders, directly in a folder, to those that are ours there."""
+    if names := {*names}:
+        text = json_text({"files": sorted({*_declared(folder), *names})})
+        (folder / MANIFEST).write_text(text, encoding="utf-8")
+
+
+def foreign_in(folder: Path, own: Collection[str]) -> list[str]:
+    """Return the names in a folder that are neither `own` nor declared there, sorted.
+
+    Raises
+    ------
+    OSError
+        If the folder cannot be read.
+    """
+    found = sorted(os.listdir(folder))
+    declared = _declared(folder) if MANIFEST in found else NONE
+    ours = {MANIFEST, *declared} if declared else declared
+    return [name for name in found if name not in own and name not in ours]
+
+
+def _declared(folder: Path) -> frozenset[str]:
+    """Return what a folder says; nothing where it says nothing that can be understood."""
+    try:
+        found = json.loads((folder / MANIFEST).read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        return NONE
+    names = found.get("files") if isinstance(found, dict) else None
+    return frozenset(n for n in names if isinstance(n, str)) if isinstance(names, list) else NONE

@@ -1,0 +1,118 @@
+"""Stages of a continuation in their order, and what is recorded and watched on the way, parsed."""
+
+from __future__ import annotations
+
+import re
+from collections.abc import Iterator, Mapping
+from dataclasses import replace
+from typing import Literal
+
+from .continuation import Continuation
+from .faults import KeyPath
+from .formulas.parsing import FormulaError, evaluate_value, parse_expression
+from .formulas.words import RESERVED
+from .lens import value_at, with_value
+from .model import Scene
+from .quantities import OUTPUTS, Shape
+
+#: words that no record and no condition can name, because formulas need them
+GRAMMAR = RESERVED - OUTPUTS.keys()
+
+_AT = re.compile(r"(.*)\sat\s(.*)", re.DOTALL)
+_WORD = re.compile(r"[A-Za-z_]\w*")
+_STOP = "expected 'A > B' or 'A < B', such as 'energy > 30'"
+
+
+def stages_of(scene: Scene) -> tuple[Continuation, ...]:
+    """Return the stages of a scene with every `from_` filled in, in the units of the scene.
+
+    A stage begins at its own `from_` or first value, or else where an earlier stage left its
+    parameter, or else at the scene's own value.
+
+    Raises
+    ------
+    SceneError
+        If a parameter is no number of the scene.
+    """
+    stages = []
+    for _, stage in located_stages(scene):
+        begin, end = begin_of(stage, scene), end_of(stage)
+        stages.append(replace(stage, from_=begin))
+        scene = scene if end is None else with_value(scene, stage.parameter, end)
+    return tuple(stages)
+
+
+def located_stages(scene: Scene) -> Iterator[tuple[KeyPath, Continuation]]:
+    """Yield the stages as they are written, each with where it stands."""
+    if isinstance(scene.continuation, Continuation):
+        yield ("continuation",), scene.continuation
+    else:
+        for index, stage in enumerate(scene.continuation or ()):
+            yield ("continuation", index), stage
+
+
+def begin_of(stage: Continuation, scene: Scene) -> float:
+    """Return where a stage begins in a scene to which earlier stages have led."""
+    if stage.from_ is None and stage.values:
+        return stage.values[0]
+    own = value_at(scene, stage.parameter)
+    return own if stage.from_ is None else stage.from_
+
+
+def end_of(stage: Continuation) -> float | None:
+    """Return where a stage ends; None where it does not say."""
+    return stage.values[-1] if stage.values else stage.to
+
+
+def parse_record(text: str, scene: Scene) -> tuple[str, float]:
+    """Return the formula of a record such as "dot(r, ex) at 0.5" and its arclength.
+
+    Without an arclength, a number or a formula of parameters, it is the end of the interval.
+
+    Raises
+    ------
+    FormulaError
+        If the formula is no scalar of named outputs, or the arclength is outside the interval.
+    """
+    start, end = scene.interval
+    split = _AT.fullmatch(text)
+    formula, place = (part.strip() for part in split.groups()) if split else (text.strip(), "")
+    parse_scalar(formula, OUTPUTS)
+    s = evaluate_value(place, scene.parameters) if split else end
+    if not start <= s <= end:
+        message = f"found arclength {s:g}, expected one from {start:g} to {end:g}, the interval"
+        raise FormulaError(text, None, f"{message}; write for example '{formula} at {end:g}'")
+    return formula, s
+
+
+def parse_stop(text: str) -> tuple[str, Literal[">", "<"], str]:
+    """Return both sides of a condition such as "energy > 30", and its sign.
+
+    Raises
+    ------
+    FormulaError
+        If it is not two formulas with one sign > or < between them.
+    """
+    for sign in (">=", "<=", "=>", "=<", "=="):
+        if sign in text:
+            raise FormulaError(text, text.index(sign), f"found {sign!r}, {_STOP}")
+    signs = [character for character in text if character in "<>"]
+    if len(signs) != 1:
+        found = f"{len(signs)} signs" if signs else "no sign"
+        raise FormulaError(text, None, f"found {found} > or <, {_STOP}")
+    left, right = (side.strip() for side in text.split(signs[0]))
+    if not (left and right):
+        raise FormulaError(text, text.index(signs[0]), f"found nothing beside it, {_STOP}")
+    return left, ">" if signs[0] == ">" else "<", right
+
+
+def parse_scalar(text: str, names: Mapping[str, Shape]) -> None:
+    """Raise a FormulaError where a text is no formula of some names, or is a vector."""
+    if parse_expression(text, names).shape == "vector":
+        remedy = "write for example dot(r, ex) or norm(r)"
+        raise FormulaError(text, None, f"found a vector, expected a scalar; {remedy}")
+
+
+def words_of(text: str) -> list[str]:
+    """Return the words of a formula that are not its grammar's own: names of quantities."""
+    return [word for word in _WORD.findall(text) if word not in GRAMMAR]
