@@ -8,7 +8,7 @@ from dataclasses import replace
 from itertools import pairwise
 from typing import Literal
 
-from ribbonopt.scene.continuation import Continuation
+from ribbonopt.scene.continuation import ContinuationStage
 from ribbonopt.scene.faults import InvalidSceneError, Path, Problem, dotted
 from ribbonopt.scene.formulas.expressions import Shape
 from ribbonopt.scene.formulas.parsing import (
@@ -33,10 +33,10 @@ OUTPUTS: dict[str, Shape] = {
 _AT = re.compile(r"(.*)\sat\s(.*)", re.DOTALL)
 _WORD = re.compile(r"[A-Za-z_]\w*")
 _STOP = "expected 'A > B' or 'A < B', such as 'energy > 30'"
-_Located = tuple[Path, Continuation]
+_Located = tuple[Path, ContinuationStage]
 
 
-def stages_of(scene: Scene) -> tuple[Continuation, ...]:
+def stages_of(scene: Scene) -> tuple[ContinuationStage, ...]:
     """Return the stages of a scene with every `from_` filled in, in the units of the scene.
 
     A stage begins at its own `from_` or first value, or else where an earlier stage left its
@@ -132,21 +132,21 @@ def check_continuation(scene: Scene, *, sound: bool) -> list[Problem]:
 
 
 def _located(scene: Scene) -> Iterator[_Located]:
-    if isinstance(scene.continuation, Continuation):
+    if isinstance(scene.continuation, ContinuationStage):
         yield ("continuation",), scene.continuation
     else:
         for index, stage in enumerate(scene.continuation or ()):
             yield ("continuation", index), stage
 
 
-def _begin(stage: Continuation, scene: Scene) -> float:
+def _begin(stage: ContinuationStage, scene: Scene) -> float:
     if stage.from_ is None and stage.values:
         return stage.values[0]
     own = value_at(scene, stage.parameter)
     return own if stage.from_ is None else stage.from_
 
 
-def _end(stage: Continuation) -> float | None:
+def _end(stage: ContinuationStage) -> float | None:
     return stage.values[-1] if stage.values else stage.to
 
 
@@ -168,7 +168,7 @@ def _records(scene: Scene) -> Iterator[Problem]:
             yield Problem(path, str(error))
 
 
-def _form(stage: Continuation, scene: Scene, path: Path) -> Iterator[Problem]:
+def _form(stage: ContinuationStage, scene: Scene, path: Path) -> Iterator[Problem]:
     """Yield what is wrong with a stage whatever its parameter is."""
     if stage.to is None and stage.values is None:
         yield Problem(path, 'found neither `to` nor `values`; add for example "to: 0.1"')
@@ -198,7 +198,7 @@ def _form(stage: Continuation, scene: Scene, path: Path) -> Iterator[Problem]:
             yield Problem((*path, "stop", index), str(error))
 
 
-def _way(stage: Continuation, scene: Scene, path: Path) -> Iterator[Problem]:
+def _way(stage: ContinuationStage, scene: Scene, path: Path) -> Iterator[Problem]:
     """Yield what is wrong with where a stage begins and ends."""
     begin, end = _begin(stage, scene), _end(stage)
     if stage.values and stage.from_ not in (None, stage.values[0]):
@@ -214,7 +214,7 @@ def _way(stage: Continuation, scene: Scene, path: Path) -> Iterator[Problem]:
             yield Problem((*path, key), message, f"{value:g}")
 
 
-def _bad_ends(stage: Continuation, scene: Scene, path: Path) -> Iterator[Problem]:
+def _bad_ends(stage: ContinuationStage, scene: Scene, path: Path) -> Iterator[Problem]:
     """Yield the end values of a stage that no scene may have."""
     ends: dict[Path, float | None] = {("from",): stage.from_, ("to",): stage.to}
     if stage.values:

@@ -10,7 +10,7 @@ import numpy as np
 
 from ribbonopt.arrays import Array
 from ribbonopt.problem import BoundaryValueProblem, theta_values
-from ribbonopt.scene import Continuation, Scene
+from ribbonopt.scene import ContinuationStage, Scene
 from ribbonopt.scene.lens import with_value
 from ribbonopt.scene.units import in_special_units
 from ribbonopt.solution.solution import Solution
@@ -29,12 +29,12 @@ class Curve:
     ----------
     scene : Scene
         The scene, in the user's units.
-    stage : Continuation
+    stage : ContinuationStage
         What is continued; `from_` is given.
     """
 
     scene: Scene
-    stage: Continuation
+    stage: ContinuationStage
     _scenes: dict[float, tuple[Scene, Array]] = field(default_factory=dict)
 
     @property

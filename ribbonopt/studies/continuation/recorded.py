@@ -10,7 +10,7 @@ import numpy as np
 from ribbonopt.accuracy.estimate import relative_error
 from ribbonopt.errors import ModelError
 from ribbonopt.plain import finite
-from ribbonopt.scene import Continuation, Scene
+from ribbonopt.scene import ContinuationStage, Scene
 from ribbonopt.scene.checks.continuation import parse_record, parse_stop, stages_of, words_of
 from ribbonopt.solution.sampling import evaluate_formula
 from ribbonopt.solution.solution import Solution
@@ -120,7 +120,7 @@ def numbers_of(solution: Solution) -> dict[str, float]:
     return row | {"u2": float(solution.u0[1]), "u3": float(solution.u0[2])}
 
 
-def stopped(row: Row, stage: Continuation) -> str:
+def stopped(row: Row, stage: ContinuationStage) -> str:
     """Return the condition of a stage that a row meets, "" if none."""
     values = {
         name: np.array([float(value)])
