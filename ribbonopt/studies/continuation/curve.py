@@ -72,6 +72,21 @@ class Curve:
         """Change of the position below which a step is not tried."""
         return self.stage.smallest or 1e-6 * min(self.span, self.first)
 
+    @property
+    def special(self) -> bool:
+        """Whether folds and branch points are located."""
+        return self.stage.special
+
+    @property
+    def most(self) -> int:
+        """Most points."""
+        return self.stage.points
+
+    @property
+    def name(self) -> str:
+        """Path of the parameter in the scene."""
+        return self.stage.parameter
+
     def moves(self, problem: BoundaryValueProblem) -> bool:
         """Whether the equations of the scene contain the parameter."""
         first, last = (self._at(position)[1] for position in (self.start, self.goals[-1]))

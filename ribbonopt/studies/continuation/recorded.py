@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
@@ -16,18 +17,15 @@ from ribbonopt.solution.sampling import evaluate_formula
 from ribbonopt.solution.solution import Solution
 
 from .curve import Curve
-from .points import POINT, Point
+from .walk.points import POINT, Point
 
 Row = Mapping[str, Any]
-
 
 #: numbers that every row has, besides what the scene records
 NUMBERS = (
     *("value", "error", "energy", "H0", "n0x", "n0y", "n0z", "m0x", "m0y", "m0z", "u2", "u3"),
     *("number", "stage", "branch", "negative", "intervals", "iterations"),
 )
-
-
 WORDS = ("parameter", "kind", "switches")
 
 
@@ -70,7 +68,7 @@ class Recorder:
                     key,
                 )
 
-    def row(self, point: Point, curve: Curve) -> dict[str, Any]:
+    def row(self, point: Point[Solution], curve: Curve) -> dict[str, Any]:
         """Return what is recorded of a point, in the units of the scene."""
         solution, stage = point.solution, curve.stage
         row: dict[str, Any] = {
@@ -90,6 +88,22 @@ class Recorder:
         row["intervals"] = solution.dense.blocks.layout.element_count
         row["iterations"] = solution.iterations
         return row
+
+
+@dataclass(frozen=True, eq=False)
+class StageRecords:
+    """What is recorded of the points of one stage."""
+
+    recorder: Recorder
+    curve: Curve
+
+    def row(self, point: Point[Solution]) -> Row:
+        """Return what is recorded of a point."""
+        return self.recorder.row(point, self.curve)
+
+    def stopped(self, row: Row) -> str:
+        """Return the condition of the stage that a row meets, "" if none."""
+        return stopped(row, self.curve.stage)
 
 
 def error_of(solution: Solution) -> float | None:
