@@ -72,7 +72,7 @@ class Equations(Protocol[S]):
 
     @property
     def metric(self) -> Metric:
-        """The arclength."""
+        """The arclength; its last size is the change of the position that counts as one."""
 
     def reduced(self, solution: S, vector: Array) -> Array:
         """Coordinates (m,) of a vector (n + k,): the same in any layout, the position last."""

@@ -18,6 +18,7 @@ CLOSE = 1e-11  # of an arclength, relative to that between the points
 MOST_TRIALS = 60
 ENOUGH = 1e-10  # next to a singular point rounding leaves no smaller steps
 NEIGHBOURS = 4
+ASIDE = 1e-3  # of an arclength, relative to that between points that enclose the singular one
 NEARLY, SMALL = 1e-2, 1e-6  # of a test function, relative to its values beside the point
 
 
@@ -130,8 +131,10 @@ def _root(search: _Between[S], test: Callable[[Probe[S]], float], high: float) -
         try:
             probe = search.at(arc)
         except np.linalg.LinAlgError:
-            # Too near to the singular point for Newton's method, so that neighbours tell it well.
-            return search.bridged(arc, best) if abs(fbest) < NEARLY * largest else None
+            if abs(fbest) < NEARLY * largest:
+                # Too near to the singular point for Newton's method, so neighbours tell it well.
+                return search.bridged(arc, best)
+            probe = search.at(arc + ASIDE * (b.arc - a.arc))  # singular to the last digit at once
         f = test(probe)
         settled = abs(probe.arc - best.arc) <= CLOSE * high
         best, fbest = probe, f

@@ -59,13 +59,13 @@ class Stepper(Generic[S]):
             if found is not None:
                 return found
             length *= SHRINK
-            if length * self.range.span < self.range.smallest:
+            if length * self._size < self.range.smallest:
                 return None
 
     def first_length(self, tangent: Array) -> float:
         """Arclength of the first step along a tangent."""
         share = max(abs(self._share(tangent)), NATURAL)
-        return self.range.first / self.range.span / share
+        return self.range.first / self._size / share
 
     def _try(self, point: Point[S], goal: float, length: float) -> Step[S] | None:
         prediction = self._predicted(point, goal, length)
@@ -76,7 +76,7 @@ class Stepper(Generic[S]):
         """Go along the tangent, exactly onto the goal where that is in reach."""
         tangent, here = point.tangent, point.position
         share = self._share(tangent)
-        longest = self.range.largest / self.range.span / max(abs(share), 1e-6)
+        longest = self.range.largest / self._size / max(abs(share), 1e-6)
         if not abs(share) > NATURAL:
             arc = min(length, longest, LONGEST)
             return Prediction(point.unknowns + arc * tangent, arc, None)
@@ -124,7 +124,7 @@ class Stepper(Generic[S]):
         )
         if cosine < COSINE or error > 5 * AIM:
             self.trouble = "the branch bends too sharply"
-            if prediction.arc * self.range.span > self.range.smallest:
+            if prediction.arc * self._size > self.range.smallest:
                 return None
         following = replace(
             point,
@@ -155,7 +155,12 @@ class Stepper(Generic[S]):
 
     def _share(self, tangent: Array) -> float:
         """Share of the position in a unit tangent, with its sign."""
-        return float(tangent[-1] / self.equations.metric.sizes[-1])
+        return float(tangent[-1] / self._size)
+
+    @property
+    def _size(self) -> float:
+        """Change of the position that counts as one."""
+        return float(self.equations.metric.sizes[-1])
 
 
 def _growth(error: float) -> float:
