@@ -91,7 +91,7 @@ class Line:
         return blocks
 
 
-class Condition(Protocol):
+class ScalarCondition(Protocol):
     """A scalar condition besides the equations, such as a test function."""
 
     def value(self, extended: Array) -> float:
@@ -111,7 +111,7 @@ class ExtendedSystem:
     line: Line
     row: Array
     value: float
-    further: tuple[Condition, ...] = ()
+    further: tuple[ScalarCondition, ...] = ()
 
     def __post_init__(self) -> None:
         """Count: ValueError where positions and conditions do not fit."""
@@ -200,7 +200,7 @@ def local(
     row: Array,
     w: Array,
     positions: float | Array,
-    further: tuple[Condition, ...] = (),
+    further: tuple[ScalarCondition, ...] = (),
 ) -> Local:
     """Linearise at a solution; `row` should point along the branch."""
     system = ExtendedSystem(line, row, 0.0, further)

@@ -20,7 +20,7 @@ from scipy.optimize import brentq
 
 from ribbonopt.problem import BoundaryValueProblem, Phase
 from ribbonopt.solvers import Newton, Status
-from ribbonopt.solvers.extended import Condition, ExtendedSystem, Line, Local, local
+from ribbonopt.solvers.extended import ExtendedSystem, Line, Local, ScalarCondition, local
 from ribbonopt.transcription import NLP, Collocation, Mesh, MultipleShooting
 
 Array = np.ndarray
@@ -347,7 +347,7 @@ def test_several_positions_are_those_of_the_dense_jacobian(
     z = np.append(w, np.linspace(0.1, 0.3, count))
     rng = np.random.default_rng(9)
     rows = rng.uniform(-1, 1, (count, len(line.reduced(z))))
-    further: tuple[Condition, ...] = tuple(Curved(line, row) for row in rows[:-1])
+    further: tuple[ScalarCondition, ...] = tuple(Curved(line, row) for row in rows[:-1])
     system, p = ExtendedSystem(line, rows[-1], 0.7, further), line.parameters(*z[-count:])
 
     J, by_parameters = (np.array(part) for part in whole_derivatives(nlp)(w, p))

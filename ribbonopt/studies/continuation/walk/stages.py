@@ -17,7 +17,7 @@ from .switching import switched
 from .walk import Ending, Walk
 
 
-class Stage(Protocol[S]):
+class WalkStage(Protocol[S]):
     """One stage: where it goes, what is recorded, and its equations."""
 
     @property
@@ -41,7 +41,7 @@ class Stage(Protocol[S]):
 
 def followed(
     count: int,
-    stage_after: Callable[[int, Point[S] | None], Stage[S]],
+    stage_after: Callable[[int, Point[S] | None], WalkStage[S]],
     register: Register,
     history: History[S],
 ) -> Iterator[Point[S]]:
@@ -73,7 +73,7 @@ def followed(
         before = branch.last
 
 
-def _main(stage: Stage[S], number: int, register: Register, history: History[S]) -> Branch[S]:
+def _main(stage: WalkStage[S], number: int, register: Register, history: History[S]) -> Branch[S]:
     """Return the branch that a stage begins on."""
     known = history.points(number, 0, POINT)
     solution, unknowns = (known[0].solution, known[0].unknowns) if known else stage.first()

@@ -27,7 +27,7 @@ DIGITS = 1e-12  # of a position, relative to the span
 
 
 @dataclass(frozen=True, eq=False)
-class Step(Generic[S]):
+class Stride(Generic[S]):
     """An accepted step: the next point, and the special points before it."""
 
     following: Point[S]
@@ -51,7 +51,7 @@ class Stepper(Generic[S]):
         self.equations, self.range = equations, range_
         self.trouble = ""
 
-    def step(self, point: Point[S], goal: float) -> Step[S] | None:
+    def step(self, point: Point[S], goal: float) -> Stride[S] | None:
         """Return the longest step towards a goal that succeeds; None where that is too short."""
         length = point.step
         while True:
@@ -67,7 +67,7 @@ class Stepper(Generic[S]):
         share = max(abs(self._share(tangent)), NATURAL)
         return self.range.first / self._size / share
 
-    def _try(self, point: Point[S], goal: float, length: float) -> Step[S] | None:
+    def _try(self, point: Point[S], goal: float, length: float) -> Stride[S] | None:
         prediction = self._predicted(point, goal, length)
         trial, prediction = self._corrected(point, goal, prediction)
         return self._accepted(point, trial, prediction)
@@ -108,13 +108,15 @@ class Stepper(Generic[S]):
         guess = np.append(prediction.unknowns[:-1], position)
         return equations.correct_at(point.solution, guess), prediction
 
-    def _accepted(self, point: Point[S], trial: Trial[S], prediction: Prediction) -> Step[S] | None:
+    def _accepted(
+        self, point: Point[S], trial: Trial[S], prediction: Prediction
+    ) -> Stride[S] | None:
         """Return the step if it is not too long, its point in the layout that it needs."""
         equations = self.equations
         if not trial.converged:
             self.trouble = trial.message
             again = equations.elsewhere(point, float(trial.unknowns[-1]))
-            return None if again is None else Step(self._arrived(point, again), [])
+            return None if again is None else Stride(self._arrived(point, again), [])
         metric, solution = equations.metric, trial.solution
         error = metric.length(equations.reduced(solution, trial.unknowns - prediction.unknowns))
         ahead = equations.reduced(solution, trial.unknowns - point.unknowns)
@@ -137,7 +139,7 @@ class Stepper(Generic[S]):
         special = special_points(equations, point, following) if self.range.special else []
         final = equations.finished(point, trial)
         self.trouble = final.message
-        return Step(self._arrived(following, final), special) if final.converged else None
+        return Stride(self._arrived(following, final), special) if final.converged else None
 
     def _arrived(self, before: Point[S], trial: Trial[S]) -> Point[S]:
         """Return a point for a trial, maybe in another layout, or of other numbers, than before."""
