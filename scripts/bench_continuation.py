@@ -27,8 +27,9 @@ from ribbonopt.accuracy import estimate
 from ribbonopt.pipeline.prepared import Prepared
 from ribbonopt.scene import Scene, load_scene
 from ribbonopt.solvers.newton import NewtonSolver
-from ribbonopt.studies.continuation import recorded, walk
+from ribbonopt.studies.continuation import recorded
 from ribbonopt.studies.continuation.continuation import Continuation
+from ribbonopt.studies.continuation.walk import steps
 
 CONFIGS = Path(__file__).resolve().parent.parent / "configs"
 LIMIT = 3.38657617297834557330  # u2(0) of Sadowsky's ribbon, 28 digits (SCIENCE, section 5)
@@ -61,9 +62,9 @@ DELTA = [
 
 WATCHED = (
     (NewtonSolver, "solve", "Newton"),
-    (walk, "near", "tangents and determinants"),
+    (steps, "near", "tangents and determinants"),
     (estimate, "_analysed", "estimates"),
-    (walk, "special_points", "special points"),
+    (steps, "special_points", "special points"),
     (recorded.Recorder, "row", "recording"),
 )
 
@@ -101,14 +102,14 @@ def followed(
     scene: Scene, prepared: Prepared | None
 ) -> tuple[dict[str, Any], list[dict[str, Any]], Prepared]:
     """Follow a branch: seconds, rows, and the structure that was built."""
-    with stopwatches(WATCHED) as steps:
+    with stopwatches(WATCHED) as spent_on:
         wall, cpu = time.perf_counter(), time.process_time()
         continuation = Continuation(scene, prepared)
         rows = [dict(point.row) for point in continuation]
         seconds = {"cpu": time.process_time() - cpu, "wall": time.perf_counter() - wall}
     assert continuation.ending.reached, continuation.ending.reason
     sums: dict[str, float] = {}
-    for label, spent in steps:
+    for label, spent in spent_on:
         sums[label] = sums.get(label, 0.0) + spent
     return seconds | {"steps": sums}, rows, continuation.prepared
 

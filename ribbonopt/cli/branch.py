@@ -15,9 +15,10 @@ from .common import INTERRUPTED, NOT_CONVERGED, load, pairs_of, print_json
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from ribbonopt.solution.solution import Solution
     from ribbonopt.studies.continuation.continuation import Continuation
     from ribbonopt.studies.continuation.files import BranchFolder
-    from ribbonopt.studies.continuation.points import Point
+    from ribbonopt.studies.continuation.walk.points import Point
 
 PICTURES = 5
 BAR = 24
@@ -33,7 +34,7 @@ def follow(options: argparse.Namespace) -> int:
     gc.enable()  # many solutions, each soon done with
     continuation = Continuation(scene)
     for x, y in pairs or []:
-        continuation.ledger.recorder.known((x, y), f"--plot {x}:{y}")
+        continuation.recorder.known((x, y), f"--plot {x}:{y}")
     folder = BranchFolder(options.out or f"results/{scene.name}", scene, resume=options.resume)
     shown = _shown(folder.follow(continuation), continuation)
     try:
@@ -60,7 +61,7 @@ def draw(result: Path, out: Path, pairs: list[tuple[str, str]]) -> list[Path]:
     scene, lines = load_branch(result)
     continuation = Continuation(scene)
     for pair in pairs:
-        continuation.ledger.recorder.known(pair, ":".join(pair))
+        continuation.recorder.known(pair, ":".join(pair))
     return _draw(continuation, lines, pairs, out)
 
 
@@ -156,7 +157,9 @@ def _changes(rows: list[dict[str, Any]]) -> Iterator[str]:
         yield "stable" if count == 0 else f"unstable: {count} negative directions"
 
 
-def _shown(points: Iterator[Point], continuation: Continuation) -> Generator[Point, None, None]:
+def _shown(
+    points: Iterator[Point[Solution]], continuation: Continuation
+) -> Generator[Point[Solution], None, None]:
     """Give the points on, with a bar of progress on a terminal."""
     if not sys.stderr.isatty():
         yield from points
@@ -172,7 +175,7 @@ def _shown(points: Iterator[Point], continuation: Continuation) -> Generator[Poi
         print("\r" + " " * width + "\r", end="", file=sys.stderr, flush=True)
 
 
-def _progress(point: Point, continuation: Continuation) -> str:
+def _progress(point: Point[Solution], continuation: Continuation) -> str:
     row, stage = point.row, continuation.stages[point.stage]
     bar = _bar(row, stage.from_, stage.values[-1] if stage.values else stage.to)
     line = f"{bar} {row['parameter']} = {row['value']:.6g}  step {point.step:.2g}"

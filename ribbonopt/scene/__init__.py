@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from .continuation import Continuation
+from .continuation import ContinuationStage
 from .ends import (
     AnyVector,
     Boundary,
@@ -50,7 +50,7 @@ __all__ = [
     "Band",
     "Boundary",
     "Collocation",
-    "Continuation",
+    "ContinuationStage",
     "Directors",
     "End",
     "Guess",

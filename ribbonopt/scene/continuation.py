@@ -1,6 +1,6 @@
 """What a scene may say of its continuation: a number that moves, and what is watched on the way.
 
-How the stages of a scene follow each other is in `continuation_checks`.
+How the stages of a scene follow each other is in `checks.continuation`.
 """
 
 from __future__ import annotations
@@ -14,7 +14,7 @@ Step = Annotated[float, Bounds(gt=0)]
 
 
 @dataclass(frozen=True)
-class Continuation:
+class ContinuationStage:
     """One stage of a continuation: a parameter of the scene from one value to another.
 
     Values are in the units of the scene, steps in those of the parameter, or in decades of it

@@ -10,7 +10,7 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Annotated, Literal
 
-from .continuation import Continuation
+from .continuation import ContinuationStage
 from .ends import Boundary, Value
 from .laws import Law
 from .loads import Loads
@@ -192,5 +192,5 @@ class Scene:
     reference: Reference | None = None
     ribbon: RibbonSizes | None = None
     record: dict[str, str] = field(default_factory=dict)
-    continuation: Continuation | tuple[Continuation, ...] | None = None
+    continuation: ContinuationStage | tuple[ContinuationStage, ...] | None = None
     loads: Loads = field(default_factory=Loads)

@@ -7,7 +7,7 @@ from collections.abc import Iterator, Mapping
 from dataclasses import replace
 from typing import Literal
 
-from .continuation import Continuation
+from .continuation import ContinuationStage
 from .faults import KeyPath
 from .formulas.parsing import FormulaError, evaluate_value, parse_expression
 from .formulas.words import RESERVED
@@ -23,7 +23,7 @@ _WORD = re.compile(r"[A-Za-z_]\w*")
 _STOP = "expected 'A > B' or 'A < B', such as 'energy > 30'"
 
 
-def stages_of(scene: Scene) -> tuple[Continuation, ...]:
+def stages_of(scene: Scene) -> tuple[ContinuationStage, ...]:
     """Return the stages of a scene with every `from_` filled in, in the units of the scene.
 
     A stage begins at its own `from_` or first value, or else where an earlier stage left its
@@ -42,16 +42,16 @@ def stages_of(scene: Scene) -> tuple[Continuation, ...]:
     return tuple(stages)
 
 
-def located_stages(scene: Scene) -> Iterator[tuple[KeyPath, Continuation]]:
+def located_stages(scene: Scene) -> Iterator[tuple[KeyPath, ContinuationStage]]:
     """Yield the stages as they are written, each with where it stands."""
-    if isinstance(scene.continuation, Continuation):
+    if isinstance(scene.continuation, ContinuationStage):
         yield ("continuation",), scene.continuation
     else:
         for index, stage in enumerate(scene.continuation or ()):
             yield ("continuation", index), stage
 
 
-def begin_of(stage: Continuation, scene: Scene) -> float:
+def begin_of(stage: ContinuationStage, scene: Scene) -> float:
     """Return where a stage begins in a scene to which earlier stages have led."""
     if stage.from_ is None and stage.values:
         return stage.values[0]
@@ -59,7 +59,7 @@ def begin_of(stage: Continuation, scene: Scene) -> float:
     return own if stage.from_ is None else stage.from_
 
 
-def end_of(stage: Continuation) -> float | None:
+def end_of(stage: ContinuationStage) -> float | None:
     """Return where a stage ends; None where it does not say."""
     return stage.values[-1] if stage.values else stage.to
 

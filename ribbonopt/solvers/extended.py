@@ -1,19 +1,20 @@
-"""A square problem whose parameters move along a line: the position on it is one more unknown.
+"""A square problem whose parameters depend on k positions, which are k more unknowns.
 
-    F(w, p(l)) = 0,        row . y = value,        y = [x at the points, c, l].
+    F(w, p(l1 .. lk)) = 0,    g2 = ... = gk = 0,    row . y = value,
 
-The second equation says which point of the branch is meant: l itself (natural continuation), or
-the projection on the tangent (pseudo-arclength continuation, after Keller), regular at folds too.
-States at the ends and constants determine the whole solution; so they stand for it in the row. The
-extended system has the structure of the original with one more constant and one more condition, and
-is factored by the same code.
+y = [x at the points, c, l1 .. lk]. The last equation says which point of the curve is meant: a
+position itself (natural continuation), or the projection on the tangent (pseudo-arclength
+continuation, after Keller), regular at folds too. A branch is followed along one position, k = 1;
+a locus along more, with conditions g that tell it. States at the ends and constants determine the
+whole solution; so they stand for it in rows. The extended system has the structure of the original
+with k more constants and k more conditions, and is factored by the same code.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass, replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
@@ -28,43 +29,97 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class Line:
-    """A problem along a line of parameters.
+    """A problem along a line of parameters, or a surface of them.
 
     Attributes
     ----------
     blocks : Blocks
         The problem, discretised.
-    parameters : function of float
-        Parameters p = [theta, widths] at a position l.
+    parameters : function of floats
+        Parameters p = [theta, widths] at the positions l1 .. lk.
     step : float
         Half the distance of the positions that derivatives by l are taken from.
+    count : int
+        Number k of positions.
     """
 
     blocks: Blocks
-    parameters: Callable[[float], Array]
+    parameters: Callable[..., Array]
     step: float
+    count: int = 1
+
+    def split(self, extended: Array) -> tuple[Array, Array]:
+        """Return w and the positions (k,) of [w, l]."""
+        return extended[: -self.count], extended[-self.count :]
 
     def at_points(self, w: Array) -> Array:
-        """States at all points, one after another, and constants: y without its last entry."""
+        """States at all points, one after another, and constants: y without its positions."""
         nodes, _, c = self.blocks.layout.unpack(w)
         return np.concatenate([nodes[list(self.blocks.layout.point_elements)].ravel(), c])
 
-    def slope(self, w: Array, position: float) -> tuple[Array, Array]:
-        """Return derivatives by l of what `Blocks.values` gives, by central differences."""
-        values = [
-            self.blocks.values(w, self.parameters(position + sign * self.step)) for sign in (1, -1)
-        ]
+    def reduced(self, extended: Array) -> Array:
+        """Return y of [w, l]."""
+        w, positions = self.split(extended)
+        return np.concatenate([self.at_points(w), positions])
+
+    def slope(self, w: Array, *positions: float, by: int = 0) -> tuple[Array, Array]:
+        """Return derivatives by a position of what `Blocks.values` gives, by central differences.
+
+        Parameters
+        ----------
+        w
+            Unknowns (nw,).
+        *positions
+            Where, l1 .. lk.
+        by
+            Index of the position that moves.
+        """
+        values = []
+        for sign in (1, -1):
+            moved = list(positions)
+            moved[by] += sign * self.step
+            values.append(self.blocks.values(w, self.parameters(*moved)))
         stages, conditions = ((a - b) / (2 * self.step) for a, b in zip(*values, strict=True))
         return stages, conditions
+
+    @property
+    def bordered(self) -> Blocks:
+        """The blocks with k more constants and conditions: to eliminate, not to evaluate."""
+        blocks = self.blocks
+        for _ in range(self.count):
+            blocks = blocks.bordered
+        return blocks
+
+
+class ScalarCondition(Protocol):
+    """A scalar condition besides the equations, such as a test function."""
+
+    def value(self, extended: Array) -> float:
+        """Return its value at [w, l]."""
+
+    def row(self, extended: Array) -> Array:
+        """Return its derivatives by y."""
 
 
 @dataclass(frozen=True, eq=False)
 class ExtendedSystem:
-    """The equations on a line with `row . y = value`; unknowns [w, l], a system for Newton."""
+    """The equations on a line with `row . y = value`; unknowns [w, l], a system for Newton.
+
+    `further` are the k - 1 conditions besides.
+    """
 
     line: Line
     row: Array
     value: float
+    further: tuple[ScalarCondition, ...] = ()
+
+    def __post_init__(self) -> None:
+        """Count: ValueError where positions and conditions do not fit."""
+        if self.line.count != 1 + len(self.further):
+            raise ValueError(
+                f"further: found {len(self.further)} conditions, expected {self.line.count - 1}, "
+                "one less than there are positions"
+            )
 
     def build(self) -> None:
         """Build the functions now rather than at the first evaluation."""
@@ -72,33 +127,40 @@ class ExtendedSystem:
 
     def residuals(self, w: Array, p: Array) -> Residuals:
         """Residuals at [w, l]; p is not used."""
-        own = self.line.blocks.residuals(w[:-1], self.line.parameters(w[-1]))
-        return self._with_row(own, w)
+        own, positions = self.line.split(w)
+        return self._with_rows(self.line.blocks.residuals(own, self.line.parameters(*positions)), w)
 
     def linearize(self, w: Array, p: Array) -> tuple[Residuals, Derivatives]:
         """Residuals and derivatives at [w, l]."""
-        blocks = self.line.blocks
-        residuals, derivatives = blocks.linearize(w[:-1], self.line.parameters(w[-1]))
-        stages, conditions = self.line.slope(w[:-1], w[-1])
+        line, k = self.line, self.line.count
+        own, positions = line.split(w)
+        residuals, derivatives = line.blocks.linearize(own, line.parameters(*positions))
         rows, columns = derivatives.conditions.shape
-        border = np.empty((rows + 1, columns + 1))
-        border[:-1, :-1], border[:-1, -1], border[-1] = derivatives.conditions, conditions, self.row
-        wider = np.concatenate([derivatives.stages, stages[..., None]], axis=-1)
-        return self._with_row(residuals, w), Derivatives(wider, border)
+        border = np.empty((rows + k, columns + k))
+        border[:-k, :-k], border[-1] = derivatives.conditions, self.row
+        for i, condition in enumerate(self.further):
+            border[rows + i] = condition.row(w)
+        wider = [derivatives.stages]
+        for i in range(k):
+            stages, border[:-k, columns + i] = line.slope(own, *positions, by=i)
+            wider.append(stages[..., None])
+        stages = np.concatenate(wider, axis=-1)
+        return self._with_rows(residuals, w), Derivatives(stages, border)
 
     def factor(self, derivatives: Derivatives, p: Array) -> CondensedSystem:
         """Factors of the Jacobian; LinAlgError where it is singular."""
         # Of p the elimination reads the widths, which do not depend on l.
-        return CondensedSystem(self.line.blocks.bordered, derivatives, p)
+        return CondensedSystem(self.line.bordered, derivatives, p)
 
     def vector(self, w: Array, p: Array) -> Array:
         """Residuals in the order of the program's constraints, the row's last."""
         return self.residuals(w, p).vector()
 
-    def _with_row(self, residuals: Residuals, w: Array) -> Residuals:
-        y = np.append(self.line.at_points(w[:-1]), w[-1])
-        off = self.row @ y - self.value
-        return replace(residuals, conditions=np.append(residuals.conditions, off))
+    def _with_rows(self, residuals: Residuals, w: Array) -> Residuals:
+        off = self.row @ self.line.reduced(w) - self.value
+        further = [condition.value(w) for condition in self.further]
+        conditions = np.concatenate([residuals.conditions, further, [off]])
+        return replace(residuals, conditions=conditions)
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,7 +169,7 @@ class Local:
 
     Attributes
     ----------
-    direction : (nw + 1,) array
+    direction : (nw + k,) array
         Tangent [dw, dl] with row . dy = 1.
     sign, log : float
         Sign and logarithm of the determinant, comparable between points of one layout and rows
@@ -121,22 +183,36 @@ class Local:
     log: float
 
     def solve(self, rows: Array) -> Array:
-        """Solve the extended Jacobian for right-hand sides in the conditions (nb + 1,) alone."""
+        """Solve the extended Jacobian for right-hand sides in the conditions (nb + k,) alone."""
         return self.factors.solve(replace(self.residuals, conditions=-rows))
 
+    def kernel(self) -> Array:
+        """Solve for a right-hand side with a share of every condition, and none of the row.
 
-def local(line: Line, row: Array, w: Array, position: float) -> Local:
+        Next to a branch point that is the null direction, times much.
+        """
+        count = len(self.residuals.conditions)
+        return self.solve(np.append(np.cos(np.arange(1.0, count)), 0.0))
+
+
+def local(
+    line: Line,
+    row: Array,
+    w: Array,
+    positions: float | Array,
+    further: tuple[ScalarCondition, ...] = (),
+) -> Local:
     """Linearise at a solution; `row` should point along the branch."""
-    system = ExtendedSystem(line, row, 0.0)
-    p = line.parameters(position)
-    residuals, derivatives = system.linearize(np.append(w, position), p)
+    system = ExtendedSystem(line, row, 0.0, further)
+    p = line.parameters(*np.atleast_1d(positions))
+    residuals, derivatives = system.linearize(np.append(w, positions), p)
     none = Residuals(
         np.zeros_like(residuals.stages),
         np.zeros_like(residuals.nodes),
         np.zeros_like(residuals.conditions),
     )
     # Whatever is solved for later has its right-hand side in the conditions alone.
-    factors = CondensedSystem(line.blocks.bordered, derivatives, p, only=none)
+    factors = CondensedSystem(line.bordered, derivatives, p, only=none)
     last = none.conditions.copy()
     last[-1] = 1.0
     direction = factors.solve(replace(none, conditions=-last))

@@ -83,6 +83,16 @@ def test_transcription_and_solvers_know_no_ribbons(room: str) -> None:
             assert not name.startswith(tuple(f"ribbonopt.{r}" for r in ribbons)), path.name
 
 
+def test_the_walk_of_continuation_knows_no_ribbons() -> None:
+    own = "ribbonopt.studies.continuation.walk"
+    paths = sorted((PACKAGE / "studies" / "continuation" / "walk").glob("*.py"))
+    assert len(paths) > 8
+    for path in paths:
+        for name in imports_of(path):
+            known = name.startswith((f"{own}.", "ribbonopt.arrays")) or name == own
+            assert known or not name.startswith("ribbonopt"), f"{path.name} imports {name}"
+
+
 def test_views_know_no_solver() -> None:
     for path in (PACKAGE / "views").rglob("*.py"):
         for name in imports_of(path):

@@ -16,7 +16,7 @@ from scipy.special import ellipe, ellipk
 from ribbonopt.scene import load_scene
 from ribbonopt.solution.solution import Solution
 from ribbonopt.studies.continuation.continuation import Continuation
-from ribbonopt.studies.continuation.points import POINT, Point
+from ribbonopt.studies.continuation.walk.points import POINT, Point
 
 Array = np.ndarray
 Solved = Callable[..., Solution]

@@ -17,7 +17,7 @@ from ribbonopt.errors import ModelError
 from ribbonopt.pipeline.prepared import prepare
 from ribbonopt.scene import load_scene
 from ribbonopt.studies.continuation.continuation import Continuation
-from ribbonopt.studies.continuation.points import BRANCH_POINT, FOLD, POINT, Point
+from ribbonopt.studies.continuation.walk.points import BRANCH_POINT, FOLD, POINT, Point
 
 Array = np.ndarray
 DEGREE = np.pi / 180

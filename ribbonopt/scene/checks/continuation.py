@@ -6,7 +6,7 @@ from collections.abc import Callable, Iterator
 from dataclasses import replace
 from itertools import pairwise
 
-from ribbonopt.scene.continuation import Continuation
+from ribbonopt.scene.continuation import ContinuationStage
 from ribbonopt.scene.faults import InvalidSceneError, KeyPath, Problem, dotted
 from ribbonopt.scene.formulas.parsing import FormulaError
 from ribbonopt.scene.lens import fault_of, with_value
@@ -69,7 +69,7 @@ def _records(scene: Scene) -> Iterator[Problem]:
             yield Problem(path, str(error))
 
 
-def _form(stage: Continuation, scene: Scene, path: KeyPath) -> Iterator[Problem]:
+def _form(stage: ContinuationStage, scene: Scene, path: KeyPath) -> Iterator[Problem]:
     """Yield what is wrong with a stage whatever its parameter is."""
     if stage.to is None and stage.values is None:
         yield Problem(path, 'found neither `to` nor `values`; add for example "to: 0.1"')
@@ -99,7 +99,7 @@ def _form(stage: Continuation, scene: Scene, path: KeyPath) -> Iterator[Problem]
             yield Problem((*path, "stop", index), str(error))
 
 
-def _way(stage: Continuation, scene: Scene, path: KeyPath) -> Iterator[Problem]:
+def _way(stage: ContinuationStage, scene: Scene, path: KeyPath) -> Iterator[Problem]:
     """Yield what is wrong with where a stage begins and ends."""
     begin, end = begin_of(stage, scene), end_of(stage)
     if stage.values and stage.from_ not in (None, stage.values[0]):
@@ -115,7 +115,9 @@ def _way(stage: Continuation, scene: Scene, path: KeyPath) -> Iterator[Problem]:
             yield Problem((*path, key), message, f"{value:g}")
 
 
-def _bad_ends(stage: Continuation, scene: Scene, path: KeyPath, check: Check) -> Iterator[Problem]:
+def _bad_ends(
+    stage: ContinuationStage, scene: Scene, path: KeyPath, check: Check
+) -> Iterator[Problem]:
     """Yield the end values of a stage that no scene may have."""
     ends: dict[KeyPath, float | None] = {("from",): stage.from_, ("to",): stage.to}
     if stage.values:

@@ -20,8 +20,8 @@ from ribbonopt.scene import Scene
 from ribbonopt.solution.solution import Solution
 from ribbonopt.solvers.condense import CondensedSystem
 from ribbonopt.solvers.protocols import Factors
+from ribbonopt.studies.spare import SPARE
 
-SPARE = 0.05  # of the error that a new mesh may leave: it shall serve the neighbours to come
 FARTHEST = 2.0  # times the step before, that it is continued
 
 

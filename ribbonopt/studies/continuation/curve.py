@@ -10,7 +10,7 @@ import numpy as np
 
 from ribbonopt.arrays import Array
 from ribbonopt.problem import BoundaryValueProblem, Posed
-from ribbonopt.scene import Continuation, Scene
+from ribbonopt.scene import ContinuationStage, Scene
 from ribbonopt.scene.lens import with_value
 from ribbonopt.solution.solution import Solution
 from ribbonopt.solvers.extended import Line
@@ -28,12 +28,12 @@ class Curve:
     ----------
     scene : Scene
         The scene, in the user's units.
-    stage : Continuation
+    stage : ContinuationStage
         What is continued; `from_` is given.
     """
 
     scene: Scene
-    stage: Continuation
+    stage: ContinuationStage
     _posed: dict[float, Posed] = field(default_factory=dict)
 
     @property
@@ -70,6 +70,21 @@ class Curve:
     def smallest(self) -> float:
         """Change of the position below which a step is not tried."""
         return self.stage.smallest or 1e-6 * min(self.span, self.first)
+
+    @property
+    def special(self) -> bool:
+        """Whether folds and branch points are located."""
+        return self.stage.special
+
+    @property
+    def most(self) -> int:
+        """Most points."""
+        return self.stage.points
+
+    @property
+    def name(self) -> str:
+        """Path of the parameter in the scene."""
+        return self.stage.parameter
 
     def moves(self, problem: BoundaryValueProblem) -> bool:
         """Whether the equations of the scene contain the parameter."""

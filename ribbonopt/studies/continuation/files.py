@@ -17,12 +17,13 @@ from ribbonopt.errors import OutputError
 from ribbonopt.output.declared import BRANCH_PICTURES, foreign_in
 from ribbonopt.output.staging import beside, replacing, unwritable
 from ribbonopt.scene import Scene, dump_scene, load_scene
+from ribbonopt.solution.solution import Solution
 from ribbonopt.studies.lines import whole_lines
 
-from .branches import Key
 from .continuation import Continuation
-from .points import POINT, Point
 from .stored import Stored, state_of
+from .walk.branches import Key
+from .walk.points import POINT, Point
 
 FILE, TABLE, SCENE = "branch.jsonl", "branch.csv", "scene.yaml"
 
@@ -75,7 +76,7 @@ class BranchFolder:
         """Rows of all points."""
         return rows_of(self.lines)
 
-    def follow(self, continuation: Continuation) -> Iterator[Point]:
+    def follow(self, continuation: Continuation) -> Iterator[Point[Solution]]:
         """Points of a continuation from where the folder's end, each written before it is given."""
         history = Stored(continuation, self.lines)
         known = set(history.endings)

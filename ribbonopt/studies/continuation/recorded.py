@@ -3,29 +3,28 @@
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
+from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from ribbonopt.accuracy.estimate import relative_error
 from ribbonopt.errors import ModelError
-from ribbonopt.plain import finite
-from ribbonopt.scene import Continuation, Scene
+from ribbonopt.plain import Row, finite
+from ribbonopt.scene import ContinuationStage, Scene
 from ribbonopt.scene.quantities import ANSWERS
 from ribbonopt.scene.stages import parse_record, parse_stop, stages_of, words_of
 from ribbonopt.solution.sampling import evaluate_formula
 from ribbonopt.solution.solution import Solution
 
 from .curve import Curve
-from .points import POINT, Point
+from .walk.points import POINT, Point
 
 #: numbers that every row has, besides what the scene records
 NUMBERS = (
     *("value", "error", *ANSWERS),
     *("number", "stage", "branch", "negative", "intervals", "iterations"),
 )
-
-
 WORDS = ("parameter", "kind", "switches")
 
 
@@ -68,7 +67,7 @@ class Recorder:
                     key,
                 )
 
-    def row(self, point: Point, curve: Curve) -> dict[str, Any]:
+    def row(self, point: Point[Solution], curve: Curve) -> dict[str, Any]:
         """Return what is recorded of a point, in the units of the scene."""
         solution, stage = point.solution, curve.stage
         row: dict[str, Any] = {
@@ -88,6 +87,22 @@ class Recorder:
         row["intervals"] = solution.dense.blocks.layout.element_count
         row["iterations"] = solution.iterations
         return row
+
+
+@dataclass(frozen=True, eq=False)
+class StageRecords:
+    """What is recorded of the points of one stage."""
+
+    recorder: Recorder
+    curve: Curve
+
+    def row(self, point: Point[Solution]) -> Row:
+        """Return what is recorded of a point."""
+        return self.recorder.row(point, self.curve)
+
+    def stopped(self, row: Mapping[str, Any]) -> str:
+        """Return the condition of the stage that a row meets, "" if none."""
+        return stopped(row, self.curve.stage)
 
 
 def error_of(solution: Solution) -> float | None:
@@ -118,7 +133,7 @@ def numbers_of(solution: Solution) -> dict[str, float]:
     return row | {"u2": float(solution.u0[1]), "u3": float(solution.u0[2])}
 
 
-def stopped(row: Mapping[str, Any], stage: Continuation) -> str:
+def stopped(row: Mapping[str, Any], stage: ContinuationStage) -> str:
     """Return the condition of a stage that a row meets, "" if none."""
     values = {
         name: np.array([float(value)])

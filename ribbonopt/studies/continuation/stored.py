@@ -11,11 +11,11 @@ from ribbonopt.arrays import Array
 from ribbonopt.solution.solution import Solution
 from ribbonopt.transcription import Mesh
 
-from .branches import Key
 from .continuation import Continuation
 from .curve import Curve
-from .points import POINT, Point
-from .walk import Ending
+from .walk.branches import Key
+from .walk.points import POINT, Point
+from .walk.walk import Ending
 
 
 class Stored:
@@ -41,12 +41,12 @@ class Stored:
             if regular:  # where a stage ended, at its goal or before
                 scene = self._curves[-1].scene_at(regular[-1]["state"]["position"])
 
-    def points(self, stage: int, branch: int, kind: str) -> list[Point]:
+    def points(self, stage: int, branch: int, kind: str) -> list[Point[Solution]]:
         """Points of a kind, in order."""
         lines = self._lines.get((stage, branch), [])
         return [self.point(line) for line in lines if line["row"]["kind"] == kind]
 
-    def point(self, line: dict[str, Any]) -> Point:
+    def point(self, line: dict[str, Any]) -> Point[Solution]:
         """Return the point of a line."""
         row, state = line["row"], line["state"]
         curve = self._curves[row["stage"]]
@@ -56,7 +56,7 @@ class Stored:
         solution = search.on_mesh(tuple(state["sheets"]), mesh).restored(arrays["w"])
         return Point(
             solution,
-            state["position"],
+            np.append(arrays["w"], state["position"]),
             arrays["tangent"],
             state["sign"],
             state["step"],
@@ -79,7 +79,7 @@ def spread(
     return [(line["row"], history.point(line).solution) for line in chosen]
 
 
-def state_of(point: Point) -> dict[str, Any]:
+def state_of(point: Point[Solution]) -> dict[str, Any]:
     """Return what a point is beside its row; arrays as base64 of their bytes."""
     solution = point.solution
     return {

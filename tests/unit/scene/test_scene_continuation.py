@@ -11,7 +11,7 @@ from ribbonopt.errors import SceneError
 from ribbonopt.scene import (
     AnyVector,
     Boundary,
-    Continuation,
+    ContinuationStage,
     Directors,
     End,
     Homotopy,
@@ -81,18 +81,20 @@ def test_what_a_file_says() -> None:
     read = loads_scene(WHOLE)
     assert read.record == {"deflection": "dot(r, ex) at 0.5", "pull": "n3"}
     assert read.continuation == (
-        Continuation("law.epsilon", 1e-6, 0.1, scale="log", first=0.5, smallest=1e-3, largest=1.0),
-        Continuation(
+        ContinuationStage(
+            "law.epsilon", 1e-6, 0.1, scale="log", first=0.5, smallest=1e-3, largest=1.0
+        ),
+        ContinuationStage(
             "parameters.shortening",
             values=(0.1, 0.2, 0.4),
             points=30,
             stop=("energy > 30", "deflection < -0.2"),
             special=False,
         ),
-        Continuation("parameters.turn", 3.0, switch=True, stability=False),
+        ContinuationStage("parameters.turn", 3.0, switch=True, stability=False),
     )
     one = loads_scene(HEAD + "continuation: {parameter: law.epsilon, from: 1, to: 2}\n")
-    assert one.continuation == Continuation("law.epsilon", 2.0, 1.0)
+    assert one.continuation == ContinuationStage("law.epsilon", 2.0, 1.0)
     assert (loads_scene(HEAD).record, loads_scene(HEAD).continuation) == ({}, None)
 
 
@@ -107,11 +109,11 @@ def test_round_trip() -> None:
 
 
 def test_built_in_python() -> None:
-    built = validate_scene(scene(continuation=Continuation("law.epsilon", to=1, from_=2)))
-    assert isinstance(built.continuation, Continuation)
+    built = validate_scene(scene(continuation=ContinuationStage("law.epsilon", to=1, from_=2)))
+    assert isinstance(built.continuation, ContinuationStage)
     assert type(built.continuation.from_) is float
     with pytest.raises(SceneError, match=r"continuation\.from: found 'low', expected a number"):
-        validate_scene(scene(continuation=Continuation("law.epsilon", 1, "low")))  # type: ignore[arg-type]
+        validate_scene(scene(continuation=ContinuationStage("law.epsilon", 1, "low")))  # type: ignore[arg-type]
 
 
 def test_override_of_from() -> None:
@@ -122,7 +124,7 @@ def test_override_of_from() -> None:
 def test_the_underscore_is_never_written() -> None:
     data = {"parameter": "law.epsilon", "to": 1, "from_": 2}
     with pytest.raises(InvalidSceneError, match=r"unknown key; did you mean 'from'\?"):
-        validate(Continuation, data)
+        validate(ContinuationStage, data)
 
 
 def test_json_schema() -> None:
@@ -136,13 +138,13 @@ def test_json_schema() -> None:
 
 def test_stages_begin_where_earlier_ones_ended() -> None:
     stages = (
-        Continuation("law.epsilon", to=0.5),
-        Continuation("parameters.turn", values=(1.0, 2.0)),
-        Continuation("boundary.start.position.0", to=0.5),
-        Continuation("law.epsilon", to=0.1),
-        Continuation("parameters.turn", to=0.5),
-        Continuation("law.epsilon", to=1.0, from_=0.3),
-        Continuation("boundary.start.position.x", to=1.0),
+        ContinuationStage("law.epsilon", to=0.5),
+        ContinuationStage("parameters.turn", values=(1.0, 2.0)),
+        ContinuationStage("boundary.start.position.0", to=0.5),
+        ContinuationStage("law.epsilon", to=0.1),
+        ContinuationStage("parameters.turn", to=0.5),
+        ContinuationStage("law.epsilon", to=1.0, from_=0.3),
+        ContinuationStage("boundary.start.position.x", to=1.0),
     )
     filled = stages_of(scene(continuation=stages))
     assert [stage.from_ for stage in filled] == [0.01, 1.0, 0.0, 0.5, 2.0, 0.3, 0.5]

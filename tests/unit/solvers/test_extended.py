@@ -9,6 +9,7 @@ import math
 from collections.abc import Callable
 from dataclasses import replace
 from functools import lru_cache
+from typing import NamedTuple
 
 import casadi as ca
 import numpy as np
@@ -19,7 +20,7 @@ from scipy.optimize import brentq
 
 from ribbonopt.problem import BoundaryValueProblem, Phase
 from ribbonopt.solvers import NewtonSolver, Status
-from ribbonopt.solvers.extended import ExtendedSystem, Line, Local, local
+from ribbonopt.solvers.extended import ExtendedSystem, Line, Local, ScalarCondition, local
 from ribbonopt.transcription import NLP, CollocationMethod, Mesh, MultipleShooting
 
 Array = np.ndarray
@@ -291,6 +292,132 @@ def test_determinant_vanishes_where_branches_cross(scheme: str, count: int) -> N
         exact = [math.sin(math.sqrt(x)) / math.sqrt(x) for x in (3.0, 17.0)]
         ratio = at(3.0).sign * at(17.0).sign * math.exp(at(3.0).log - at(17.0).log)
         assert ratio == pytest.approx(exact[0] / exact[1], rel=1e-8)
+
+
+# several positions
+
+
+class Curved(NamedTuple):
+    """The condition sin(row . y) = 1/2."""
+
+    line: Line
+    weights: Array
+
+    def value(self, extended: Array) -> float:
+        return math.sin(self.weights @ self.line.reduced(extended)) - 0.5
+
+    def row(self, extended: Array) -> Array:
+        return math.cos(self.weights @ self.line.reduced(extended)) * self.weights
+
+
+class Linear(NamedTuple):
+    """The condition row . y = value."""
+
+    line: Line
+    weights: Array
+    wanted: float
+
+    def value(self, extended: Array) -> float:
+        return float(self.weights @ self.line.reduced(extended) - self.wanted)
+
+    def row(self, extended: Array) -> Array:
+        return self.weights
+
+
+def surface(nlp: NLP, elements: tuple[int, ...], count: int) -> tuple[Line, Array]:
+    """Return a problem whose parameters depend on several positions, and their derivatives."""
+    _, start = random_data(nlp, elements)
+    slopes = np.zeros((len(start), count))
+    slopes[:2] = np.random.default_rng(8).uniform(-1, 1, (2, count))
+    at = np.linspace(0.1, 0.3, count)
+    return Line(
+        nlp.blocks, lambda *where: start + slopes @ (np.array(where) - at), 1e-5, count
+    ), slopes
+
+
+@pytest.mark.parametrize("count", [1, 2, 3])
+@pytest.mark.parametrize("scheme", ["gauss 3", "shot gauss 3"])
+@each_fine
+def test_several_positions_are_those_of_the_dense_jacobian(
+    elements: tuple[int, ...], scheme: str, count: int
+) -> None:
+    nlp = ROUGH[scheme].transcribe(nonlinear(len(elements)), elements)
+    line, slopes = surface(nlp, elements, count)
+    w, _ = random_data(nlp, elements)
+    z = np.append(w, np.linspace(0.1, 0.3, count))
+    rng = np.random.default_rng(9)
+    rows = rng.uniform(-1, 1, (count, len(line.reduced(z))))
+    further: tuple[ScalarCondition, ...] = tuple(Curved(line, row) for row in rows[:-1])
+    system, p = ExtendedSystem(line, rows[-1], 0.7, further), line.parameters(*z[-count:])
+
+    J, by_parameters = (np.array(part) for part in whole_derivatives(nlp)(w, p))
+    last = np.zeros((count, len(z)))
+    columns = [*nlp.blocks.layout.condition_columns(), *range(len(w), len(z))]
+    last[:, columns] = [*(condition.row(z) for condition in further), rows[-1]]
+    dense = np.vstack([np.column_stack([J, by_parameters @ slopes]), last])
+    off = [*(condition.value(z) for condition in further), rows[-1] @ line.reduced(z) - 0.7]
+    own = np.array(nlp.functions.constraints(w, p)).ravel()
+
+    residuals, derivatives = system.linearize(z, p)
+    np.testing.assert_allclose(residuals.vector(), np.append(own, off), atol=1e-13)
+    np.testing.assert_array_equal(system.vector(z, p), residuals.vector())
+    step = system.factor(derivatives, p).solve(residuals)
+    size = max(np.abs(step).max(), 1)
+    np.testing.assert_allclose(dense @ step, -residuals.vector(), rtol=0, atol=1e-8 * size)
+
+    found = local(line, rows[-1], w, z[-count:], further)
+    unit = np.append(np.zeros(len(z) - 1), 1)
+    size = max(np.abs(found.direction).max(), 1)
+    np.testing.assert_allclose(dense @ found.direction, unit, rtol=0, atol=1e-8 * size)
+    right = np.zeros(len(z))
+    right[len(z) - len(residuals.conditions) : -1] = np.cos(
+        np.arange(1.0, len(residuals.conditions))
+    )
+    size = max(np.abs(found.kernel()).max(), 1)
+    np.testing.assert_allclose(dense @ found.kernel(), right, rtol=0, atol=1e-8 * size)
+
+
+def test_conditions_and_positions_are_counted() -> None:
+    nlp = ROUGH["gauss 3"].transcribe(nonlinear(1), (5,))
+    line, _ = surface(nlp, (5,), 2)
+    with pytest.raises(ValueError, match=r"found 0 conditions, expected 1"):
+        ExtendedSystem(line, np.zeros(1), 0.0)
+
+
+def raised() -> BoundaryValueProblem:
+    """u'' + l1 e^u = 0, u(0) = u(1) = l2: Bratu's problem for l1 exp(l2), raised by l2."""
+    x, theta = ca.SX.sym("x", 2), ca.SX.sym("theta", 2)
+    phase = Phase(ca.vertcat(x[1], -theta[0] * ca.exp(x[0])), ca.SX(1), {})
+
+    def conditions(a: ca.SX, b: ca.SX) -> dict[str, ca.SX]:
+        return {"left": a[0] - theta[1], "right": b[0] - theta[1]}
+
+    return bvp(x, (phase,), conditions, theta=theta)
+
+
+@pytest.mark.parametrize("scheme", ACCURATE)
+def test_locus_of_the_fold_by_two_positions(scheme: str) -> None:
+    nlp = ACCURATE[scheme].transcribe(raised(), (12,))
+    widths = Mesh.uniform(12).widths
+    line = Line(nlp.blocks, lambda a, b: np.concatenate([[a, b], widths]), 1e-5, 2)
+    # the fold is where u'(0) is that of Bratu's: there l1 alone does not tell the solution
+    weights = np.zeros(line.blocks.layout.nx * 2 + 2)
+    weights[1] = 1.0
+    tells = (Linear(line, weights, FOLD_T * math.tanh(FOLD_T / 4)),)
+    row = np.zeros_like(weights)
+    row[-1] = 1.0
+    w = NewtonSolver(nlp).solve(np.zeros(nlp.unknowns), line.parameters(3.3, 0.0)).w
+    z = np.append(w, [3.3, 0.0])
+    for second in (0.0, 0.4, 0.8, -0.5):
+        system = ExtendedSystem(line, row, second, tells)
+        report = NewtonSolver(nlp).solve(z, line.parameters(*z[-2:]), system=system)
+        assert report.status is Status.CONVERGED
+        z = report.w
+        assert z[-1] == pytest.approx(second, abs=1e-14)
+        assert z[-2] == pytest.approx(FOLD * math.exp(-second), rel=2e-9)
+        # along the locus, d l1 / d l2 = -l1
+        found = local(line, row, z[:-2], z[-2:], tells)
+        assert found.direction[-2] == pytest.approx(-z[-2], rel=1e-8)
 
 
 # Bratu's branch

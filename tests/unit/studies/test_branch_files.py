@@ -12,7 +12,6 @@ import pytest
 
 from ribbonopt.errors import OutputError
 from ribbonopt.scene import Scene, dump_scene, loads_scene
-from ribbonopt.studies.continuation.branches import Nothing
 from ribbonopt.studies.continuation.continuation import Continuation
 from ribbonopt.studies.continuation.files import (
     FILE,
@@ -22,8 +21,9 @@ from ribbonopt.studies.continuation.files import (
     load_branch,
     rows_of,
 )
-from ribbonopt.studies.continuation.points import BRANCH_POINT, POINT, Point
 from ribbonopt.studies.continuation.stored import Stored, spread
+from ribbonopt.studies.continuation.walk.branches import Nothing
+from ribbonopt.studies.continuation.walk.points import BRANCH_POINT, POINT, Point
 
 COLUMN = """\
 name: column

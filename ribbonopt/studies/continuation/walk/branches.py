@@ -4,91 +4,92 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field, replace
-from typing import Protocol
+from typing import Generic, Protocol
 
 import numpy as np
 
-from .points import BRANCH_POINT, FOLD, POINT, Point
-from .recorded import Recorder, stopped
+from .points import BRANCH_POINT, FOLD, POINT, Point, S
+from .protocol import Records
 from .walk import Ending, Walk
 
-Key = tuple[int, int]
+Key = tuple[int, int]  # stage, branch
 
 
-class History(Protocol):
+class History(Protocol[S]):
     """Points that are known already, of each stage and branch."""
 
     endings: dict[Key, Ending]
 
-    def points(self, stage: int, branch: int, kind: str) -> list[Point]:
+    def points(self, stage: int, branch: int, kind: str) -> list[Point[S]]:
         """Points of a kind, in order."""
 
 
 @dataclass(eq=False)
-class Nothing:
+class Nothing(Generic[S]):
     """No history."""
 
     endings: dict[Key, Ending] = field(default_factory=dict)
 
-    def points(self, stage: int, branch: int, kind: str) -> list[Point]:
+    def points(self, stage: int, branch: int, kind: str) -> list[Point[S]]:
         """Return no points."""
         return []
 
 
 @dataclass(eq=False)
-class Ledger:
-    """Numbers of points, what is recorded of them, and how branches have ended."""
+class Register:
+    """Numbers of points, and how branches have ended."""
 
-    recorder: Recorder
     endings: dict[Key, Ending] = field(default_factory=dict)
     number: int = 0
 
-    def entered(self, point: Point, walk: Walk, key: Key) -> Point:
+    def entered(self, point: Point[S], records: Records[S], key: Key) -> Point[S]:
         """Return a point with its number and what is recorded of it."""
         point = replace(point, number=self.number, stage=key[0], branch=key[1])
         self.number += 1
-        return replace(point, row=self.recorder.row(point, walk.curve))
+        return replace(point, row=records.row(point))
 
-    def known(self, point: Point) -> None:
+    def known(self, point: Point[S]) -> None:
         """Take the number of a point that has one."""
         self.number = max(self.number, point.number + 1)
 
 
-class Branch:
+class Branch(Generic[S]):
     """One branch, followed once; `last` and `branch_points` are known then."""
 
     def __init__(
         self,
-        ledger: Ledger,
-        walk: Walk,
+        register: Register,
+        walk: Walk[S],
+        records: Records[S],
         key: Key,
-        history: History,
-        begin: Callable[[], Point],
+        history: History[S],
+        begin: Callable[[], Point[S]],
     ) -> None:
         """Take what the history knows of it; `begin` gives the first point if that is nothing."""
-        self.ledger, self.walk, self.key, self.begin = ledger, walk, key, begin
+        self.register, self.walk, self.records = register, walk, records
+        self.key, self.begin = key, begin
         known = history.points(*key, POINT)
         self.last = known[-1] if known else None
         self.count = len(known)
         self.branch_points = history.points(*key, BRANCH_POINT)
         folds = history.points(*key, FOLD)
-        walk.turned += [walk.curve.value(point.position) for point in folds]
+        walk.turned += [walk.range.value(point.position) for point in folds]
         for point in (*known, *self.branch_points, *folds):
-            ledger.known(point)
+            register.known(point)
         self.ended = history.endings.get(key)
 
-    def points(self) -> Iterator[Point]:
+    def points(self) -> Iterator[Point[S]]:
         """Points that are not known yet; notes how the branch ends."""
         if self.ended is None:
             yield from self._followed()
             self.ended = self.walk.ending
-        self.ledger.endings[self.key] = self.ended
+        self.register.endings[self.key] = self.ended
 
-    def _followed(self) -> Iterator[Point]:
-        ledger, walk = self.ledger, self.walk
+    def _followed(self) -> Iterator[Point[S]]:
+        walk = self.walk
         if self.last is None:
             try:
-                self.last = ledger.entered(self.begin(), walk, self.key)
+                self.last = self._entered(self.begin())
             except np.linalg.LinAlgError as error:
                 walk.ending = Ending(False, str(error))
                 return
@@ -97,7 +98,7 @@ class Branch:
         if self._finished(self.last):
             return
         for point in walk.points(self.last):
-            point = ledger.entered(point, walk, self.key)
+            point = self._entered(point)
             if point.kind == POINT:
                 self.last, self.count = point, self.count + 1
             elif point.kind == BRANCH_POINT:
@@ -106,12 +107,14 @@ class Branch:
             if point.kind == POINT and self._finished(point):
                 return
 
-    def _finished(self, point: Point) -> bool:
-        """Whether the scene wants no more points of this branch; sets the ending."""
-        stage = self.walk.curve.stage
-        condition = stopped(point.row, stage)
+    def _entered(self, point: Point[S]) -> Point[S]:
+        return self.register.entered(point, self.records, self.key)
+
+    def _finished(self, point: Point[S]) -> bool:
+        """Whether no more points of this branch are wanted; sets the ending."""
+        condition = self.records.stopped(point.row)
         if condition:
             self.walk.ending = Ending(True, f"stopped, as asked: {condition}")
-        elif self.count >= stage.points:
+        elif self.count >= self.walk.range.most:
             self.walk.ending = Ending(False, f"there are {self.count} points, as many as allowed")
-        return bool(condition) or self.count >= stage.points
+        return bool(condition) or self.count >= self.walk.range.most

@@ -1,0 +1,186 @@
+"""Branches of equilibria as equations to be followed: one parameter of a scene is the position.
+
+Each point is brought to the scene's tolerance on its own mesh; phases appear and vanish as sign
+changes of m2 do. So a layout is a mesh and its phases.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from ribbonopt.accuracy.estimate import relative_error
+from ribbonopt.arrays import Array
+from ribbonopt.attempt.attempt import Attempt, verified
+from ribbonopt.pipeline.prepared import Prepared
+from ribbonopt.pipeline.refinement import SAFE
+from ribbonopt.solution.solution import Solution
+from ribbonopt.solvers import SolveReport
+from ribbonopt.solvers.extended import ExtendedSystem, Local, local
+from ribbonopt.solvers.newton import NewtonSolver
+from ribbonopt.studies.spare import SPARE
+
+from .curve import Curve
+from .walk.metric import Metric
+from .walk.points import Point
+from .walk.protocol import Trial
+
+
+@dataclass(frozen=True, eq=False)
+class RibbonEquations:
+    """Equations of the equilibria along one curve; Newton's method on the mesh of the point before.
+
+    Attributes
+    ----------
+    prepared : Prepared
+        The structure.
+    curve : Curve
+        The scenes by position, and their equations.
+    metric : Metric
+        Arclength.
+    """
+
+    prepared: Prepared
+    curve: Curve
+    metric: Metric
+
+    def reduced(self, solution: Solution, vector: Array) -> Array:
+        """States at both ends, constants of the rod and position, of a vector [w, l]."""
+        return reduced(solution, vector)
+
+    def linearise(self, solution: Solution, unknowns: Array, ahead: Array) -> Local:
+        """Linearise at a solution with a row along the branch."""
+        row = row_of(solution, self.metric.dual(ahead))
+        return local(self.curve.line(solution), row, solution.dense.w, float(unknowns[-1]))
+
+    def correct_at(self, origin: Solution, guess: Array) -> Trial[Solution]:
+        """Correct at a position (natural continuation)."""
+        attempt = self._beside(origin, float(guess[-1]))
+        attempt.run_from(guess[:-1], quick=True, check=False)
+        return _trial(attempt, guess[-1:])
+
+    def correct_along(
+        self,
+        origin: Point[Solution],
+        direction: Array,
+        arc: float,
+        guess: Array,
+        enough: float = 0.0,
+    ) -> Trial[Solution]:
+        """Correct where the projection on a direction is `arc` (pseudo-arclength continuation)."""
+        solution = origin.solution
+        line = self.curve.line(solution)
+        row = row_of(solution, self.metric.dual(reduced(solution, direction)))
+        value = float(row @ line.reduced(origin.unknowns)) + arc
+        system = ExtendedSystem(line, row, value)
+        nlp = self._beside(solution, origin.position).nlp
+        report = NewtonSolver(nlp).solve(guess, line.parameters(guess[-1]), None, enough, system)
+        attempt = self._beside(solution, float(report.w[-1]))
+        attempt.take(_without_last(report), check=False)
+        return _trial(attempt, report.w[-1:])
+
+    def restored(self, origin: Solution, unknowns: Array) -> Solution:
+        """Return a solution of known unknowns on the mesh and in the phases of another."""
+        return self._beside(origin, float(unknowns[-1])).restored(unknowns[:-1])
+
+    def verified(self, trial: Trial[Solution]) -> Trial[Solution]:
+        """Return a trial that converged, after the checks of a solution."""
+        return _checked(trial, verified(trial.solution, self.prepared.ribbon))
+
+    def finished(self, origin: Point[Solution], trial: Trial[Solution]) -> Trial[Solution]:
+        """Return a solution verified, to tolerance, in the phases it needs."""
+        found = trial.solution
+        tolerance = found.scene.tolerance
+        if not found.sheets and self._needs_phases(found):
+            found = self.prepared.solve(found.posed, guess=found, fallback=False)
+        elif tolerance is not None and relative_error(found)[0] > SAFE * tolerance:
+            found = self.prepared.refined(found, SPARE)
+        else:
+            found = verified(found, self.prepared.ribbon)
+        done = _checked(trial, found)
+        if not done.converged and self.prepared.ribbon.law.kinked:
+            # Phases may have changed on the way.
+            return self._anew(origin.solution, float(trial.unknowns[-1])) or done
+        return done
+
+    def elsewhere(self, origin: Point[Solution], position: float) -> Trial[Solution] | None:
+        """Solve at a position in other phases: one may have lost its length on the way."""
+        return self._anew(origin.solution, position) if origin.solution.sheets else None
+
+    def _anew(self, solution: Solution, position: float) -> Trial[Solution] | None:
+        """Solve at a position with all that a single scene may need, from a solution near by."""
+        found = self.prepared.solve(self.curve.posed_at(position), guess=solution, fallback=False)
+        unknowns = np.append(found.dense.w, position)
+        return Trial(found, unknowns, True, found.message) if found.verified else None
+
+    def _beside(self, solution: Solution, position: float) -> Attempt:
+        """Return the means to solve at a position, on the mesh and in the phases of a solution."""
+        search = self.prepared.search(self.curve.posed_at(position))
+        return search.on_mesh(solution.sheets, solution.mesh, solution.trajectory.ends[1:-1])
+
+    def _needs_phases(self, solution: Solution) -> bool:
+        search = self.prepared.search(solution.posed)
+        return search.phases_help and search.changes_sign(solution)
+
+
+def reduced(solution: Solution, extended: Array) -> Array:
+    """Return states at both ends, constants of the rod and position, of a vector [w, l].
+
+    They determine the whole solution, and are the same in any layout.
+    """
+    layout = solution.dense.blocks.layout
+    nodes, _, c = layout.unpack(extended[:-1])
+    rod = layout.nc - len(layout.elements) + 1
+    return np.concatenate([nodes[0], nodes[-1], c[:rod], extended[-1:]])
+
+
+def row_of(solution: Solution, part: Array) -> Array:
+    """Put a vector of the form of `reduced` in the place of its entries among all points and c."""
+    layout = solution.dense.blocks.layout
+    nx, points = layout.nx, len(layout.point_elements)
+    row = np.zeros(points * nx + layout.nc + 1)
+    row[:nx], row[(points - 1) * nx : points * nx] = part[:nx], part[nx : 2 * nx]
+    rod = part[2 * nx : -1]
+    row[points * nx : points * nx + len(rod)] = rod
+    row[-1] = part[-1]
+    return row
+
+
+def metric_at(solution: Solution, curve: Curve) -> Metric:
+    """Return the metric of a stage that begins at a solution.
+
+    Loads and states count relative to their size there, the position relative to its span.
+    """
+    sizes = 1 + np.abs(reduced(solution, np.append(solution.dense.w, curve.start)))
+    # Loads together: one that vanishes by symmetry is as large as the others.
+    nx = solution.dense.blocks.layout.nx
+    sizes[2 * nx :] = sizes[2 * nx :].max(initial=1.0)
+    sizes[-1] = curve.span
+    return Metric(sizes)
+
+
+def _trial(attempt: Attempt, position: Array) -> Trial[Solution]:
+    """Return what attempt at a position (1,) have come to."""
+    found = attempt.best
+    assert found is not None
+    unknowns = np.concatenate([found.dense.w, position])
+    return Trial(found, unknowns, found.verified, found.message)
+
+
+def _checked(trial: Trial[Solution], found: Solution) -> Trial[Solution]:
+    """Return a trial with another solution at its position; the same unknowns where these are."""
+    unknowns = trial.unknowns
+    if found.trajectory is not trial.solution.trajectory:
+        unknowns = np.append(found.dense.w, unknowns[-1])
+    return Trial(found, unknowns, found.verified, found.message)
+
+
+def _without_last(report: SolveReport) -> SolveReport:
+    """Return the report without the position and its equation."""
+    return replace(
+        report,
+        w=report.w[:-1],
+        residuals=report.residuals[:-1],
+        multipliers=report.multipliers[:-1],
+    )

@@ -1,0 +1,94 @@
+"""One stage of a scene's continuation: where it begins, its equations, and what is refused."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ribbonopt.arrays import Array
+from ribbonopt.errors import ConvergenceError, ModelError
+from ribbonopt.pipeline.prepared import Prepared
+from ribbonopt.problem import BoundaryValueProblem
+from ribbonopt.solution.solution import Solution
+from ribbonopt.solvers import Status
+
+from .curve import Curve
+from .recorded import Recorder, StageRecords
+from .ribbons import RibbonEquations, metric_at
+
+STRAIGHT = 1e-9  # largest moment of a straight ribbon, in units Dw = L = 1
+
+
+@dataclass(frozen=True, eq=False)
+class RibbonStage:
+    """One stage; `before` is the solution that the stage before has ended with."""
+
+    prepared: Prepared
+    curve: Curve
+    recorder: Recorder
+    before: Solution | None = None
+
+    @property
+    def range(self) -> Curve:
+        """Where it goes."""
+        return self.curve
+
+    @property
+    def records(self) -> StageRecords:
+        """What is recorded of its points."""
+        return StageRecords(self.recorder, self.curve)
+
+    @property
+    def switch(self) -> bool:
+        """Whether the branches that cross are followed."""
+        return self.curve.stage.switch
+
+    def first(self) -> tuple[Solution, Array]:
+        """Solve where it begins.
+
+        Raises
+        ------
+        ModelError
+            If branch points are asked of a law without a derivative there.
+        ConvergenceError
+            If no solution is found.
+        """
+        curve = self.curve
+        scene = curve.scene_at(curve.start)
+        found = self.prepared.solve(scene, guess=self.before, fallback=self.before is None)
+        if curve.special and found.status is not Status.NO_START:
+            _refuse_straight(found, self.prepared)
+        if not found.verified:
+            raise ConvergenceError(
+                f"no solution to begin with, at {curve.name} = {curve.stage.from_:g}: "
+                f"{found.message}",
+                found.status.name.lower(),
+            )
+        return found, np.append(found.dense.w, curve.start)
+
+    def equations(self, first: Solution) -> RibbonEquations:
+        """Return its equations, with the metric of a stage that begins at a solution."""
+        return RibbonEquations(self.prepared, self.curve, metric_at(first, self.curve))
+
+
+def refuse_idle(curve: Curve, problem: BoundaryValueProblem) -> None:
+    """Raise a ModelError where the parameter changes nothing."""
+    if not curve.moves(problem):
+        raise ModelError(
+            f"continuation.parameter: {curve.name} changes nothing in this scene; "
+            "continue a number that its equations contain",
+            "continuation.parameter",
+        )
+
+
+def _refuse_straight(found: Solution, prepared: Prepared) -> None:
+    """Raise a ModelError where branch points are asked of a law without a derivative."""
+    moments = np.abs(found.trajectory.at_stages["m"]).max()
+    if prepared.ribbon.law.kinked and moments < STRAIGHT:
+        raise ModelError(
+            f"law: {found.scene.law.type} has no derivative at m = 0, so that a straight ribbon of "
+            "it has no branch points to be found; use law: kirchhoff, whose buckling loads they "
+            "are, or 'special: false' in the continuation",
+            "law",
+        )

@@ -1,0 +1,54 @@
+"""Points of a curve: a solution, its unknowns, and which way the curve goes on."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from typing import Any, Generic, TypeVar
+
+from ribbonopt.arrays import Array
+
+POINT, FOLD, BRANCH_POINT = "point", "fold", "branch point"
+
+S = TypeVar("S")  # what a solution is, is the business of the equations
+
+
+@dataclass(frozen=True, eq=False)
+class Point(Generic[S]):
+    """One accepted point.
+
+    Attributes
+    ----------
+    solution : S
+        Verified; what it is, only the equations know.
+    unknowns : (n + k,) array
+        Unknowns and parameters [w, l1 .. lk], in the layout of the solution.
+    tangent : (n + k,) array
+        Their derivatives by the arclength, see `Metric`.
+    sign : float
+        Sign of the bordered determinant, comparable within one layout.
+    step : float
+        Arclength to try next.
+    number, stage, branch : int
+        Place in the whole continuation; branch 0 is the first.
+    kind : str
+        POINT, FOLD or BRANCH_POINT.
+    row : mapping
+        What is recorded, by name.
+    """
+
+    solution: S
+    unknowns: Array
+    tangent: Array
+    sign: float
+    step: float
+    number: int = 0
+    stage: int = 0
+    branch: int = 0
+    kind: str = POINT
+    row: Mapping[str, Any] = field(default_factory=dict)
+
+    @property
+    def position(self) -> float:
+        """The last parameter, lk."""
+        return float(self.unknowns[-1])

@@ -1,0 +1,180 @@
+"""What can be followed: any equations with one unknown more than there are of them.
+
+    F(w, l1 .. lk) = 0,    g2 = ... = gk = 0,    and a row that says which point is meant:
+
+the position, which is the last parameter lk (natural continuation), or the arclength along a
+direction (pseudo-arclength continuation, after Keller), regular at folds too. A branch of
+equilibria has one parameter, k = 1; the locus of its fold has k = 2 and a test function g2 that
+vanishes at folds. The walk sees the vector of unknowns [w, l1 .. lk] and asks for what is below.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any, Generic, Protocol
+
+from ribbonopt.arrays import Array
+
+from .metric import Metric
+from .points import Point, S
+
+
+@dataclass(frozen=True, eq=False)
+class Trial(Generic[S]):
+    """What a correction came to.
+
+    Attributes
+    ----------
+    solution : S
+        As far as it came.
+    unknowns : (n + k,) array
+        Its unknowns [w, l1 .. lk].
+    converged : bool
+        Whether it can be a point of the curve.
+    message : str
+        How it went, in words.
+    """
+
+    solution: S
+    unknowns: Array
+    converged: bool
+    message: str
+
+
+class Linearised(Protocol):
+    """The equations linearised at a solution, bordered by a row along the curve."""
+
+    @property
+    def direction(self) -> Array:
+        """Tangent (n + k,), of any length: the bordered matrix makes (0 .. 0, 1) of it."""
+
+    @property
+    def sign(self) -> float:
+        """Sign of the bordered determinant, which vanishes at branch points, not at folds.
+
+        Comparable within one layout, for rows that point the same way along the curve.
+        """
+
+    @property
+    def log(self) -> float:
+        """Logarithm of the absolute value of the determinant."""
+
+    def kernel(self) -> Array:
+        """Solve (n + k,) for a right-hand side with a share of every equation, none of the row.
+
+        Next to a branch point that is the null direction, times much.
+        """
+
+
+class Equations(Protocol[S]):
+    """The equations of one curve. A layout is what the numbers of a solution's vector stand for."""
+
+    @property
+    def metric(self) -> Metric:
+        """The arclength; its last size is the change of the position that counts as one."""
+
+    def reduced(self, solution: S, vector: Array) -> Array:
+        """Coordinates (m,) of a vector (n + k,): the same in any layout, the position last."""
+
+    def linearise(self, solution: S, unknowns: Array, ahead: Array) -> Linearised:
+        """Linearise with the row `metric.dual(ahead)`; LinAlgError where that is singular.
+
+        `ahead` (m,) are coordinates of any direction along the curve.
+        """
+
+    def correct_at(self, origin: S, guess: Array) -> Trial[S]:
+        """Correct at the position of a guess (n + k,) in the layout of a solution.
+
+        What is found need not be verified yet, nor exact: `finish` does that.
+        """
+
+    def correct_along(
+        self, origin: Point[S], direction: Array, arc: float, guess: Array, enough: float = 0.0
+    ) -> Trial[S]:
+        """Correct where the projection on a direction is `arc`.
+
+        Parameters
+        ----------
+        origin
+            Origin of the arclength.
+        direction
+            Unit vector (n + k,) in the layout of the point.
+        arc
+            Arclength along it.
+        guess
+            Unknowns (n + k,) to start from.
+        enough
+            Last relative step of Newton's method that will do.
+        """
+
+    def restored(self, origin: S, unknowns: Array) -> S:
+        """Return a solution of known unknowns in the layout of another."""
+
+    def verified(self, trial: Trial[S]) -> Trial[S]:
+        """Return a trial that converged, after all checks of what is admissible."""
+
+    def finished(self, origin: Point[S], trial: Trial[S]) -> Trial[S]:
+        """Bring a trial that converged to the layout and accuracy that a point needs; verify it.
+
+        Where only the verdict is new, the unknowns are the same object.
+        """
+
+    def elsewhere(self, origin: Point[S], position: float) -> Trial[S] | None:
+        """Solve at a position in another layout, as none of the point's led to it; None for none.
+
+        What comes back is finished.
+        """
+
+
+class Range(Protocol):
+    """Where one stage goes, and in which steps; the position is the parameter, or a scale of it."""
+
+    @property
+    def start(self) -> float:
+        """Position where it begins."""
+
+    @property
+    def goals(self) -> tuple[float, ...]:
+        """Positions that must be met exactly, in order; the last is the end."""
+
+    @property
+    def span(self) -> float:
+        """Distance from the start to the end."""
+
+    @property
+    def first(self) -> float:
+        """Change of the position in the first step."""
+
+    @property
+    def largest(self) -> float:
+        """Largest change of the position in a step."""
+
+    @property
+    def smallest(self) -> float:
+        """Change of the position below which a step is not tried."""
+
+    @property
+    def special(self) -> bool:
+        """Whether folds and branch points are located."""
+
+    @property
+    def most(self) -> int:
+        """Most points."""
+
+    @property
+    def name(self) -> str:
+        """What the position is called."""
+
+    def value(self, position: float) -> float:
+        """Return the parameter at a position."""
+
+
+class Records(Protocol[S]):
+    """What is recorded of the points of a stage."""
+
+    def row(self, point: Point[S]) -> Mapping[str, Any]:
+        """Return what is recorded of a point."""
+
+    def stopped(self, row: Mapping[str, Any]) -> str:
+        """Return the condition that ends a branch at a row, "" if it goes on."""

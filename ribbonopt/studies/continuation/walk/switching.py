@@ -1,0 +1,69 @@
+"""From a branch point onto the branch that crosses."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+import numpy as np
+
+from ribbonopt.arrays import Array
+
+from .points import POINT, Point, S
+from .protocol import Equations
+from .tangents import near
+
+AWAY, LEAST_AWAY = 0.05, 1e-4  # arclength of the first step onto a branch that crosses
+BESIDE = (0.0, 1e-12, 1e-10, 1e-8)  # arclength from a point where equations are nearly singular
+
+
+def switched(equations: Equations[S], point: Point[S], sign: int) -> Point[S]:
+    """Return the first point on the branch that crosses at a branch point; LinAlgError for none."""
+    direction = sign * null_direction(equations, point)
+    away = AWAY
+    while away > LEAST_AWAY:
+        guess = point.unknowns + away * direction
+        trial = equations.correct_along(point, direction, away, guess)
+        if trial.converged:
+            trial = equations.verified(trial)
+        if trial.converged:
+            ahead = equations.reduced(trial.solution, trial.unknowns - point.unknowns)
+            found, tangent = near(equations, trial.solution, trial.unknowns, ahead)
+            return replace(
+                point,
+                solution=trial.solution,
+                unknowns=trial.unknowns,
+                tangent=tangent,
+                sign=found.sign,
+                step=away,
+                kind=POINT,
+            )
+        away /= 2
+    raise np.linalg.LinAlgError("no point was found on the branch that crosses")
+
+
+def null_direction(equations: Equations[S], point: Point[S]) -> Array:
+    """Return the unit direction (n + k,) of the branch that crosses at a branch point.
+
+    Across the tangent of the branch itself, in the metric of the branch.
+    """
+    metric = equations.metric
+    ahead = equations.reduced(point.solution, point.tangent)
+    direction = point.tangent
+    for offset in BESIDE:
+        unknowns = point.unknowns + offset * point.tangent
+        solution = equations.restored(point.solution, unknowns)
+        try:
+            found, _ = near(equations, solution, unknowns, ahead)
+        except np.linalg.LinAlgError:  # singular to the last digit
+            continue
+        # Singular to rounding, or nearly: what any side gives is the null direction.
+        direction = found.kernel()
+        break
+    direction = (
+        direction
+        - metric.product(equations.reduced(point.solution, direction), ahead) * point.tangent
+    )
+    part = equations.reduced(point.solution, direction) / metric.sizes
+    # One of the two ways, the same in every run.
+    sign = np.sign(part[np.abs(part).argmax()])
+    return np.asarray(sign * direction / np.linalg.norm(part))

@@ -1,0 +1,24 @@
+"""The tangent of a curve at one of its points."""
+
+from __future__ import annotations
+
+from ribbonopt.arrays import Array
+
+from .points import S
+from .protocol import Equations, Linearised
+
+
+def near(
+    equations: Equations[S], solution: S, unknowns: Array, ahead: Array
+) -> tuple[Linearised, Array]:
+    """Linearise at a solution; return that, and its tangent (n + k,) of unit arclength.
+
+    `ahead` (m,) are coordinates of any direction along the curve.
+    """
+    metric = equations.metric
+    found = equations.linearise(solution, unknowns, ahead)
+    direction = found.direction
+    y = equations.reduced(solution, direction)
+    if metric.product(y, ahead) < 0:
+        direction, y = -direction, -y
+    return found, direction / metric.length(y)
