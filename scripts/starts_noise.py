@@ -15,8 +15,8 @@ import numpy as np
 from bench_path import REFERENCE, SCENE
 
 from ribbonopt.guess import Guess
-from ribbonopt.mechanics import RodFields
 from ribbonopt.mechanics.rotations import matrix_of, quaternions_from
+from ribbonopt.mechanics.section import RodFields
 from ribbonopt.pipeline.prepared import Prepared, prepare
 from ribbonopt.scene import load_scene
 

@@ -19,6 +19,7 @@ from ribbonopt.solution.trajectory import Trajectory
 from ribbonopt.solvers.condense import CondensedSystem
 
 ROUNDING = 1e-15
+NOTHING = 1e-100  # sizes below it are those of a straight ribbon, whose laws are guarded at m = 0
 
 
 @dataclass(frozen=True, eq=False)
@@ -83,7 +84,7 @@ def relative_error(solution: Solution) -> tuple[float, str]:
     along the ribbon, states by the length.
     """
     found = analyse(solution)
-    floor = np.finfo(float).tiny
+    floor = NOTHING
     relative = {
         name: (found.errors[name] if size > floor else 0.0) / max(size, floor)
         for name, size in found.sizes.items()

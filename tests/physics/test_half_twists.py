@@ -212,7 +212,8 @@ def test_another_number_of_half_twists_is_no_answer(solved: Solved, configs: Pat
 def asked_of(solution: Solution, loop: Loop) -> list[str]:
     scene = solution.scene
     boundary = replace(scene.boundary, loop=loop)
-    return loop_problems(replace(solution, scene=replace(scene, boundary=boundary)), loop, 1e-9)
+    posed = replace(solution.posed, given=replace(scene, boundary=boundary))
+    return loop_problems(replace(solution, posed=posed), loop, 1e-9)
 
 
 @pytest.mark.parametrize("piece", ["whole", "half", "fundamental"])

@@ -199,7 +199,8 @@ def test_a_finer_mesh_is_tried_once_where_refinement_led_nowhere(configs: Path) 
     assert again.timings["total"] == pytest.approx(2 * found.timings["total"])
     assert tried(replace(found, status=Status.STALLED)) is missed
     asked.clear()
-    missed = replace(missed, scene=replace(scene, transcription=Collocation(intervals=5)))
+    given = replace(scene, transcription=Collocation(intervals=5))
+    missed = replace(missed, posed=replace(missed.posed, given=given))
     assert tried(found) is missed and not asked  # refinement did lead somewhere
 
 

@@ -25,11 +25,13 @@ def of_size(
     start, end = solution.scene.interval
     interval = (start * length, end * length)
     ribbon = RibbonSizes(length, width, thickness, 1e9, 0.3)
-    return replace(solution, scene=replace(solution.scene, interval=interval, ribbon=ribbon))
+    given = replace(solution.scene, interval=interval, ribbon=ribbon)
+    return replace(solution, posed=replace(solution.posed, given=given))
 
 
 def with_loop(solution: Solution, loop: Loop) -> Solution:
-    return replace(solution, scene=replace(solution.scene, boundary=Boundary(loop=loop)))
+    given = replace(solution.scene, boundary=Boundary(loop=loop))
+    return replace(solution, posed=replace(solution.posed, given=given))
 
 
 @pytest.mark.parametrize("name", ["moebius_half", "elastica_clamped", "helix_clamped"])
