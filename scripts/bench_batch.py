@@ -24,7 +24,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 from stopwatches import stopwatches
 
 from ribbonopt.accuracy import estimate
-from ribbonopt.attempt import attempt as attempts
+from ribbonopt.attempt import attempt
 from ribbonopt.solvers.condense import CondensedSystem
 from ribbonopt.solvers.newton import NewtonSolver
 from ribbonopt.studies.batch import worker
@@ -65,10 +65,10 @@ RATIO, GROWTH = 1.7, 1.1  # of 2 workers over 1; of memory after the first 100 r
 WATCHED = (
     (worker.Worker, "_solved", "in all"),
     (worker, "loads_scene", "scene read"),
-    (worker, "structure_of", "structure"),
+    (Posed, "of", "posed"),
     (NewtonSolver, "solve", "Newton's method"),
     (estimate, "_analysed", "estimate"),
-    (attempts, "verify", "verification"),
+    (attempt, "verify", "verification"),
     (ElementBlocks, "residuals", "of these: residuals"),
     (ElementBlocks, "linearize", "of these: Jacobians"),
     (CondensedSystem, "__init__", "of these: factors"),
