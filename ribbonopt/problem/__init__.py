@@ -25,6 +25,10 @@ def formulate(posed: Posed) -> tuple[Ribbon, BoundaryValueProblem]:
         If the formulation does not suit the law, the states or the loads.
     """
     ribbon, name = Ribbon.of(posed), formulation_name(posed.scene)
+    if posed.scene.states == "planar":
+        from .wellposed.plane import in_plane  # few scenes are held in a plane
+
+        ribbon = in_plane(ribbon, posed)
     formulation: Formulation = getattr(import_module(f"{__name__}.{name}"), name)
     return ribbon, formulation(ribbon, posed)
 

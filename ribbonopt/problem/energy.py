@@ -32,6 +32,11 @@ from .equilibrium import local_stress
 from .posed import RECOVERED, Posed
 from .ribbon import Ribbon
 
+WITHOUT = {
+    "full": "costates of nine director components are not unique",
+    "planar": "it is stated in space, where the scene's ends may not determine it",
+}
+
 
 def energy(ribbon: Ribbon, posed: Posed) -> BoundaryValueProblem:
     """Return the optimal-control problem of a ribbon.
@@ -57,7 +62,7 @@ def minimum(ribbon: Ribbon) -> BoundaryValueProblem:
     # Force and moment for outputs and verification only: they follow from the costates.
     loads = ca.vertcat(*(ribbon.theta[name] for name in RECOVERED))
     section, (start, end) = ribbon.section(x, loads), ribbon.interval
-    beyond = dead_force(ribbon) + ribbon.model.balance.beyond(ribbon.position, end)
+    beyond = dead_force(ribbon) + ribbon.model.beyond(ribbon.position, end)
     program = _program(ribbon.law, section.rod.own)
     phase = Phase(
         dynamics=ribbon.rates(section, program.u),
@@ -161,12 +166,8 @@ def refusal(ribbon: Ribbon, posed: Posed) -> Refusal | None:
             "use law variational (smooth, with an energy) or another formulation",
             "formulation",
         )
-    if posed.scene.states == "full":
-        return Refusal(
-            "costates of nine director components are not unique",
-            "use states: reduced",
-            "formulation",
-        )
+    if posed.scene.states in WITHOUT:
+        return Refusal(WITHOUT[posed.scene.states], "use states: reduced", "formulation")
     return _load_without_potential(ribbon) or _end_without_potential(ribbon)
 
 

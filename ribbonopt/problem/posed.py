@@ -19,6 +19,7 @@ from ribbonopt.mechanics.ends.conditions import Condition
 from ribbonopt.mechanics.laws.catalogue import numbers_of
 from ribbonopt.mechanics.loads.catalogue import loads_of
 from ribbonopt.mechanics.loads.load import Load
+from ribbonopt.mechanics.planar import Plane
 from ribbonopt.scene import Scene
 from ribbonopt.scene.units import Units, in_special_units, units_of
 
@@ -103,7 +104,9 @@ class Posed:
         )
         loads = tuple(type(load).__name__ for load in self.loads)
         settings = scene.law.type, scene.formulation, scene.states, scene.transcription
-        return (*settings, scene.solver, tuple(self.theta), conditions, loads, scene.boundary.also)
+        plane = Plane.of(self.start[1]) if scene.states == "planar" else None
+        rest = tuple(self.theta), conditions, loads, scene.boundary.also, plane
+        return (*settings, scene.solver, *rest)
 
     @cached_property
     def start(self) -> Place:

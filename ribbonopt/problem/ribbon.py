@@ -17,7 +17,8 @@ from ribbonopt.mechanics.ends.conditions import Condition, Context, CrossSection
 from ribbonopt.mechanics.laws.catalogue import law_of, numbers_of
 from ribbonopt.mechanics.laws.law import ConstitutiveLaw
 from ribbonopt.mechanics.loads.load import Load
-from ribbonopt.mechanics.model import MODELS, RodModel, least_model
+from ribbonopt.mechanics.model import RodModel, full_model, least_model
+from ribbonopt.mechanics.planar import Plane, planar_model
 from ribbonopt.mechanics.section import Section
 
 from .posed import Posed
@@ -39,6 +40,8 @@ class Ribbon:
         Symbol of every parameter by name.
     position : SX symbol
         Arclength s, on which laws and loads may depend.
+    idle : set of str
+        Conditions that hold by themselves, since the model cannot do otherwise.
     """
 
     model: RodModel
@@ -47,6 +50,7 @@ class Ribbon:
     loads: tuple[Load, ...]
     theta: Mapping[str, ca.SX]
     position: ca.SX
+    idle: frozenset[str] = frozenset()
     _kept: dict[Callable[..., Any], Any] = field(default_factory=dict, repr=False)
 
     @classmethod
@@ -55,16 +59,15 @@ class Ribbon:
         theta, position = {name: ca.SX.sym(name) for name in posed.theta}, ca.SX.sym("s")
         numbers = {name: theta[f"law.{name}"] for name in numbers_of(posed.scene.law)}
         law = law_of(posed.scene.law, numbers, position)
-        model = MODELS[posed.scene.states](posed.loads, theta.__getitem__)
+        model = _model_of(posed, theta)
         return cls(model, law, posed.conditions, posed.loads, theta, position)
 
     @property
     def least(self) -> Ribbon:
         """The same with the fewest unknowns."""
-        model = least_model(self.loads, self.theta.__getitem__)
-        if model.states == self.model.states:
+        if not self.model.redundant:
             return self
-        return replace(self, model=model, _kept={})
+        return replace(self, model=least_model(self.loads, self.theta.__getitem__), _kept={})
 
     def kept(self, make: Callable[[Ribbon], T]) -> T:
         """Return what is made of these mechanics, such as functions: made once, kept with them."""
@@ -117,8 +120,9 @@ class Ribbon:
         x, c = ca.SX.sym("x", len(self.states)), ca.SX.sym("c", len(self.constants))
         count = len(self.model.states)
         rod = self.model.section(x[:count], c, self.position, self.reference, x[count:])
-        u = ca.densify(self.law.strain(rod.stress))
-        outputs = [rod.r, rod.d1, rod.d2, rod.d3, rod.n, rod.m, rod.own, u]
+        u = self.law.strain(rod.stress)
+        vectors = [rod.r, rod.d1, rod.d2, rod.d3, rod.n, rod.m, rod.own, u]
+        outputs = [ca.densify(vector) for vector in vectors]
         return ca.Function("section", [x, c, self.parameters, self.position], outputs)
 
     def rates(self, section: CrossSection, u: ca.SX) -> ca.SX:
@@ -142,7 +146,8 @@ class Ribbon:
             for end, s in sections.items()
         ]
         chosen = [c for c in self.conditions if c.kinematic or not kinematic_only]
-        return _merge(meaning, *laws, *(condition.residuals(context) for condition in chosen))
+        found = _merge(meaning, *laws, *(condition.residuals(context) for condition in chosen))
+        return {name: value for name, value in found.items() if name not in self.idle}
 
     def verdicts(self, start: ca.SX, end: ca.SX, c: ca.SX) -> dict[str, ca.SX]:
         """Return what to verify on a solution, by name."""
@@ -173,6 +178,14 @@ class Ribbon:
         states = zip(names, (start, end), self.interval, strict=True)
         sections = {name: self.section(x, c, s) for name, x, s in states}
         return Context(sections, self.theta.__getitem__)
+
+
+def _model_of(posed: Posed, theta: Mapping[str, ca.SX]) -> RodModel:
+    """Return the model that a scene names by `states`."""
+    states, parts = posed.scene.states, (posed.loads, theta.__getitem__)
+    if states == "planar":
+        return planar_model(*parts, Plane.of(posed.start[1]))
+    return full_model(*parts) if states == "full" else least_model(*parts)
 
 
 def _merge(*parts: Mapping[str, ca.SX]) -> dict[str, ca.SX]:

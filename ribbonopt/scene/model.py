@@ -182,7 +182,7 @@ class Scene:
     formulation: Literal["inverted", "algebraic", "differentiated", "energy"] | Algebraic = (
         "inverted"
     )
-    states: Literal["auto", "reduced", "full"] = "reduced"
+    states: Literal["auto", "reduced", "planar", "full"] = "reduced"
     interval: tuple[float, float] = (0.0, 1.0)
     parameters: dict[str, float] = field(default_factory=dict)
     transcription: Collocation | Shooting = Collocation()

@@ -28,7 +28,8 @@ def shapes_for(posed: Posed) -> Iterator[Shape]:
     if loop is not None:
         yield loop_shape(posed, loop)
         return
-    start, end = place_ends(Ribbon.of(posed), posed)
+    spatial = posed.under(states="reduced")
+    start, end = place_ends(Ribbon.of(spatial), spatial)
     length = posed.length
     chord = float(np.linalg.norm(end[0] - start[0]))
     # A strip that buckles: chord / length = 1 - bow^2 / 4.

@@ -40,7 +40,8 @@ class HomotopyPath:
 
 def smooth_of(posed: Posed, law: Law) -> Posed:
     """Return a scene under a smooth law, as these solves want it."""
-    settings = {"formulation": "inverted", "states": "reduced", "solver": SOLVER}
+    states = "planar" if posed.scene.states == "planar" else "reduced"
+    settings = {"formulation": "inverted", "states": states, "solver": SOLVER}
     return posed.under(law=law, transcription=MESH, **settings)
 
 

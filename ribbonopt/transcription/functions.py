@@ -197,7 +197,7 @@ def _stage_functions(bvp: BoundaryValueProblem) -> tuple[StageFunctions, ...]:
 
 
 def _at(bvp: BoundaryValueProblem, phase: Phase, position: ca.SX) -> tuple[ca.SX, ca.SX | None]:
-    equations = ca.vertcat(phase.length * phase.dynamics, phase.algebraic, phase.path)
+    equations = ca.densify(ca.vertcat(phase.length * phase.dynamics, phase.algebraic, phase.path))
     cost = None if phase.cost is None else phase.length * phase.cost
     if not ca.depends_on(ca.vertcat(equations, 0 if cost is None else cost), bvp.position):
         return equations, cost

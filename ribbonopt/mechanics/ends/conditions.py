@@ -116,8 +116,8 @@ class Frame(Condition):
 
     def residuals(self, context: Context) -> Named:
         section = context.ends[self.end]
-        residual = section.model.alignment(section.x, self._quaternion(context))
-        return {f"{self.name} (turn about {a})": residual[i] for i, a in enumerate("xyz")}
+        turns = section.model.alignment(section.x, self._quaternion(context))
+        return {f"{self.name} ({turn})": residual for turn, residual in turns.items()}
 
     def verdicts(self, context: Context) -> Named:
         rod = context.ends[self.end].rod

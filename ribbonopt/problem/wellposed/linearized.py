@@ -89,12 +89,13 @@ class Linearized:
         """
         z = self.generic(seed)
         scale = self.scales(z)
-        count, last = len(self.names), slice(self.nx + 3, self.nx + 7)
-        residuals, jacobian = np.empty(count + 1), np.zeros((count + 1, len(z)))
+        count, model = len(self.names), self.ribbon.model
+        more = len(model.defect(self.parts(z)[1])[0])
+        residuals, jacobian = np.empty(count + more), np.zeros((count + more, len(z)))
+        last = slice(self.nx, self.nx + len(model.states))
         for _ in range(STEPS):
             residuals[:count], jacobian[:count] = self.at(z)
-            q = z[last]
-            residuals[count], jacobian[count, last] = q @ q - 1, 2 * q
+            residuals[count:], jacobian[count:, last] = model.defect(z[last])
             scaled = jacobian * scale
             rows = np.sqrt(np.einsum("ij,ij->i", scaled, scaled))
             relative = residuals / np.where(rows > 0, rows, np.nan)
@@ -112,7 +113,7 @@ class Linearized:
         start, _, constants = self.parts(z)
         known = dict(zip(self.ribbon.states, start, strict=True))
         known |= dict(zip(self.ribbon.constants, constants, strict=True))
-        n, m = ([known[f"{v}{axis}"] for axis in "xyz"] for v in "nm")
+        n, m = ([known.get(f"{v}{axis}", 0.0) for axis in "xyz"] for v in "nm")
         force = max(1 / self.length**2, float(np.linalg.norm(n)))
         moment = max(1 / self.length, float(np.linalg.norm(m)))
         sizes = {"r": self.length, "n": force, "m": moment, "a": moment}

@@ -15,7 +15,7 @@ from __future__ import annotations
 import numpy as np
 
 from ribbonopt.arrays import Array
-from ribbonopt.mechanics.rotations import cross_matrix, matrix_of, product
+from ribbonopt.mechanics.rotations import matrix_of, product
 
 from .linearized import Linearized
 
@@ -76,24 +76,19 @@ def one_sided(conditions: Linearized, z: Array) -> bool:
     the circle held at one point is isolated, and no error.
     """
     start, end, _ = conditions.parts(z)
-    gap, turn = end[:3] - start[:3], matrix_of(start[3:7]).T @ matrix_of(end[3:7])
+    (r0, first), (r1, last) = (conditions.ribbon.model.place(x) for x in (start, end))
+    gap, turn = r1 - r0, first.T @ last
     reversed_ = np.abs(turn - np.diag([-1.0, -1.0, 1.0])).max() < CLOSED
     return bool(reversed_ and np.linalg.norm(gap) < CLOSED * conditions.length)
 
 
 def rigid(conditions: Linearized, z: Array) -> Array:
     """Return changes (nz, 6) of the ends z: translations by the length, then rotations."""
-    nx, (*_, c) = conditions.nx, conditions.parts(z)
-    balance = conditions.ribbon.model.balance
-    result = np.zeros((len(z), 6))
-    for at in (0, nx):
-        r, q0, q = z[at : at + 3] - conditions.reference, z[at + 3], z[at + 4 : at + 7]
-        result[at : at + 3, :3] = np.eye(3)
-        result[at : at + 3, 3:] = -cross_matrix(r)
-        result[at + 3, 3:] = -q / 2
-        result[at + 4 : at + 7, 3:] = (q0 * np.eye(3) - cross_matrix(q)) / 2
-        own = slice(at + 7, at + 7 + len(balance.states))
-        result[own], result[2 * nx :] = balance.moved(z[own], c)
+    nx, (*ends, c) = conditions.nx, conditions.parts(z)
+    model, result = conditions.ribbon.model, np.zeros((len(z), 6))
+    for at, x in zip((0, nx), ends, strict=True):
+        own = slice(at, at + len(model.states))
+        result[own], result[2 * nx :] = model.moved(x[: len(model.states)], c, conditions.reference)
     result[:, :3] *= conditions.length
     return result
 
@@ -112,7 +107,7 @@ def along_itself(conditions: Linearized, z: Array) -> Array:
 
 def _allowed(conditions: Linearized) -> Array:
     """Return combinations (6, k) of the rigid motions that take equilibria into equilibria."""
-    motions = np.eye(6)
+    motions = conditions.ribbon.model.motions
     for load in conditions.posed.loads:
         motions = motions @ load.symmetries(motions)
     return motions

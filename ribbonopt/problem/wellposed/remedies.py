@@ -8,7 +8,6 @@ import numpy as np
 
 from ribbonopt.arrays import Array
 from ribbonopt.errors import ModelError
-from ribbonopt.mechanics.rotations import matrix_of
 
 from .linearized import Linearized
 
@@ -69,8 +68,9 @@ def sliding_refusal(conditions: Linearized, z: Array) -> ModelError:
 
 def _ends(conditions: Linearized, z: Array) -> _Ends:
     states = conditions.parts(z)[:2]
-    r = np.array([x[:3] for x in states]) - conditions.reference
-    frames = np.array([matrix_of(x[3:7]) for x in states])
+    places = [conditions.ribbon.model.place(x) for x in states]
+    r = np.array([r for r, _ in places]) - conditions.reference
+    frames = np.array([frame for _, frame in places])
     return _Ends(r / conditions.length, frames, -conditions.reference / conditions.length)
 
 
