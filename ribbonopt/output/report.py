@@ -104,7 +104,9 @@ def _number(value: float | None, error: float | None, small: bool) -> str:
 
 def _drifts(drift: Mapping[str, float | None]) -> str:
     words = {"n": "n", "n_dot_m": "n.m", "H": "H", "orthonormality": "orthonormality"}
-    return ", ".join(f"{words[k]} {_short(v)}" for k, v in drift.items())
+    # Under loads less is conserved; without convergence nothing is known.
+    known = {k: v for k, v in drift.items() if v is not None} or drift
+    return ", ".join(f"{words[k]} {_short(v)}" for k, v in known.items())
 
 
 def _steps(path: Sequence[Mapping[str, Any]]) -> str:

@@ -19,7 +19,10 @@ def skipped(
     if scene.states != "full":
         if not posed.loads:
             result.append("force and moment as states (no loads: n is constant, m follows from r)")
-        result.append("nine director components (a unit quaternion carries the frame)")
+        if scene.states == "planar":
+            result.append("what is across the plane (an angle carries the frame)")
+        else:
+            result.append("nine director components (a unit quaternion carries the frame)")
     if all(phase.cost is None for phase in problem.phases):
         result.append("second derivatives (nothing is minimised)")
     may_need_it = scene.guess == "auto" if not solvers else "ipopt" in solvers
