@@ -59,7 +59,6 @@ class Balance(ABC):
         """
 
 
-@dataclass(frozen=True, eq=False)
 class ConstantForce(Balance):
     """No loads: constants n and m_0, with m = m_0 + n x (r - reference)."""
 

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from dataclasses import dataclass
 
 import casadi as ca
 import numpy as np
@@ -39,7 +38,6 @@ class Orientation(ABC):
         """Orientation states (k, nx) of the frames (k, 3, 3)."""
 
 
-@dataclass(frozen=True, eq=False)
 class UnitQuaternion(Orientation):
     """Four states q with q' = q u / 2; Gauss collocation keeps |q| = 1 to rounding."""
 
@@ -64,7 +62,6 @@ class UnitQuaternion(Orientation):
         return quaternions_from(frames)
 
 
-@dataclass(frozen=True, eq=False)
 class DirectorTriad(Orientation):
     """Nine states, the lab components of d1, d2, d3, eq. (2.2)."""
 

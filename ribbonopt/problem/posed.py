@@ -17,14 +17,14 @@ from ribbonopt.arrays import Array
 from ribbonopt.mechanics.ends.boundary import conditions_of, start_frame, start_position
 from ribbonopt.mechanics.ends.conditions import Condition
 from ribbonopt.mechanics.laws.catalogue import numbers_of
-from ribbonopt.mechanics.loads.catalogue import loads_of
 from ribbonopt.mechanics.loads.load import Load
-from ribbonopt.mechanics.planar import Plane
-from ribbonopt.scene import Scene
+from ribbonopt.scene import Loads, Scene
 from ribbonopt.scene.units import Units, in_special_units, units_of
 
 #: force and moment at the start where they are not unknowns but follow from costates
 RECOVERED = tuple(f"recovered.{name}" for name in ("nx", "ny", "nz", "mx", "my", "mz"))
+
+NO_LOADS = Loads()
 
 Place = tuple[Array, Array]  # position (3,) and frame (3, 3), lab
 
@@ -54,7 +54,12 @@ class Posed:
     def of(cls, scene: Scene) -> Posed:
         """Pose a scene."""
         special = in_special_units(scene)
-        return cls(scene, special, conditions_of(special), loads_of(special))
+        loads: tuple[Load, ...] = ()
+        if special.loads != NO_LOADS:
+            from ribbonopt.mechanics.loads.catalogue import loads_of  # few scenes have any
+
+            loads = loads_of(special)
+        return cls(scene, special, conditions_of(special), loads)
 
     def under(self, **changes: Any) -> Posed:
         """Return the same ribbon, at the same ends, under other settings of the special scene.
@@ -104,8 +109,9 @@ class Posed:
         )
         loads = tuple(type(load).__name__ for load in self.loads)
         settings = scene.law.type, scene.formulation, scene.states, scene.transcription
-        plane = Plane.of(self.start[1]) if scene.states == "planar" else None
-        rest = tuple(self.theta), conditions, loads, scene.boundary.also, plane
+        # In a plane, which conditions are left depends on what plane it is.
+        plane = self.start[1][:, 1].round().tolist() if scene.states == "planar" else ()
+        rest = tuple(self.theta), conditions, loads, scene.boundary.also, tuple(plane)
         return (*settings, scene.solver, *rest)
 
     @cached_property

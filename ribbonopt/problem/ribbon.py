@@ -18,7 +18,6 @@ from ribbonopt.mechanics.laws.catalogue import law_of, numbers_of
 from ribbonopt.mechanics.laws.law import ConstitutiveLaw
 from ribbonopt.mechanics.loads.load import Load
 from ribbonopt.mechanics.model import RodModel, full_model, least_model
-from ribbonopt.mechanics.planar import Plane, planar_model
 from ribbonopt.mechanics.section import Section
 
 from .posed import Posed
@@ -184,6 +183,8 @@ def _model_of(posed: Posed, theta: Mapping[str, ca.SX]) -> RodModel:
     """Return the model that a scene names by `states`."""
     states, parts = posed.scene.states, (posed.loads, theta.__getitem__)
     if states == "planar":
+        from ribbonopt.mechanics.planar import Plane, planar_model  # few scenes are in a plane
+
         return planar_model(*parts, Plane.of(posed.start[1]))
     return full_model(*parts) if states == "full" else least_model(*parts)
 

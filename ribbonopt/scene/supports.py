@@ -40,7 +40,6 @@ class Position:
     takes = ()
 
 
-@dataclass(frozen=True)
 class PositionOnLine:
     """The point is on the line through `position` `along` a direction."""
 
@@ -48,7 +47,6 @@ class PositionOnLine:
     takes = ()
 
 
-@dataclass(frozen=True)
 class PositionAtDistance:
     """The point is at a `distance` from the start."""
 
@@ -56,7 +54,6 @@ class PositionAtDistance:
     takes = ()
 
 
-@dataclass(frozen=True)
 class WholeFrame:
     """The directors are held: `directors`, or two or three of d1, d2, d3."""
 
@@ -64,7 +61,6 @@ class WholeFrame:
     takes = ()
 
 
-@dataclass(frozen=True)
 class AxisAlong:
     """The director `axis` points `along` a direction."""
 
@@ -72,7 +68,6 @@ class AxisAlong:
     takes = ()
 
 
-@dataclass(frozen=True)
 class TautString:
     """The force is along the chord from the start."""
 
@@ -95,7 +90,6 @@ class LoadVector:
         return (self.load,)
 
 
-@dataclass(frozen=True)
 class ForceAlongLine:
     """The force along the direction `along` vanishes, or is that of a given dead load."""
 

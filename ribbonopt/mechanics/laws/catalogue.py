@@ -9,26 +9,31 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import fields
+from importlib import import_module
 
 import casadi as ca
 
 from ribbonopt.scene import Law
 
-from .blended import HomotopyLaw, RegularizedLaw
-from .kirchhoff import KirchhoffLaw
 from .law import ConstitutiveLaw
-from .sadowsky import SadowskyLaw, SingleSheetLaw
-from .variational import VariationalLaw
 
-#: laws by the name a scene gives them; their fields are those of the scene's classes
-LAWS: Mapping[str, type[ConstitutiveLaw]] = {
-    "kirchhoff": KirchhoffLaw,
-    "sadowsky": SadowskyLaw,
-    "single_sheet": SingleSheetLaw,
-    "regularized": RegularizedLaw,
-    "homotopy": HomotopyLaw,
-    "variational": VariationalLaw,
+#: laws by the name a scene gives them: module and class, which is imported when a scene asks for
+#: it; the fields of the class are those of the scene's
+LAWS: Mapping[str, tuple[str, str]] = {
+    "kirchhoff": ("kirchhoff", "KirchhoffLaw"),
+    "sadowsky": ("sadowsky", "SadowskyLaw"),
+    "single_sheet": ("sadowsky", "SingleSheetLaw"),
+    "regularized": ("blended", "RegularizedLaw"),
+    "homotopy": ("blended", "HomotopyLaw"),
+    "variational": ("variational", "VariationalLaw"),
 }
+
+
+def law_class(name: str) -> type[ConstitutiveLaw]:
+    """Return the class of a law by the name a scene gives it."""
+    module, kind = LAWS[name]
+    found: type[ConstitutiveLaw] = getattr(import_module(f".{module}", __package__), kind)
+    return found
 
 
 def numbers_of(law: Law) -> dict[str, float]:
@@ -51,7 +56,7 @@ def law_of(law: Law, numbers: Mapping[str, ca.SX], position: ca.SX) -> Constitut
         Symbol of the arclength s, on which numbers may depend.
     """
     own = getattr(law, "constitutive", None)
-    found: ConstitutiveLaw = own(numbers, position) if own else LAWS[law.type](**numbers)
+    found: ConstitutiveLaw = own(numbers, position) if own else law_class(law.type)(**numbers)
     return found
 
 

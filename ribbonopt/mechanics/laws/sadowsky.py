@@ -120,7 +120,6 @@ class SingleSheetLaw(RibbonLaw):
         return sheet_sum(m2, m3, self.chi) ** 2 / 8
 
 
-@dataclass(frozen=True, eq=False)
 class MixtureLaw(ConstitutiveLaw):
     """Arcs of both sheets, epsilon = 0: m2 = 0, u3 = m3 / 4, u2 = 2 n2 u3 / K.
 
