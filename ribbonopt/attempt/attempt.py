@@ -128,12 +128,12 @@ class Attempt:
     @property
     def factorizations(self) -> int:
         """Matrices factored by the last solver."""
-        return 0 if self._last is None else sum(r.factorizations for r in self._last.attempts)
+        return 0 if self._last is None else sum(r.factorizations for r in self._last.tried)
 
     @property
     def iterations(self) -> int:
         """Iterations of the last solver."""
-        return 0 if self._last is None else sum(r.iterations for r in self._last.attempts)
+        return 0 if self._last is None else sum(r.iterations for r in self._last.tried)
 
     def _solution(self, report: SolveReport, check: bool) -> Solution:
         parts = self.posed, self.problem, self.nlp, report, self.p, self.sheets

@@ -28,7 +28,7 @@ class Ledger:
 
     def enter(self, report: SolveReport, words: str) -> None:
         """Enter what a solver reports, one step for each solver that was tried."""
-        for tried in report.attempts:
+        for tried in report.tried:
             outcome = "" if tried.status.converged else f" ({tried.status.name.lower()})"
             self.note(f"{tried.solver}, {words}{outcome}", tried.total, tried.iterations)
             self.reports.append(tried)

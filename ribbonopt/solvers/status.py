@@ -123,6 +123,6 @@ class SolveReport:
     factors: Factors | None = None
 
     @property
-    def attempts(self) -> tuple[SolveReport, ...]:
+    def tried(self) -> tuple[SolveReport, ...]:
         """Reports of all solvers that were tried, in order."""
         return (*self.earlier, self)

@@ -16,7 +16,7 @@ from ribbonopt.output.report import report
 from ribbonopt.output.results import load_solution, save_solution
 from ribbonopt.output.summary import summarize
 from ribbonopt.pipeline.check import check_scene
-from ribbonopt.pipeline.prepared import Prepared, prepare
+from ribbonopt.pipeline.prepared import Prepared, prepare, solve
 from ribbonopt.scene import load_scene
 from ribbonopt.solution.made import solution_of
 from ribbonopt.solution.solution import Solution
@@ -197,3 +197,16 @@ def test_what_is_skipped_depends_on_the_formulation(configs: Path) -> None:
     assert "IPOPT" in said("formulation=inverted")
     assert "IPOPT" not in said(BOUNDED)
     assert "second derivatives" not in said(ENERGY)
+
+
+@pytest.mark.parametrize("states", ["reduced", "full"])
+@pytest.mark.parametrize("formulation", [BOUNDED, FREE])
+def test_an_end_without_moment_has_strains_in_the_algebraic_form(
+    configs: Path, formulation: str, states: str
+) -> None:
+    # There the equations of the law are singular.
+    law = "law={type: regularized, epsilon: 0.1}"
+    overrides = [law, formulation, f"states={states}"]
+    found = solve(load_scene(configs / "cantilever.yaml", overrides))
+    assert found.verified, found.message
+    np.testing.assert_allclose(found.sample(1.0, "u"), 0, atol=1e-9)

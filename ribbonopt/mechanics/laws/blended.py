@@ -12,7 +12,7 @@ import casadi as ca
 
 from .implicit import ImplicitLaw, polynomial_form
 from .law import ConstitutiveLaw, RibbonLaw, Stress
-from .relations import Pair, blended_strain, inverse
+from .relations import Components, blended_strain, inverse
 from .sadowsky import SwitchedLaw
 
 
@@ -27,13 +27,13 @@ class BlendedLaw(SwitchedLaw):
     def weights(self) -> tuple[ca.SX | float, ca.SX]:
         """The numbers rho and epsilon of the family."""
 
-    def strains(self, m2: ca.SX, m3: ca.SX) -> Pair:
+    def strains(self, m2: ca.SX, m3: ca.SX) -> Components:
         return blended_strain(m2, m3, *self.weights)
 
     def implicit(self, stress: Stress) -> ImplicitLaw:
         return polynomial_form(*self.weights, self.strain(stress), stress.m)
 
-    def moments(self, u2: ca.SX, u3: ca.SX) -> Pair:
+    def moments(self, u2: ca.SX, u3: ca.SX) -> Components:
         return inverse(self.strains, u2, u3)
 
     def stored(self, u2: ca.SX, u3: ca.SX) -> None:
@@ -79,10 +79,10 @@ class BlendedSheetLaw(RibbonLaw):
     variational = False
     closed_moment = False
 
-    def strains(self, m2: ca.SX, m3: ca.SX) -> Pair:
+    def strains(self, m2: ca.SX, m3: ca.SX) -> Components:
         return blended_strain(m2, m3, self.rho, self.epsilon, self.chi)
 
-    def moments(self, u2: ca.SX, u3: ca.SX) -> Pair:
+    def moments(self, u2: ca.SX, u3: ca.SX) -> Components:
         return inverse(self.strains, u2, u3)
 
     def stored(self, u2: ca.SX, u3: ca.SX) -> None:

@@ -14,7 +14,7 @@ from dataclasses import dataclass
 
 import casadi as ca
 
-from .relations import Pair, norm
+from .relations import Components, norm
 
 
 @dataclass(frozen=True, eq=False)
@@ -39,7 +39,7 @@ class ImplicitLaw:
     estimate: ca.SX
 
 
-def bounded(moments: Callable[[ca.SX, ca.SX], Pair], strain: ca.SX, m: ca.SX) -> ImplicitLaw:
+def bounded(moments: Callable[[ca.SX, ca.SX], Components], strain: ca.SX, m: ca.SX) -> ImplicitLaw:
     """0 = dW/du - m, with |eta| <= 1 as u3^2 <= u2^2."""
     u = ca.SX.sym("u", 2)
     equations = ca.vertcat(*moments(u[0], u[1])) - m[1:]

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import casadi as ca
 
 from .law import RibbonLaw
-from .relations import Pair
+from .relations import Components
 
 
 @dataclass(frozen=True, eq=False)
@@ -19,10 +19,10 @@ class KirchhoffLaw(RibbonLaw):
     linear_at_zero = True
     developable = False
 
-    def strains(self, m2: ca.SX, m3: ca.SX) -> Pair:
+    def strains(self, m2: ca.SX, m3: ca.SX) -> Components:
         return m2 / self.B2, m3 / self.B3
 
-    def moments(self, u2: ca.SX, u3: ca.SX) -> Pair:
+    def moments(self, u2: ca.SX, u3: ca.SX) -> Components:
         return self.B2 * u2, self.B3 * u3
 
     def stored(self, u2: ca.SX, u3: ca.SX) -> ca.SX:

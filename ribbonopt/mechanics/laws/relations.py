@@ -9,7 +9,7 @@ import casadi as ca
 GUARD = 1e-60
 TINY = 1e-150  # stands for an exact zero in a denominator; its square is still a normal number
 
-Pair = tuple[ca.SX, ca.SX]
+Components = tuple[ca.SX, ca.SX]
 
 
 def sadowsky_energy(u2: ca.SX, u3: ca.SX) -> ca.SX:
@@ -38,7 +38,7 @@ def nonzero(a: ca.SX) -> ca.SX:
     return ca.if_else(a == 0, TINY, a)
 
 
-def sheet_moment(u2: ca.SX, u3: ca.SX) -> Pair:
+def sheet_moment(u2: ca.SX, u3: ca.SX) -> Components:
     """Eqs. (2.4)-(2.5), the first factored so that it does not cancel near |eta| = 1."""
     eta = u3 / nonzero(u2)
     return (u2 - u3) * (1 + eta) * (1 + eta**2), 2 * u3 * (1 + eta**2)
@@ -56,7 +56,7 @@ def blended_strain(
     rho: ca.SX | float,
     epsilon: ca.SX,
     chi: float | None = None,
-) -> Pair:
+) -> Components:
     """Eq. (C 1) with numerators and denominators multiplied by M + mu.
 
     With a sheet chi, mu = |m2| is continued as chi m2: analytic where m2 changes sign.
@@ -71,7 +71,7 @@ def blended_strain(
     return m2 * s**2 / (bending * torsion), m3 * s / (2 * torsion)
 
 
-def inverse(strain: Callable[[ca.SX, ca.SX], Pair], u2: ca.SX, u3: ca.SX) -> Pair:
+def inverse(strain: Callable[[ca.SX, ca.SX], Components], u2: ca.SX, u3: ca.SX) -> Components:
     """Moments at given strains for a 1-homogeneous, sign-preserving, monotone law.
 
     Homogeneity leaves one unknown, t = log |m2 / m3|, found by bisection on the ratio of the
@@ -79,7 +79,7 @@ def inverse(strain: Callable[[ca.SX, ca.SX], Pair], u2: ca.SX, u3: ca.SX) -> Pai
     scale.
     """
 
-    def direction(t: ca.SX) -> Pair:
+    def direction(t: ca.SX) -> Components:
         return ca.exp(ca.fmin(t, 0)), ca.exp(ca.fmin(-t, 0))
 
     def log_ratio(t: ca.SX) -> ca.SX:

@@ -15,7 +15,7 @@ import casadi as ca
 from .implicit import ImplicitLaw, bounded
 from .law import ConstitutiveLaw, Relaxed, RibbonLaw, Stress
 from .relations import (
-    Pair,
+    Components,
     convexified_energy,
     norm,
     sadowsky_complementary_energy,
@@ -68,11 +68,11 @@ class SadowskyLaw(SwitchedLaw):
         # The gradient of W_S itself: eqs. (2.4)-(2.5) have solutions in the forbidden region too.
         return bounded(sheet_moment, self.strain(stress), stress.m)
 
-    def strains(self, m2: ca.SX, m3: ca.SX) -> Pair:
+    def strains(self, m2: ca.SX, m3: ca.SX) -> Components:
         M, mu = norm(m2, m3), ca.fabs(m2)
         return ca.sign(m2) * (M + mu) ** 2 / (4 * M), m3 * (M + mu) / (4 * M)
 
-    def moments(self, u2: ca.SX, u3: ca.SX) -> Pair:
+    def moments(self, u2: ca.SX, u3: ca.SX) -> Components:
         allowed = ca.fabs(u2) >= ca.fabs(u3)
         m2, m3 = sheet_moment(ca.if_else(allowed, u2, 1), u3)
         return ca.if_else(allowed, m2, 0) * (u2 != 0), ca.if_else(allowed, m3, 4 * u3)
@@ -105,12 +105,12 @@ class SingleSheetLaw(RibbonLaw):
     def implicit(self, stress: Stress) -> ImplicitLaw:
         return bounded(self.moments, self.strain(stress), stress.m)
 
-    def strains(self, m2: ca.SX, m3: ca.SX) -> Pair:
+    def strains(self, m2: ca.SX, m3: ca.SX) -> Components:
         M = norm(m2, m3)
         p = sheet_sum(m2, m3, self.chi)
         return self.chi * p**2 / (4 * M), m3 * p / (4 * M)
 
-    def moments(self, u2: ca.SX, u3: ca.SX) -> Pair:
+    def moments(self, u2: ca.SX, u3: ca.SX) -> Components:
         return sheet_moment(u2, u3)
 
     def stored(self, u2: ca.SX, u3: ca.SX) -> ca.SX:

@@ -8,7 +8,7 @@ import casadi as ca
 
 from .implicit import ImplicitLaw, norm_form
 from .law import RibbonLaw, Stress
-from .relations import Pair, inverse, norm
+from .relations import Components, inverse, norm
 
 
 @dataclass(frozen=True, eq=False)
@@ -21,12 +21,12 @@ class VariationalLaw(RibbonLaw):
     def implicit(self, stress: Stress) -> ImplicitLaw:
         return norm_form(self.delta, self.strain(stress), stress.m)
 
-    def strains(self, m2: ca.SX, m3: ca.SX) -> Pair:
+    def strains(self, m2: ca.SX, m3: ca.SX) -> Components:
         M, q = norm(m2, m3), norm(m2, self.delta * m3)
         common = (q + M) / (4 * q * M)
         return m2 * (q + M) * common, m3 * (q + self.delta**2 * M) * common
 
-    def moments(self, u2: ca.SX, u3: ca.SX) -> Pair:
+    def moments(self, u2: ca.SX, u3: ca.SX) -> Components:
         return inverse(self.strains, u2, u3)
 
     def stored(self, u2: ca.SX, u3: ca.SX) -> ca.SX:

@@ -105,11 +105,10 @@ def _tag_of_annotation(annotation: Any) -> str:
         return _tag_of_annotation(arguments[0])
     if origin is Literal:
         return _tag_of_value(arguments[0])
-    if is_dataclass(annotation) and isinstance(annotation, type):
-        return annotation.__name__
     samples: dict[Any, object] = {float: 0.0, int: 0, bool: True, str: "", NoneType: None}
     samples |= {tuple: (), dict: {}}
-    return _tag_of_value(samples[origin or annotation])
+    shape = origin or annotation
+    return _tag_of_value(samples[shape]) if shape in samples else annotation.__name__
 
 
 def _tag_of_value(value: object) -> str:

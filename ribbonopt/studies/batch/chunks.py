@@ -20,7 +20,7 @@ from ribbonopt.scene.yamlio import loads_scene
 from .study import Study, StudyRibbon
 
 Group = tuple[object, ...]
-Point = tuple[float, ...]
+Numbers = tuple[float, ...]
 
 LARGEST = 100  # ribbons of a chunk, the first of which starts from nothing
 MANY = 20_000  # above, neighbours are found by sorting instead of one after another
@@ -36,7 +36,7 @@ class Chunk:
 def chunks_of(study: Study) -> list[Chunk]:
     """Divide the ribbons of a study."""
     groups: dict[Group, list[StudyRibbon]] = {}
-    points: dict[Group, list[Point]] = {}
+    points: dict[Group, list[Numbers]] = {}
     for ribbon in study.ribbons:
         group, point = _swept(ribbon) if ribbon.inputs else _plain(ribbon)
         groups.setdefault(group, []).append(ribbon)
@@ -48,7 +48,7 @@ def chunks_of(study: Study) -> list[Chunk]:
     ]
 
 
-def _swept(ribbon: StudyRibbon) -> tuple[Group, Point]:
+def _swept(ribbon: StudyRibbon) -> tuple[Group, Numbers]:
     """Group by the scene and all inputs but numbers; these are the place in it."""
     numbers = {k: v for k, v in ribbon.inputs.items() if is_number(v)}
     other = ribbon.common | {k: v for k, v in ribbon.inputs.items() if k not in numbers}
@@ -56,7 +56,7 @@ def _swept(ribbon: StudyRibbon) -> tuple[Group, Point]:
     return group, tuple(float(number) for number in numbers.values())
 
 
-def _plain(ribbon: StudyRibbon) -> tuple[Group, Point]:
+def _plain(ribbon: StudyRibbon) -> tuple[Group, Numbers]:
     """Group a scene by its structure; its numbers are the place in it."""
     from ribbonopt.problem import Posed  # only where scenes come as files
 

@@ -24,7 +24,7 @@ from .compare import TOLERANCES
 from .measure import Measurement, Profile, cost_of, errors_of, measure
 from .pairs import Mesh, Pair, pairs_of
 from .rows import PairRow, cheapest, row_of
-from .truth import UNKNOWN, Numbers, Reference, fine_solves, reference_of, truth_of
+from .truth import UNKNOWN, Numbers, SourcedLoads, fine_solves, reference_of, truth_of
 
 # Relative errors between which a slope is an order.
 ROUNDING, COARSE = 1e-12, 1e-1
@@ -107,7 +107,7 @@ def benchmark(
     transcriptions: Iterable[str] | None = None,
     repeat: int = 11,
     quick: bool = False,
-    reference: Reference | None = None,
+    reference: SourcedLoads | None = None,
     peers: Sequence[Peer] = (),
 ) -> Benchmark:
     """Time all pairs on their grids, and peers, in one interleaved run.

@@ -21,7 +21,7 @@ from ribbonopt.studies.machine import machine
 from .measure import Measurement, cost_of, errors_of, measure
 from .pairs import Pair, pairs_of
 from .rows import Cheapest, PairRow, cheapest, row_of
-from .truth import UNKNOWN, Reference, Truth, fine_solves, reference_of, truth_of
+from .truth import UNKNOWN, SourcedLoads, Truth, fine_solves, reference_of, truth_of
 
 TOLERANCES = (1e-4, 1e-6, 1e-8, 1e-10)
 # Seconds after which a pair climbs no further, and unverified solves in a row after which it gives
@@ -97,7 +97,7 @@ def compare(
     formulations: Iterable[str] | None = None,
     transcriptions: Iterable[str] | None = None,
     tolerances: Iterable[float] | None = None,
-    reference: Reference | None = None,
+    reference: SourcedLoads | None = None,
 ) -> Comparison:
     """Solve a scene by all pairs of formulation, states and transcription.
 

@@ -118,7 +118,7 @@ def _guess(prepared: Prepared) -> Guess:
 
 def cost_of(prepared: Prepared) -> Cost:
     """Solve again and return the cost; guess and checks, the same for all pairs, are left out."""
-    attempts = prepared.solver.solve(*prepared.start(guess=_guess(prepared))).attempts
+    attempts = prepared.solver.solve(*prepared.start(guess=_guess(prepared))).tried
     return Cost(
         sum(a.evaluate for a in attempts),
         sum(a.linear for a in attempts),

@@ -21,7 +21,7 @@ Numbers = Sequence[float]
 
 
 @dataclass(frozen=True)
-class Reference:
+class SourcedLoads:
     """Known n, m (lab frame, units of the scene) at the start, and where they come from."""
 
     n0: Numbers
@@ -38,10 +38,10 @@ class Truth:
     error: float = 0.0
 
 
-def reference_of(scene: Scene) -> Reference | None:
+def reference_of(scene: Scene) -> SourcedLoads | None:
     """Return the truth that a scene states, if it does."""
     known = scene.reference
-    return None if known is None else Reference(known.n0, known.m0, "the reference of the scene")
+    return None if known is None else SourcedLoads(known.n0, known.m0, "the reference of the scene")
 
 
 def fine_solves(scene: Scene, wanted: float) -> list[Measurement]:
@@ -58,7 +58,7 @@ def fine_solves(scene: Scene, wanted: float) -> list[Measurement]:
     return found
 
 
-def truth_of(found: Sequence[Measurement], reference: Reference | None = None) -> Truth | None:
+def truth_of(found: Sequence[Measurement], reference: SourcedLoads | None = None) -> Truth | None:
     """Return the reference, or the verified solution whose own estimate is smallest.
 
     A reference says nothing of u along s: that comes from the best solution in any case.

@@ -222,7 +222,7 @@ class DenseOutput:
             values, jacobian = dense(np.hstack([x, z]), self.constants, self.theta, places)
             g = values.reshape(len(x), -1)[:, rows]
             slope = jacobian.reshape(len(x), lay.nv + lay.nc, -1).swapaxes(1, 2)[:, rows, columns]
-            z = z - np.linalg.solve(slope, g[:, :, None])[:, :, 0]
+            z = z - _solution(slope, g)
         return z
 
     def _polynomial(self, element: Index, t: Array, h: Array) -> Array:
@@ -232,3 +232,11 @@ class DenseOutput:
         x: Array = nodes[element] + h[:, None] * increments
         x[t == 1] = nodes[element[t == 1] + 1]
         return x
+
+
+def _solution(matrices: Array, right: Array) -> Array:
+    """Solve (k, n) of equations with matrices (k, n, n); the least step where one is singular."""
+    try:
+        return np.asarray(np.linalg.solve(matrices, right[:, :, None])[:, :, 0])
+    except np.linalg.LinAlgError:  # a law without derivative, at the one point where m = 0
+        return np.asarray((np.linalg.pinv(matrices) @ right[:, :, None])[:, :, 0])

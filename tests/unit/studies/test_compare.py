@@ -18,10 +18,10 @@ from ribbonopt.studies.comparison.files import save_study
 from ribbonopt.studies.comparison.pairs import FORMULATIONS, TRANSCRIPTIONS, pairs_of
 from ribbonopt.studies.comparison.rows import COLUMNS, PairRow, cheapest
 from ribbonopt.studies.comparison.table import table
-from ribbonopt.studies.comparison.truth import Reference
+from ribbonopt.studies.comparison.truth import SourcedLoads
 from ribbonopt.views.comparison import plot_study, save_figure
 
-REFERENCE = Reference(HALF_MOEBIUS["n0"], HALF_MOEBIUS["m0"], source="28 digits")
+REFERENCE = SourcedLoads(HALF_MOEBIUS["n0"], HALF_MOEBIUS["m0"], source="28 digits")
 TOLERANCES = (1e-5, 1e-7)
 
 
