@@ -27,11 +27,11 @@ from ribbonopt.scene import load_scene
 from ribbonopt.studies.comparison.benchmark import Peer, benchmark
 from ribbonopt.studies.comparison.files import save_study
 from ribbonopt.studies.comparison.table import table
-from ribbonopt.studies.comparison.truth import Reference
+from ribbonopt.studies.comparison.truth import SourcedLoads
 from ribbonopt.views.comparison import save_figure
 
 SCENE = Path(__file__).resolve().parent.parent / "configs" / "moebius_half.yaml"
-REFERENCE = Reference(
+REFERENCE = SourcedLoads(
     n0=(0.0, 43.4964080173984993703, 42.0522517129717208281),
     m0=(0.0, 2.00545099623122820984, -8.86920396209993570631),
     source="28 digits by Taylor series",
