@@ -25,6 +25,7 @@ from stopwatches import stopwatches
 
 from ribbonopt.accuracy import estimate
 from ribbonopt.attempt import attempt
+from ribbonopt.problem import Posed
 from ribbonopt.solvers.condense import CondensedSystem
 from ribbonopt.solvers.newton import NewtonSolver
 from ribbonopt.studies.batch import worker

@@ -17,8 +17,17 @@ from .ends import (
     Turns,
     Value,
 )
-from .laws import Homotopy, Kirchhoff, Law, Regularized, Sadowsky, SingleSheet, Variational
-from .loads import Loads
+from .laws import (
+    Homotopy,
+    Kirchhoff,
+    Law,
+    OwnLaw,
+    Regularized,
+    Sadowsky,
+    SingleSheet,
+    Variational,
+)
+from .loads import Loads, OwnLoad
 from .model import (
     Algebraic,
     ArcGuess,
@@ -66,6 +75,8 @@ __all__ = [
     "Loop",
     "MoebiusGuess",
     "Newton",
+    "OwnLaw",
+    "OwnLoad",
     "Quaternion",
     "Reference",
     "Regularized",
