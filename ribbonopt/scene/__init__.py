@@ -49,7 +49,15 @@ from .model import (
     StrainGuess,
 )
 from .supports import Support, SupportName
-from .yamlio import dump_scene, json_schema, load_scene, loads_scene, locate, validate_scene
+from .yamlio import (
+    dump_scene,
+    json_schema,
+    load_scene,
+    loads_scene,
+    locate,
+    unsayable,
+    validate_scene,
+)
 
 __all__ = [
     "Algebraic",
@@ -100,5 +108,6 @@ __all__ = [
     "load_scene",
     "loads_scene",
     "locate",
+    "unsayable",
     "validate_scene",
 ]
