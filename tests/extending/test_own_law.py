@@ -28,6 +28,7 @@ from ribbonopt.scene import (
     Collocation,
     ContinuationStage,
     End,
+    Loop,
     Scene,
     StrainGuess,
     json_schema,
@@ -157,3 +158,28 @@ def test_what_is_no_law_is_refused(user: Import) -> None:
     for value in ("stiff", float("nan")):
         with pytest.raises(ModelError, match=r"law\.B1: found .*, expected a number"):
             solve(Scene("a", user("rod").Rod(B1=value), GENERIC))
+
+
+@pytest.mark.parametrize(
+    ("half_twists", "piece", "natural", "refused"),
+    [
+        (0, "half", {"k2": 3.0}, ""),
+        (0, "half", {"k1": 0.1}, "d1"),
+        (1, "half", {"k2": 0.1}, "d2"),
+        (1, "half", {"k3": 0.1}, ""),
+        (2, "half", {"k2": 0.1}, ""),
+        (3, "fundamental", {"k2": 0.1}, "d2"),
+        (1, "whole", {"k2": 0.1}, ""),
+    ],
+)
+def test_a_piece_stands_for_a_loop_where_the_law_has_its_symmetry(
+    user: Import, half_twists: int, piece: Any, natural: dict[str, float], refused: str
+) -> None:
+    start = End(position=(0.0, 0.0, 0.0), directors="identity")
+    boundary = Boundary(start if piece == "whole" else End(), loop=Loop(half_twists, piece))
+    scene = Scene("band", user("rod").Rod(**natural), boundary)
+    if not refused:
+        prepare(scene)
+        return
+    with pytest.raises(ModelError, match=f"by flips about {refused}, after .*; solve piece: whole"):
+        prepare(scene)

@@ -10,13 +10,14 @@ from user_modules import importer
 
 from ribbonopt import save_figures, save_solution, solve
 from ribbonopt.errors import ViewError
-from ribbonopt.scene import Boundary, Collocation, End, RotationVector, Scene
+from ribbonopt.scene import Boundary, Collocation, End, Loop, RotationVector, Scene
 from ribbonopt.solution.solution import Solution
 from ribbonopt.views import Pictures, plot_plane, plot_ribbon, plot_strains
 from ribbonopt.views.branch import save_branch_figures
 from ribbonopt.views.files import draw_figures
 from ribbonopt.views.pieces import in_plane, sample_pieces
 from ribbonopt.views.strip import plot_strip
+from ribbonopt.views.subject import subject_of
 
 BOUNDARY = Boundary(
     End("clamped", (0.0, 0.0, 0.0), "identity"),
@@ -77,3 +78,27 @@ def test_of_a_branch_of_rods_the_branch_is_drawn(rod: Solution, tmp_path: Path) 
     assert [path.name for path in drawn.paths] == ["branch.png"]
     assert len(drawn.left_out) == 1
     assert drawn.left_out[0].startswith("ribbons.png: rod bends in its own plane")
+
+
+@pytest.mark.parametrize(("half_twists", "piece"), [(1, "half"), (2, "half"), (3, "fundamental")])
+def test_strains_by_symmetry_are_those_of_their_directors(
+    half_twists: int,
+    piece: str,
+    tmp_path: Path,
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    law = importer(tmp_path, monkeypatch)("rod").Rod()
+    start = End(position=(0.0, 0.0, 0.0), directors="identity")
+    loop = Boundary(End() if piece == "fundamental" else start, loop=Loop(half_twists, piece))  # type: ignore[arg-type]
+    interval = (0.0, 1 / loop.loop.pieces) if loop.loop else (0.0, 1.0)
+    band = subject_of(solve(Scene("band", law, loop, interval=interval)), complete=True)
+    assert band.mirrored and band.bends_in_plane
+    for part in band.pieces:
+        rows = slice(20, -20)  # evenly spaced
+        s, d = part.s[rows], [part.d1[rows], part.d2[rows], part.d3[rows]]
+        for i, u in enumerate((part.u1, part.u2, part.u3)):
+            change = np.gradient(d[(i + 1) % 3], s, axis=0)
+            found = np.einsum("ki,ki->k", change, d[(i + 2) % 3])
+            np.testing.assert_allclose(
+                found[1:-1], u[rows][1:-1], atol=0.02 * np.abs(u).max() + 0.02
+            )
