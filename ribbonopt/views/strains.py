@@ -31,7 +31,7 @@ if TYPE_CHECKING:
 
 ETA_SHOWN = 1.6
 LINES: Mapping[str, tuple[str, str]] = {
-    "u1": (IN_PLANE, r"$u_1$ (bending in the plane)"),
+    "u1": (IN_PLANE, r"$u_1$ (in plane)"),
     "u2": (BENDING, r"$u_2$ (bending)"),
     "u3": (TWIST, r"$u_3$ (twist)"),
     "eta": (RATIO, r"$\eta$"),
@@ -92,7 +92,8 @@ def _label(top: Axes, bottom: Axes, subject: Subject, strains: str) -> None:
         top.plot([], [], color=INK, lw=1.5, ls=DASHES, label=subject.rest)
     head(top, subject.name, subject.units, pad=26)
     top.set_ylabel(subject.label(strains, "1/m"))
-    top.legend(loc="lower left", bbox_to_anchor=(0, 1.0, 1, 0), ncols=4, frameon=False, fontsize=9)
+    look = {"frameon": False, "fontsize": 9, "columnspacing": 1.4}
+    top.legend(loc="lower left", bbox_to_anchor=(0, 1.0, 1, 0), ncols=4, **look)
     bottom.set_xlabel(subject.label(r"arclength $s$", "m"))
     bottom.set_xlim(subject.interval[0], subject.end)
     for axes in (top, bottom):

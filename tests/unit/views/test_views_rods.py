@@ -102,3 +102,16 @@ def test_strains_by_symmetry_are_those_of_their_directors(
             np.testing.assert_allclose(
                 found[1:-1], u[rows][1:-1], atol=0.02 * np.abs(u).max() + 0.02
             )
+
+
+def test_nothing_of_a_whole_band_is_cut_off(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    law = importer(tmp_path, monkeypatch)("rod").Rod()
+    start = End(position=(0.0, 0.0, 0.0), directors="identity")
+    scene = Scene("band", law, Boundary(start, loop=Loop(1, "half")), interval=(0.0, 0.5))
+    figure = plot_strains(solve(scene))
+    figure.canvas.draw()
+    box = figure.get_tightbbox()
+    assert (box.min >= 0).all() and (box.max <= figure.get_size_inches()).all()
+    assert figure.axes[0].get_position().x1 > 0.9
