@@ -32,6 +32,10 @@ class OutputError(RibbonoptError, OSError):
     """A place where results cannot be written or from which they cannot be read."""
 
 
+class ViewError(RibbonoptError, ValueError):
+    """A picture that there is none of, such as the surface of a rod: says why."""
+
+
 class ConvergenceError(RibbonoptError, RuntimeError):
     """No equilibrium can be, or was, found: says which condition resists and the remedy.
 

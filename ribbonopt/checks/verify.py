@@ -27,7 +27,7 @@ def verify(solution: Solution, ribbon: Ribbon) -> Verification:
         return replace(unverified(), problems=(problem,))
     worst_name, worst = _worst_condition(solution, ribbon)
     residual = float(solution.dense.residual_between_nodes().max())
-    nodes, drift = solution.at_nodes, _drifts(solution)
+    nodes, drift = solution.at_nodes, _drifts(solution, ribbon.uniform)
     problems = []
     # Gauss keeps orthonormality to rounding, other schemes only to their own accuracy; natural
     # conditions of a minimum hold to the accuracy of the mesh.
@@ -96,20 +96,23 @@ def _verdicts(ribbon: Ribbon) -> tuple[tuple[str, ...], Buffered]:
     return names, Buffered(function)
 
 
-def _drifts(solution: Solution) -> dict[str, float]:
-    """Drifts of what is conserved; under loads that is neither n nor n . m, maybe H with r."""
-    nodes, loads = solution.trajectory.at_nodes, solution.posed.loads
+def _drifts(solution: Solution, uniform: bool) -> dict[str, float]:
+    """Drifts of what is conserved; under loads that is neither n nor n . m, maybe H with r.
+
+    H is not where the law depends on s.
+    """
+    nodes, loads, unknown = solution.trajectory.at_nodes, solution.posed.loads, float("nan")
     drift = {"orthonormality": float(nodes["orthonormality"].max())}
     levels = [load.level(nodes["r"]) for load in loads]
     if loads:
         known = [level for level in levels if level is not None]
         H = nodes["H"] + sum(known)
-        unknown = float("nan")
-        changes = _drift(H) if len(known) == len(levels) else unknown
+        changes = _drift(H) if uniform and len(known) == len(levels) else unknown
         return {"n": unknown, "n_dot_m": unknown, "H": changes} | drift
     scale = float(np.linalg.norm(nodes["n"][0])) * _size(nodes["m"])
     n_dot_m = _drift(nodes["n_dot_m"], scale)
-    return {"n": _drift(nodes["n"]), "n_dot_m": n_dot_m, "H": _drift(nodes["H"])} | drift
+    changes = _drift(nodes["H"]) if uniform else unknown
+    return {"n": _drift(nodes["n"]), "n_dot_m": n_dot_m, "H": changes} | drift
 
 
 def _drift(values: Array, scale: float | None = None) -> float:

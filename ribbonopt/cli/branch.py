@@ -10,7 +10,14 @@ from contextlib import closing
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
-from .common import INTERRUPTED, NOT_CONVERGED, load, pairs_of, print_json
+from .common import (
+    INTERRUPTED,
+    NOT_CONVERGED,
+    load,
+    pairs_of,
+    print_json,
+    say_left_out,
+)
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -80,7 +87,9 @@ def _draw(
     ribbons = [solution for _, solution in points]
     log = [stage.parameter for stage in continuation.stages if stage.scale == "log"]
     chosen = pairs or _usual(continuation.scene.record)
-    return save_branch_figures(rows, ribbons, captions, out, chosen, log=log)
+    drawn = save_branch_figures(rows, ribbons, captions, out, chosen, log=log)
+    say_left_out(drawn.left_out)
+    return drawn.paths
 
 
 def _caption(row: dict[str, Any]) -> str:

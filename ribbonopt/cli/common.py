@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import argparse
+import sys
 import time
+from collections.abc import Iterable
 from typing import TYPE_CHECKING, Any
 
 from ribbonopt.errors import SceneError
@@ -40,6 +42,12 @@ def pairs_of(texts: list[str] | None) -> list[tuple[str, str]] | None:
             raise SceneError(f"--plot: found {text!r}; expected X:Y, such as value:energy")
         pairs.append((x, y))
     return pairs
+
+
+def say_left_out(left_out: Iterable[str]) -> None:
+    """Say on stderr what could not be drawn or written, and why."""
+    for text in left_out:
+        print(f"ribbonopt: left out: {text}", file=sys.stderr)
 
 
 def print_json(value: dict[str, Any], indent: int | None = None) -> None:

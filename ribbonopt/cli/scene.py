@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from ribbonopt.errors import SceneError
 
-from .common import NOT_CONVERGED, load, pairs_of, print_json
+from .common import NOT_CONVERGED, load, pairs_of, print_json, say_left_out
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -35,8 +35,9 @@ def solve(options: argparse.Namespace) -> int:
             from ribbonopt.views import Pictures
 
             exports = [Pictures()]
-        save_solution(solution, stage.folder, exports)
+        left_out = save_solution(solution, stage.folder, exports)
         written = stage.commit(solution.status.failure)
+    say_left_out(left_out)
     return _tell(options, solution, import_seconds, written)
 
 
@@ -103,7 +104,7 @@ def plot(options: argparse.Namespace) -> int:
 
     from ribbonopt.output.results import load_solution
     from ribbonopt.output.staging import picture_folder
-    from ribbonopt.views import save_figures
+    from ribbonopt.views.files import draw_figures
 
     result, pairs = Path(options.result), pairs_of(options.plot) or []
     if (result / "branch.jsonl").is_file():
@@ -120,7 +121,8 @@ def plot(options: argparse.Namespace) -> int:
         )
     else:
         solution = load_solution(result)
-        paths = save_figures(solution, picture_folder(options.out or result))
+        paths, left_out = draw_figures(solution, picture_folder(options.out or result))
+        say_left_out(left_out)
     for path in paths:
         print(path)
     return 0

@@ -33,7 +33,13 @@ def outputs(section: CrossSection, law: ConstitutiveLaw, u: ca.SX) -> dict[str, 
     result |= {"switching": switch.value, "leap": switch.leap}
     result["law_residual"] = ca.norm_2(u - section.u)
     result["orthonormality"] = _gram_error(rod)
+    result |= dict(zip(map(own_name, law.states), ca.vertsplit(rod.own), strict=True))
     return result
+
+
+def own_name(state: str) -> str:
+    """Name of the output that holds a state of the law's own."""
+    return f"own.{state}"
 
 
 def _gram_error(rod: Section) -> ca.SX:

@@ -7,14 +7,14 @@ a class here with its name at the foot.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterable, Iterator
 from pathlib import Path
 from typing import Any, Protocol
 
 import numpy as np
 
 from ribbonopt.plain import json_text
-from ribbonopt.scene import dump_scene
+from ribbonopt.scene import dump_scene, unsayable
 from ribbonopt.scene.quantities import VECTORS
 from ribbonopt.solution.solution import Solution
 
@@ -35,8 +35,10 @@ class Export(Protocol):
     def files(self) -> tuple[str, ...]:
         """Names of the files, directly in the folder, that it may write."""
 
-    def write(self, solution: Solution, folder: Path) -> None:
+    def write(self, solution: Solution, folder: Path) -> Iterable[str] | None:
         """Write a solution into an existing folder; see `equilibria` for the others it has.
+
+        What had to be left out is returned, each with its reason.
 
         Raises
         ------
@@ -72,14 +74,19 @@ class Fields:
 
 
 class SceneText:
-    """`scene.yaml`: the scene that was solved."""
+    """`scene.yaml`: the scene that was solved; left out where it was declared in Python."""
 
     name, files = "scene", ("scene.yaml",)
 
-    def write(self, solution: Solution, folder: Path) -> None:
-        """Write the scene of each equilibrium."""
+    def write(self, solution: Solution, folder: Path) -> list[str]:
+        """Write the scene of each equilibrium, where a file can say it."""
+        reason = unsayable(solution.scene)
         for found, inner in equilibria(solution, folder):
+            if reason:
+                (inner / "scene.yaml").unlink(missing_ok=True)  # that of an older result
+                continue
             (inner / "scene.yaml").write_text(dump_scene(found.scene), encoding="utf-8")
+        return [f"scene.yaml: {reason}"] if reason else []
 
 
 class Summary:

@@ -12,7 +12,7 @@ import numpy as np
 from ribbonopt.attempt.structure import Structure
 from ribbonopt.errors import OutputError
 from ribbonopt.problem import Posed
-from ribbonopt.scene import load_scene
+from ribbonopt.scene import Scene, load_scene, validate_scene
 from ribbonopt.solution.made import solution_at
 from ribbonopt.solution.solution import Solution
 from ribbonopt.solution.verification import Verification
@@ -23,7 +23,9 @@ from .exports import EQUILIBRIA, STANDARD, Export
 from .staging import OWN_FILES, unwritable
 
 
-def save_solution(solution: Solution, folder: str | Path, exports: Iterable[Export] = ()) -> None:
+def save_solution(
+    solution: Solution, folder: str | Path, exports: Iterable[Export] = ()
+) -> tuple[str, ...]:
     """Write the files of a solution into an existing folder.
 
     `solution.npz` holds rows along s: `s` (k,), `r`, `d1`, `d2`, `d3`, `n`, `m` (k, 3, lab frame),
@@ -39,21 +41,28 @@ def save_solution(solution: Solution, folder: str | Path, exports: Iterable[Expo
     exports
         What to write besides.
 
+    Returns
+    -------
+    tuple of str
+        What had to be left out, each with its reason: `scene.yaml` where the scene was declared in
+        Python, pictures that there are none of.
+
     Raises
     ------
     OutputError
         If they cannot be written, or two exports want the same file.
     """
-    folder, more = Path(folder), tuple(exports)
+    folder, more, left_out = Path(folder), tuple(exports), list[str]()
     _refuse_twice((*STANDARD, *more))
     try:
         for export in (*STANDARD, *more):
-            export.write(solution, folder)
+            left_out += export.write(solution, folder) or ()
         declare(folder, {name for export in more for name in export.files} - OWN_FILES)
     except OutputError:  # an OSError too, but one that says what to do
         raise
     except OSError as error:
         raise unwritable(folder, error) from error
+    return tuple(left_out)
 
 
 def _refuse_twice(exports: Sequence[Export]) -> None:
@@ -68,8 +77,10 @@ def _refuse_twice(exports: Sequence[Export]) -> None:
             writers[name] = export.name
 
 
-def load_solution(path: str | Path) -> Solution:
+def load_solution(path: str | Path, scene: Scene | None = None) -> Solution:
     """Load a saved solution: its result folder, or any of the files in it.
+
+    `scene` is that of the solution, where it was declared in Python, so that no file says it.
 
     Raises
     ------
@@ -78,17 +89,19 @@ def load_solution(path: str | Path) -> Solution:
     """
     folder = Path(path)
     folder = folder.parent if folder.is_file() else folder
-    missing = [
-        name
-        for name in ("scene.yaml", "summary.json", "solution.npz")
-        if not (folder / name).is_file()
-    ]
+    needed = ["summary.json", "solution.npz"] + (["scene.yaml"] if scene is None else [])
+    missing = [name for name in needed if not (folder / name).is_file()]
+    if missing == ["scene.yaml"]:
+        raise OutputError(
+            f"{path}: scene.yaml missing; if the scene was declared in Python, give it: "
+            "load_solution(path, scene=...)"
+        )
     if missing:
         raise OutputError(
             f"{path}: not a result of ribbonopt, {', '.join(missing)} missing; expected a folder "
             "written by `ribbonopt solve --out`"
         )
-    scene = load_scene(folder / "scene.yaml")
+    scene = load_scene(folder / "scene.yaml") if scene is None else validate_scene(scene)
     try:
         summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
         with open(folder / "solution.npz", "rb") as file, np.load(file) as data:

@@ -106,17 +106,17 @@ class _Program(NamedTuple):
 
 
 def _program(law: ConstitutiveLaw, own: ca.SX) -> _Program:
-    local, known = local_stress()
+    local, known = local_stress(law)
     relaxed = law.relaxed(known)
     if relaxed is not None:
-        r = relaxed
-        return _Program(r.controls, r.u, r.cost, r.path, local, r.estimate)
+        r, start = relaxed, ca.vertcat(known.own, relaxed.estimate)
+        return _Program(r.controls, r.u, r.cost, r.path, local, start)
     z = ca.SX.sym("m", len(law.components))
     stress = Stress(ca.SX.zeros(3), law.whole(z), own)
     u = law.strain(stress)
     cost, _ = law.densities(stress, u)
     free = [3 + i for i in law.components]
-    return _Program(z, u, cost, ca.SX(0, 1), local, local[free])
+    return _Program(z, u, cost, ca.SX(0, 1), local, ca.vertcat(known.own, local[free]))
 
 
 def dead_force(ribbon: Ribbon) -> ca.SX:
@@ -174,7 +174,7 @@ def refusal(ribbon: Ribbon, posed: Posed) -> Refusal | None:
 def _load_without_potential(ribbon: Ribbon) -> Refusal | None:
     held = {c.axis for c in ribbon.conditions if isinstance(c, Component) and _holds_start(c)}
     for load in ribbon.loads:
-        key = next(iter(load.numbers())).rpartition(".")[0]
+        key = load.name
         if not load.dead:
             return Refusal(f"{key} follows the ribbon", "use another formulation", key)
         if held < set("xyz"):

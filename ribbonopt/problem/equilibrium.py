@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import casadi as ca
 
 from ribbonopt.mechanics.ends.conditions import CrossSection
-from ribbonopt.mechanics.laws.law import Stress
+from ribbonopt.mechanics.laws.law import ConstitutiveLaw, Stress
 from ribbonopt.mechanics.outputs import outputs
 
 from .contract import BoundaryValueProblem, Phase
@@ -33,10 +33,14 @@ class Unknowns:
         return cls(x, c, section, section.rod.stress)
 
 
-def local_stress() -> tuple[ca.SX, Stress]:
-    """Return symbols of what any guess knows at a point: n and m (6,) along the directors."""
+def local_stress(law: ConstitutiveLaw) -> tuple[ca.SX, Stress]:
+    """Return symbols of what any guess knows at a point: n and m (6,) along the directors.
+
+    The law's own states are where it starts them.
+    """
     local = ca.SX.sym("local", 6)
-    return local, Stress(local[:3], local[3:], ca.SX(0, 1))
+    known = Stress(local[:3], local[3:], ca.SX(0, 1))
+    return local, known._replace(own=law.own_guess(known))
 
 
 def equilibrium(
@@ -91,11 +95,10 @@ def equilibrium(
     count = unknowns.x.numel()
     conditions = ribbon.residuals(points[0][:count], points[1][:count], unknowns.c)
     for name, expression in (start_conditions or {}).items():
-        conditions[name] = ca.substitute(expression, x, points[0])
-    local, stress = local_stress()
-    estimated = ca.vertcat(
-        ribbon.law.own_guess(stress), empty if estimate is None else estimate(stress)
-    )
+        here = [x, ribbon.position], [points[0], start]
+        (conditions[name],) = ca.substitute([expression], *here)
+    local, stress = local_stress(ribbon.law)
+    estimated = ca.vertcat(stress.own, empty if estimate is None else estimate(stress))
     return BoundaryValueProblem(
         position=ribbon.position,
         state=x,

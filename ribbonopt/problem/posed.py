@@ -107,8 +107,8 @@ class Posed:
             (type(c).__name__, *(v for v in vars(c).values() if isinstance(v, str)))
             for c in self.conditions
         )
-        loads = tuple(type(load).__name__ for load in self.loads)
-        settings = scene.law.type, scene.formulation, scene.states, scene.transcription
+        loads = tuple(type(load) for load in self.loads)
+        settings = type(scene.law), scene.formulation, scene.states, scene.transcription
         # In a plane, which conditions are left depends on what plane it is.
         plane = self.start[1][:, 1].round().tolist() if scene.states == "planar" else ()
         rest = tuple(self.theta), conditions, loads, scene.boundary.also, tuple(plane)

@@ -15,7 +15,7 @@ import casadi as ca
 
 from ribbonopt.mechanics.ends.conditions import Condition, Context, CrossSection, EndName
 from ribbonopt.mechanics.laws.catalogue import law_of, numbers_of
-from ribbonopt.mechanics.laws.law import ConstitutiveLaw
+from ribbonopt.mechanics.laws.law import ConstitutiveLaw, Stress
 from ribbonopt.mechanics.loads.load import Load
 from ribbonopt.mechanics.model import RodModel, full_model, least_model
 from ribbonopt.mechanics.section import Section
@@ -90,6 +90,13 @@ class Ribbon:
         """Arclengths of both ends."""
         return self.theta["interval.start"], self.theta["interval.end"]
 
+    @cached_property
+    def uniform(self) -> bool:
+        """Whether the law is the same all along the ribbon, so that H is an invariant of it."""
+        own = ca.SX.sym("own", len(self.law.states))
+        strain = self.law.strain(Stress(ca.SX.sym("n", 3), ca.SX.sym("m", 3), own))
+        return not ca.depends_on(strain, self.position)
+
     @property
     def states(self) -> tuple[str, ...]:
         """Names of the states along s: those of the model, then those of the law."""
@@ -140,13 +147,16 @@ class Ribbon:
         sections = context.ends
         own = self.model.start_conditions(sections["start"].x)
         meaning = {f"start: {name}": value for name, value in own.items()}
-        laws = [
-            {f"{end}: {name}": v for name, v in self.law.end_conditions(end, s.rod.stress).items()}
-            for end, s in sections.items()
-        ]
+        laws = [self._of_law(name, section) for name, section in sections.items()]
         chosen = [c for c in self.conditions if c.kinematic or not kinematic_only]
         found = _merge(meaning, *laws, *(condition.residuals(context) for condition in chosen))
         return {name: value for name, value in found.items() if name not in self.idle}
+
+    def _of_law(self, end: EndName, section: CrossSection) -> dict[str, ca.SX]:
+        """Return the law's own conditions at an end, by name."""
+        rod = section.rod
+        found = self.law.end_conditions(end, rod.stress).items()
+        return {f"{end}: {name}": ca.substitute(v, self.position, rod.s) for name, v in found}
 
     def verdicts(self, start: ca.SX, end: ca.SX, c: ca.SX) -> dict[str, ca.SX]:
         """Return what to verify on a solution, by name."""

@@ -17,8 +17,17 @@ from .ends import (
     Turns,
     Value,
 )
-from .laws import Homotopy, Kirchhoff, Law, Regularized, Sadowsky, SingleSheet, Variational
-from .loads import Loads
+from .laws import (
+    Homotopy,
+    Kirchhoff,
+    Law,
+    OwnLaw,
+    Regularized,
+    Sadowsky,
+    SingleSheet,
+    Variational,
+)
+from .loads import Loads, OwnLoad
 from .model import (
     Algebraic,
     ArcGuess,
@@ -40,7 +49,15 @@ from .model import (
     StrainGuess,
 )
 from .supports import Support, SupportName
-from .yamlio import dump_scene, json_schema, load_scene, loads_scene, locate, validate_scene
+from .yamlio import (
+    dump_scene,
+    json_schema,
+    load_scene,
+    loads_scene,
+    locate,
+    unsayable,
+    validate_scene,
+)
 
 __all__ = [
     "Algebraic",
@@ -66,6 +83,8 @@ __all__ = [
     "Loop",
     "MoebiusGuess",
     "Newton",
+    "OwnLaw",
+    "OwnLoad",
     "Quaternion",
     "Reference",
     "Regularized",
@@ -89,5 +108,6 @@ __all__ = [
     "load_scene",
     "loads_scene",
     "locate",
+    "unsayable",
     "validate_scene",
 ]

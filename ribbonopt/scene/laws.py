@@ -1,14 +1,17 @@
 """What a scene says of the constitutive law: its name and its numbers, no mechanics.
 
-The relations themselves are in `ribbonopt.mechanics.laws`, a file for each kind.
+The relations themselves are in `ribbonopt.mechanics.laws`, a file for each kind. A law of one's own
+stands in a scene built in Python: a frozen dataclass as those here, that says itself what it stands
+for (`OwnLaw`).
 """
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Annotated, Literal
+from typing import Annotated, Any, ClassVar, Literal, Protocol, runtime_checkable
 
-from .schema.bounds import Bounds
+from .schema.bounds import Bounds, InPython
 
 
 @dataclass(frozen=True)
@@ -60,4 +63,32 @@ class Variational:
     delta: Annotated[float, Bounds(gt=0, le=1)] = 0.01
 
 
-Law = Kirchhoff | Sadowsky | SingleSheet | Regularized | Homotopy | Variational
+@runtime_checkable
+class OwnLaw(Protocol):
+    """A law declared in Python: a frozen dataclass whose fields, but `type`, are its numbers.
+
+    They are in units Dw = L = 1, in scenes in SI too.
+    """
+
+    __dataclass_fields__: ClassVar[dict[str, Any]]
+
+    @property
+    def type(self) -> str:
+        """A word for it, for reports and messages."""
+
+    def constitutive(self, numbers: Mapping[str, Any], position: Any) -> Any:
+        """Return the relation, a `ConstitutiveLaw`, from its numbers and the arclength s.
+
+        Both are CasADi symbols: numbers that change need no new equations.
+        """
+
+
+Law = (
+    Kirchhoff
+    | Sadowsky
+    | SingleSheet
+    | Regularized
+    | Homotopy
+    | Variational
+    | Annotated[OwnLaw, InPython()]
+)

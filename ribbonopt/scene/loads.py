@@ -2,9 +2,26 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import Annotated, Any, Protocol, runtime_checkable
 
 from .ends import LabVector, Triple
+from .schema.bounds import InPython
+
+
+@runtime_checkable
+class OwnLoad(Protocol):
+    """A load declared in Python: a `Load` of `ribbonopt.mechanics.loads.load`.
+
+    Its numbers are in units Dw = L = 1, in scenes in SI too.
+    """
+
+    def numbers(self) -> Mapping[str, float]:
+        """Numbers of this load by parameter name."""
+
+    def force(self, section: Any, theta: Any) -> Any:
+        """Force (3,) per length on the ribbon at a section, lab frame."""
 
 
 @dataclass(frozen=True)
@@ -12,6 +29,8 @@ class Loads:
     """Loads per length, all along the ribbon.
 
     `force` is dead: a force per length (lab frame) that keeps its direction, as own weight does.
+    `own` are declared in Python.
     """
 
     force: Triple | LabVector | None = None
+    own: tuple[Annotated[OwnLoad, InPython()], ...] = ()

@@ -74,7 +74,7 @@ AT_ENDS: Mapping[str, Shape] = {k: q.shape for k, q in QUANTITIES.items() if q.a
 VECTORS = tuple(name for name, shape in OUTPUTS.items() if shape == "vector")
 
 #: columns of a study: loads (lab frame) and strains at the start, a vector in each group ...
-START_VECTORS = (("n0x", "n0y", "n0z"), ("m0x", "m0y", "m0z"), ("u2", "u3"))
+START_VECTORS = (("n0x", "n0y", "n0z"), ("m0x", "m0y", "m0z"), ("u1", "u2", "u3"))
 
 #: ... and all numbers of an equilibrium
 ANSWERS = ("energy", "H0", *(part for vector in START_VECTORS for part in vector))

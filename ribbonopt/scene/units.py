@@ -91,7 +91,7 @@ def _boundary(boundary: Boundary, units: Units, parameters: Mapping[str, float])
 
 
 def _loads(loads: Loads, units: Units, parameters: Mapping[str, float]) -> Loads:
-    return Loads(force=_over(loads.force, units.force / units.length, parameters))
+    return replace(loads, force=_over(loads.force, units.force / units.length, parameters))
 
 
 def _end(end: End, units: Units, parameters: Mapping[str, float]) -> End:

@@ -158,6 +158,13 @@ def dump_scene(scene: Scene) -> str:
     return dump(validate_scene(scene))
 
 
+def unsayable(scene: Scene) -> str:
+    """Return why no file can say a scene: what of it is declared in Python; "" where one can."""
+    from .text import dump  # as above
+
+    return dump.unsayable(scene)
+
+
 def json_schema() -> dict[str, Any]:
     """Return the JSON schema of scene files, for editors to complete and check them."""
     from .schema.json_schema import (

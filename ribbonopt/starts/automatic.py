@@ -18,6 +18,7 @@ from ribbonopt.attempt.structure import Structure
 from ribbonopt.errors import ConvergenceError
 from ribbonopt.guess import Guess, ShapeGuess
 from ribbonopt.guess.shapes import Chord, Shape
+from ribbonopt.mechanics.laws.catalogue import capabilities
 from ribbonopt.mechanics.laws.smooth import ROD, first_law, in_family, sharpened, sharpness
 from ribbonopt.problem import Posed
 from ribbonopt.scene import Law
@@ -138,7 +139,8 @@ class Automatic:
 
 def _bends(posed: Posed, chord: Chord) -> bool:
     """Whether something bends a straight ribbon between its ends, so that it is no start."""
-    return bool(posed.loads) or compresses(posed, chord)
+    natural = capabilities(posed.scene.law).natural
+    return bool(posed.loads) or natural or compresses(posed, chord)
 
 
 def _delta(law: Law) -> str:

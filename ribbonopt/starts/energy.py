@@ -2,10 +2,12 @@
 
 IPOPT on a coarse mesh, from a shape that need not even be a ribbon; force and moment follow from
 the costates. What is prescribed of loads at the ends is left out here, unless a dead force has a
-potential.
+potential; so are loads that follow the ribbon, which have none.
 """
 
 from __future__ import annotations
+
+from dataclasses import replace
 
 from ribbonopt.problem import Posed
 from ribbonopt.scene import Collocation, Ipopt, Law
@@ -17,4 +19,5 @@ SOLVER = Ipopt(tolerance=1e-6, max_iterations=120)
 def least_energy_of(posed: Posed, law: Law) -> Posed:
     """Return a scene under a law with a smooth energy, as this solve wants it."""
     settings = {"formulation": "energy", "states": "reduced", "solver": SOLVER}
-    return posed.under(law=law, transcription=MESH, **settings)
+    found = posed.under(law=law, transcription=MESH, **settings)
+    return replace(found, loads=tuple(load for load in found.loads if load.dead))

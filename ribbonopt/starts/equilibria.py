@@ -51,9 +51,10 @@ class _Described:
 
     @cached_property
     def strains(self) -> Array:
-        """Strains u2, u3 (2, k) along the ribbon: dear, and needed where invariants agree."""
+        """Strains u (3, k) along the ribbon: dear, and needed where invariants agree."""
         outputs = self.solution.outputs(np.linspace(*self.solution.scene.interval, POINTS))
-        return np.stack([outputs["u2"], outputs["u3"]])
+        strains: Array = outputs["u"].T
+        return strains
 
 
 def equilibria(
@@ -166,7 +167,7 @@ def _same(a: _Described, b: _Described, *, images: bool) -> bool:
     if a.solution.scene.boundary.loop is not None:
         return True  # the same band may start elsewhere along itself
     size = float(np.abs(a.strains).max()) or 1.0
-    for signs in product((1, -1), (1, -1)) if images else [(1, 1)]:
+    for signs in product((1, -1), repeat=3) if images else [(1, 1, 1)]:
         image = b.strains * np.array(signs)[:, None]
         for candidate in (image, image[:, ::-1]) if images else (image,):
             if np.sqrt(np.mean((a.strains - candidate) ** 2)) <= SAME * size:

@@ -73,7 +73,7 @@ class _Tracking:
         """Meet the conditions: at once where they nearly hold, else bit by bit."""
         residuals = self.newton.system.residuals(self.w, self.attempt.p).conditions
         _, _, constants = self.attempt.nlp.layout.unpack(self.w)
-        off = float(np.abs(residuals).max()) / (1 + float(np.abs(constants).max()))
+        off = float(np.abs(residuals).max()) / (1 + float(np.abs(constants).max(initial=0.0)))
         if off < NEAR and self._step(self.law, None):
             return self._keep()
         share, step = 0.0, 0.25

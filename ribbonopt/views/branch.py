@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Sequence
+from functools import partial
 from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -20,7 +21,7 @@ from ribbonopt.solution.solution import Solution
 from .columns import ColumnPair
 from .pieces import Array
 from .strip import plot_strip
-from .style import BENDING, FAINT, INK, TWIST, blank, save_all, tidy
+from .style import BENDING, FAINT, INK, TWIST, Drawn, blank, draw_all, tidy
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -62,12 +63,15 @@ def save_branch_figures(
     pairs: Sequence[ColumnPair],
     *,
     log: Log = False,
-) -> list[Path]:
-    """Write branch.png, a panel for each of the first four pairs (x, y), and ribbons.png if any."""
-    figures = {"branch.png": _plot(rows, pairs[:4], log)}
+) -> Drawn:
+    """Write branch.png, a panel for each of the first four pairs (x, y), and ribbons.png if any.
+
+    That is left out, and it is said why, where a ribbon has no surface.
+    """
+    drawings = {"branch.png": partial(_plot, rows, pairs[:4], log)}
     if ribbons:
-        figures["ribbons.png"] = plot_strip(ribbons, captions)
-    return save_all(figures, Path(folder))
+        drawings["ribbons.png"] = partial(plot_strip, ribbons, captions)
+    return draw_all(drawings, Path(folder))
 
 
 def _plot(rows: Rows, pairs: Sequence[ColumnPair], log: Log, title: str = "") -> Figure:

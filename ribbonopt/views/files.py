@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import partial
 from pathlib import Path
 
 from ribbonopt.errors import OutputError
@@ -12,7 +13,7 @@ from ribbonopt.solution.solution import Solution
 from .plane import draw_plane
 from .ribbon import draw_ribbon
 from .strains import draw_strains
-from .style import save_all
+from .style import Drawn, draw_all
 from .subject import Subject, subject_of
 
 
@@ -24,7 +25,8 @@ def save_figures(
 ) -> list[Path]:
     """Write strains.png, plane.png and ribbon.png into an existing folder.
 
-    Those of other equilibria of the scene go to `equilibria/2` in it, and so on.
+    Those of other equilibria of the scene go to `equilibria/2` in it, and so on. Where a ribbon
+    bends in its own plane only its strains can be drawn: `draw_figures` says so.
 
     Parameters
     ----------
@@ -45,7 +47,23 @@ def save_figures(
     OutputError
         If a file cannot be written.
     """
-    paths = _save(subject_of(solution, complete), Path(folder), half_width)
+    return draw_figures(solution, folder, half_width, complete).paths
+
+
+def draw_figures(
+    solution: Solution,
+    folder: str | Path,
+    half_width: float | None = None,
+    complete: bool = True,
+) -> Drawn:
+    """Write the pictures of `save_figures`; return where they are, and what was left out and why.
+
+    Raises
+    ------
+    OutputError
+        If a file cannot be written.
+    """
+    paths, left_out = _save(subject_of(solution, complete), Path(folder), half_width)
     for i, other in enumerate(solution.others, start=2):
         inner = Path(folder) / "equilibria" / str(i)
         subject = subject_of(other, complete)
@@ -54,17 +72,19 @@ def save_figures(
             inner.mkdir(parents=True, exist_ok=True)
         except OSError as error:
             raise OutputError(f"{inner}: cannot be written ({error.strerror})") from error
-        paths += _save(subject, inner, half_width)
-    return paths
+        more = _save(subject, inner, half_width)
+        paths += more.paths
+        left_out += [f"equilibria/{i}/{text}" for text in more.left_out]
+    return Drawn(paths, left_out)
 
 
-def _save(subject: Subject, folder: Path, half_width: float | None) -> list[Path]:
-    figures = {
-        "strains.png": draw_strains(subject),
-        "plane.png": draw_plane(subject),
-        "ribbon.png": draw_ribbon(subject, half_width),
+def _save(subject: Subject, folder: Path, half_width: float | None) -> Drawn:
+    drawings = {
+        "strains.png": partial(draw_strains, subject),
+        "plane.png": partial(draw_plane, subject),
+        "ribbon.png": partial(draw_ribbon, subject, half_width),
     }
-    return save_all(figures, folder)
+    return draw_all(drawings, folder)
 
 
 class Pictures:
@@ -72,6 +92,6 @@ class Pictures:
 
     name, files = "pictures", PICTURES
 
-    def write(self, solution: Solution, folder: Path) -> None:
-        """Draw the pictures of a solution and of its other equilibria."""
-        save_figures(solution, folder)
+    def write(self, solution: Solution, folder: Path) -> list[str]:
+        """Draw the pictures of a solution and of its other equilibria; say what was left out."""
+        return draw_figures(solution, folder).left_out

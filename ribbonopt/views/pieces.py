@@ -30,7 +30,7 @@ class Piece:
 
     Attributes
     ----------
-    s, u2, u3 : (k,) arrays
+    s, u1, u2, u3 : (k,) arrays
         Arclength and strains.
     eta : (k,) array
         u3/u2, and 0 where the ribbon is straight, planar or purely twisted.
@@ -41,6 +41,7 @@ class Piece:
     """
 
     s: Array
+    u1: Array
     u2: Array
     u3: Array
     eta: Array
@@ -49,6 +50,12 @@ class Piece:
     d2: Array
     d3: Array
     mirrored: bool = False
+
+
+def in_plane(pieces: tuple[Piece, ...]) -> float:
+    """Return the largest bending of a ribbon in its own plane, u1, over its largest strain."""
+    largest = [max(float(np.abs(getattr(p, u)).max()) for p in pieces) for u in ("u1", "u2", "u3")]
+    return largest[0] / max(*largest, np.finfo(float).tiny)
 
 
 def sample_pieces(solution: Solution, rows: int = ROWS) -> tuple[Piece, ...]:
@@ -77,8 +84,9 @@ def _grid(a: float, b: float, rows: int, inset: float) -> Array:
 
 
 def _piece(s: Array, values: dict[str, Array], scale: float) -> Piece:
-    u2, u3, r = values["u2"], values["u3"], values["r"]
-    return Piece(s, u2, u3, _eta(u2, u3, scale), r, values["d1"], values["d2"], values["d3"])
+    u1, u2, u3 = (values[name] for name in ("u1", "u2", "u3"))
+    r, d1, d2, d3 = (values[name] for name in ("r", "d1", "d2", "d3"))
+    return Piece(s, u1, u2, u3, _eta(u2, u3, scale), r, d1, d2, d3)
 
 
 def _scale(values: dict[str, Array]) -> float:

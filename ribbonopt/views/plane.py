@@ -35,7 +35,14 @@ def plot_plane(solution: Solution, complete: bool = True) -> Figure:
 
 
 def draw_plane(subject: Subject) -> Figure:
-    """Plot the path in the plane; a jump between them is dotted."""
+    """Plot the path in the plane; a jump between pieces is dotted.
+
+    Raises
+    ------
+    ViewError
+        Where the ribbon bends in its own plane, too, and this plane does not tell.
+    """
+    subject.demand_generatrices()
     pieces = subject.pieces
     (left, right), (low, high) = _limits(pieces, subject.units.strain)
     shape = (high - low) / (right - left)

@@ -40,7 +40,14 @@ def plot_ribbon(
 
 
 def draw_ribbon(subject: Subject, half_width: float | None = None) -> Figure:
-    """Draw a ribbon."""
+    """Draw a ribbon.
+
+    Raises
+    ------
+    ViewError
+        Where it has no generatrices.
+    """
+    subject.demand_generatrices()
     pieces = subject.pieces
     surface = sweep(pieces, subject.half_width if half_width is None else half_width)
     line = np.concatenate([p.r for p in pieces])

@@ -1,7 +1,8 @@
-"""Figure: the strains u2(s), u3(s) and their ratio eta(s)."""
+"""Figure: the strains u2(s), u3(s) and their ratio eta(s); of a rod u1(s) in the place of that."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -9,7 +10,19 @@ import numpy as np
 from ribbonopt.solution.solution import Solution
 
 from .pieces import Array, Piece
-from .style import ALLOWED, BENDING, DASHES, FORBIDDEN, INK, RATIO, TWIST, blank, head, tidy
+from .style import (
+    ALLOWED,
+    BENDING,
+    DASHES,
+    FORBIDDEN,
+    IN_PLANE,
+    INK,
+    RATIO,
+    TWIST,
+    blank,
+    head,
+    tidy,
+)
 from .subject import Subject, subject_of
 
 if TYPE_CHECKING:
@@ -17,10 +30,16 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 ETA_SHOWN = 1.6
+LINES: Mapping[str, tuple[str, str]] = {
+    "u1": (IN_PLANE, r"$u_1$ (in plane)"),
+    "u2": (BENDING, r"$u_2$ (bending)"),
+    "u3": (TWIST, r"$u_3$ (twist)"),
+    "eta": (RATIO, r"$\eta$"),
+}
 
 
 def plot_strains(solution: Solution, complete: bool = True) -> Figure:
-    """Plot u2, u3 and eta against s.
+    """Plot u2, u3 and eta against s; u1, u2 and u3 where u1 is not zero.
 
     Parameters
     ----------
@@ -35,32 +54,46 @@ def plot_strains(solution: Solution, complete: bool = True) -> Figure:
 def draw_strains(subject: Subject) -> Figure:
     """Plot strains; lines break where a piece ends."""
     figure = blank(7.2, 5.0)
+    if subject.bends_in_plane:
+        axes = figure.add_subplot()
+        _plot(axes, subject, ("u1", "u2", "u3"))
+        _label(axes, axes, subject, r"strains $u_1,\ u_2,\ u_3$")
+        return figure
     top, bottom = figure.subplots(2, 1, sharex=True, height_ratios=(2.4, 1))
-    for axes, quantity, colour, label in (
-        (top, "u2", BENDING, r"$u_2$ (bending)"),
-        (top, "u3", TWIST, r"$u_3$ (twist)"),
-        (bottom, "eta", RATIO, r"$\eta$"),
-    ):
-        axes.plot(*_joined(subject.solved, quantity), color=colour, lw=1.8, label=label)
-        if subject.mirrored:
-            axes.plot(*_joined(subject.mirrored, quantity), color=colour, lw=1.5, ls=DASHES)
-    top.axhline(0, color=INK, lw=0.6, zorder=0)
-    if subject.mirrored:
-        top.plot([], [], color=INK, lw=1.5, ls=DASHES, label=subject.rest)
-    _label(top, bottom, subject)
+    _plot(top, subject, ("u2", "u3"))
+    _plot(bottom, subject, ("eta",))
+    _shade(bottom)
+    _label(top, bottom, subject, r"strains $u_2,\ u_3$")
     return figure
 
 
-def _label(top: Axes, bottom: Axes, subject: Subject) -> None:
-    head(top, subject.name, subject.units, pad=26)
-    top.set_ylabel(subject.label(r"strains $u_2,\ u_3$", "1/m"))
-    top.legend(loc="lower left", bbox_to_anchor=(0, 1.0, 1, 0), ncols=3, frameon=False, fontsize=9)
-    bottom.axhspan(-1, 1, color=ALLOWED, lw=0, zorder=0)
+def _plot(axes: Axes, subject: Subject, quantities: tuple[str, ...]) -> None:
+    for quantity in quantities:
+        colour, label = LINES[quantity]
+        axes.plot(*_joined(subject.solved, quantity), color=colour, lw=1.8, label=label)
+        if subject.mirrored:
+            axes.plot(*_joined(subject.mirrored, quantity), color=colour, lw=1.5, ls=DASHES)
+
+
+def _shade(axes: Axes) -> None:
+    """Shade what is allowed of eta, and what is not."""
+    axes.axhspan(-1, 1, color=ALLOWED, lw=0, zorder=0)
     for sign in (-1, 1):
-        bottom.axhspan(sign, 2 * sign * ETA_SHOWN, color=FORBIDDEN, lw=0, zorder=0)
-    bottom.set_ylim(-ETA_SHOWN, ETA_SHOWN)
-    bottom.set_yticks([-1, 0, 1])
-    bottom.set_ylabel(r"$\eta = u_3/u_2$")
+        axes.axhspan(sign, 2 * sign * ETA_SHOWN, color=FORBIDDEN, lw=0, zorder=0)
+    axes.set_ylim(-ETA_SHOWN, ETA_SHOWN)
+    axes.set_yticks([-1, 0, 1])
+    axes.set_ylabel(r"$\eta = u_3/u_2$")
+
+
+def _label(top: Axes, bottom: Axes, subject: Subject, strains: str) -> None:
+    """Label the strains above, the arclength below."""
+    top.axhline(0, color=INK, lw=0.6, zorder=0)
+    if subject.mirrored:
+        top.plot([], [], color=INK, lw=1.5, ls=DASHES, label=subject.rest)
+    head(top, subject.name, subject.units, pad=26)
+    top.set_ylabel(subject.label(strains, "1/m"))
+    look = {"frameon": False, "fontsize": 9, "columnspacing": 1.4}
+    top.legend(loc="lower left", bbox_to_anchor=(0, 1.0, 1, 0), ncols=4, **look)
     bottom.set_xlabel(subject.label(r"arclength $s$", "m"))
     bottom.set_xlim(subject.interval[0], subject.end)
     for axes in (top, bottom):

@@ -25,8 +25,16 @@ PICTURE, ROW, TALLEST, NARROWEST = 3.0, 14.0, 3.2, 1.7  # inches
 
 
 def plot_strip(ribbons: Sequence[Solution], captions: Sequence[str]) -> Figure:
-    """Draw ribbons in a row, to one scale, in one view of one frame; bands whole."""
+    """Draw ribbons in a row, to one scale, in one view of one frame; bands whole.
+
+    Raises
+    ------
+    ViewError
+        Where one has no generatrices.
+    """
     subjects = [subject_of(solution, complete=True) for solution in ribbons]
+    for subject in subjects:
+        subject.demand_generatrices()
     lines = [np.concatenate([p.r for p in subject.pieces]) for subject in subjects]
     camera = place_camera(
         np.concatenate([line - line.mean(axis=0) for line in lines]),

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, NamedTuple
 
-from ribbonopt.errors import OutputError
+from ribbonopt.errors import OutputError, ViewError
 from ribbonopt.scene.units import Units
 
 if TYPE_CHECKING:
@@ -16,6 +16,7 @@ if TYPE_CHECKING:
 DPI = 150
 BENDING = "#1f5fa8"
 TWIST = "#c2410c"
+IN_PLANE = "#0b7a53"
 RATIO = "#4a4a4a"
 ALLOWED = "#dcefdc"  # the paper's green: |eta| <= 1
 FORBIDDEN = "#fbd9b0"  # the paper's orange: |eta| > 1
@@ -35,6 +36,32 @@ def blank(width: float, height: float) -> Figure:
     figure = Figure(figsize=(width, height), dpi=DPI, facecolor="white", layout=layout)
     FigureCanvasAgg(figure)
     return figure
+
+
+class Drawn(NamedTuple):
+    """Pictures that were written, and those that were left out, each with its reason."""
+
+    paths: list[Path]
+    left_out: list[str]
+
+
+def draw_all(drawings: Mapping[str, Callable[[], Figure]], folder: Path) -> Drawn:
+    """Draw and write pictures by the names of their files; leave out those that there are none of.
+
+    Raises
+    ------
+    OutputError
+        If one cannot be written.
+    """
+    figures: dict[str, Figure] = {}
+    left_out: list[str] = []
+    for name, draw in drawings.items():
+        try:
+            figures[name] = draw()
+        except ViewError as error:
+            (folder / name).unlink(missing_ok=True)  # that of an older result
+            left_out.append(f"{name}: {error}")
+    return Drawn(save_all(figures, folder), left_out)
 
 
 def save_all(figures: Mapping[str, Figure], folder: Path) -> list[Path]:

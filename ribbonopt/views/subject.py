@@ -3,15 +3,18 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
+from functools import cached_property
 
 from ribbonopt.checks.topology import closure
+from ribbonopt.errors import ViewError
 from ribbonopt.scene.units import Units
 from ribbonopt.solution.solution import Solution
 
-from .pieces import ROWS, Piece, sample_pieces
+from .pieces import ROWS, Piece, in_plane, sample_pieces
 from .symmetry import continued
 
 FEWEST_ROWS = 81  # of a piece among many
+NEGLIGIBLE = 1e-9  # of the largest strain: below it u1 counts as zero
 
 
 @dataclass(frozen=True)
@@ -57,6 +60,19 @@ class Subject:
     def length(self) -> float:
         """Length of what is shown."""
         return self.end - self.interval[0]
+
+    @cached_property
+    def bends_in_plane(self) -> bool:
+        """Whether u1 is not zero: a rod, without generatrices."""
+        return in_plane(self.solved) > NEGLIGIBLE
+
+    def demand_generatrices(self) -> None:
+        """Raise a ViewError where there are none."""
+        if self.bends_in_plane:
+            raise ViewError(
+                f"{self.name} bends in its own plane (u1 is up to {in_plane(self.solved):.2g} of "
+                "the largest strain): it is no ribbon with generatrices; its strains can be drawn"
+            )
 
     @property
     def rest(self) -> str:

@@ -27,6 +27,7 @@ def image(flip: Flip, piece: Piece) -> Piece:
     sign = -1.0 if flip.along_d2 else 1.0
     return Piece(
         s=(2 * flip.end - piece.s)[::-1],
+        u1=-sign * piece.u1[::-1],
         u2=sign * piece.u2[::-1],
         u3=piece.u3[::-1],
         eta=sign * piece.eta[::-1],
@@ -41,7 +42,8 @@ def image(flip: Flip, piece: Piece) -> Piece:
 def turned(band: ClosedBand, piece: Piece) -> Piece:
     """Return the next image of a piece under the turn of a band, two flips further on.
 
-    The first flip is about d1. If the last is about d2 the two reverse d1 and d2, and u2 with them.
+    The first flip is about d1. If the last is about d2 the two reverse d1 and d2, and u1
+    and u2 with them.
     """
     assert band.flip is not None
     start, end = band.solution.scene.interval
@@ -49,6 +51,7 @@ def turned(band: ClosedBand, piece: Piece) -> Piece:
     return replace(
         piece,
         s=piece.s + 2 * (end - start),
+        u1=sign * piece.u1,
         u2=sign * piece.u2,
         eta=sign * piece.eta,
         r=piece.r @ band.turn.T + band.shift,

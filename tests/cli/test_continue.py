@@ -28,6 +28,8 @@ from branches import (
     written,
 )
 
+from ribbonopt.views.style import Drawn
+
 Run = Callable[..., Any]
 
 
@@ -185,9 +187,9 @@ def test_what_is_drawn(
 ) -> None:
     calls: list[tuple[Any, ...]] = []
 
-    def note(*arguments: Any, **_: Any) -> list[Path]:
+    def note(*arguments: Any, **_: Any) -> Drawn:
         calls.append(arguments)
-        return []
+        return Drawn([], [])
 
     monkeypatch.setattr("ribbonopt.views.branch.save_branch_figures", note)
     scene = written(tmp_path, COLUMN + SHORT)

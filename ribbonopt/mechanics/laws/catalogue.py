@@ -7,13 +7,16 @@ M > 1e-51; at m = 0 strains and derivatives are finite.
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import fields
 from importlib import import_module
+from numbers import Real
 
 import casadi as ca
 
-from ribbonopt.scene import Law
+from ribbonopt.errors import ModelError
+from ribbonopt.scene import Law, OwnLaw
 
 from .law import ConstitutiveLaw
 
@@ -39,6 +42,9 @@ def law_class(name: str) -> type[ConstitutiveLaw]:
 def numbers_of(law: Law) -> dict[str, float]:
     """Return the numbers of a scene's law by name."""
     named = {f.name: getattr(law, f.name) for f in fields(law) if f.name != "type"}
+    for name, value in named.items():
+        if not (isinstance(value, Real) and math.isfinite(value)):
+            raise ModelError(f"law.{name}: found {value!r}, expected a number", f"law.{name}")
     return {name: float(value) for name, value in named.items()}
 
 
@@ -55,8 +61,15 @@ def law_of(law: Law, numbers: Mapping[str, ca.SX], position: ca.SX) -> Constitut
     position
         Symbol of the arclength s, on which numbers may depend.
     """
-    own = getattr(law, "constitutive", None)
-    found: ConstitutiveLaw = own(numbers, position) if own else law_class(law.type)(**numbers)
+    if not isinstance(law, OwnLaw):
+        return law_class(law.type)(**numbers)
+    found = law.constitutive(numbers, position)
+    if not isinstance(found, ConstitutiveLaw):
+        raise ModelError(
+            f"law {law.type}: constitutive(numbers, position) returned {type(found).__name__}, "
+            "expected a ConstitutiveLaw of ribbonopt.mechanics.laws.law",
+            "law",
+        )
     return found
 
 

@@ -72,9 +72,11 @@ class ConstitutiveLaw(ABC):
     smooth: bool = True
     #: differentiable at m = 0 too, so that a straight ribbon without stress has a linearisation
     linear_at_zero: bool = False
+    #: strains without stress are not zero, so that no straight ribbon is without stress
+    natural: bool = False
     #: strains have a kink or a jump where `switching` changes sign; `branch` continues either side
     kinked: bool = False
-    #: `moment` is a closed form, cheap to evaluate and to differentiate
+    #: `moment` is exact and a closed form, cheap to differentiate; else it serves guesses only
     closed_moment: bool = True
     #: names of states of its own along the ribbon, with `rates`, `end_conditions`, `own_guess`
     states: tuple[str, ...] = ()
@@ -96,11 +98,14 @@ class ConstitutiveLaw(ABC):
         """Legendre transform W_Leg(m) of the energy, eq. (7.1), or None."""
 
     def implicit(self, stress: Stress) -> ImplicitLaw:
-        """Return the law at a stress as equations for its strains, eq. (3.1b)."""
-        u = ca.SX.sym("u", len(self.components))
-        target = stress.m[list(self.components)]
-        equations = self.moment(self.whole(u)) - target
-        strain = self.strain(stress)[list(self.components)]
+        """Return the law at a stress as equations for its strains, eq. (3.1b).
+
+        Where the moment is no closed form they are the inverse law itself.
+        """
+        u, free = ca.SX.sym("u", len(self.components)), list(self.components)
+        strain = self.strain(stress)[free]
+        closed = self.closed_moment
+        equations = self.moment(self.whole(u)) - stress.m[free] if closed else u - strain
         return ImplicitLaw(u, equations, ca.SX(0, 1), strain)
 
     def whole(self, free: ca.SX) -> ca.SX:

@@ -10,11 +10,12 @@ ROD = 1.0  # delta at which the law is linear
 
 
 def first_law(law: Law, delta: float) -> Law:
-    """Return the smooth law to begin with: the law itself where it has a derivative at m = 0.
+    """Return the smooth law to begin with: the law itself where its energy is smooth at m = 0.
 
     Otherwise the variational law, at `delta` or, where that is the law, at its own if larger.
     """
-    if capabilities(law).linear_at_zero:
+    found = capabilities(law)
+    if found.linear_at_zero and found.variational:
         return law
     return Variational(delta=max(delta, sharpness(law, 0.0)))
 

@@ -23,6 +23,7 @@ class DeadForce(DeadLoad):
     """Components x, y, z of a force per length, lab frame; those not named are zero."""
 
     components: Mapping[str, float]
+    name = NAME
 
     def numbers(self) -> dict[str, float]:
         return {f"{NAME}.{axis}": value for axis, value in self.components.items()}

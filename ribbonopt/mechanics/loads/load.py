@@ -1,5 +1,8 @@
 """What a load along the ribbon says: force and couple per length at a section.
 
+A class in a file beside this one, named in `catalogue`; or one of a user's own, an instance of
+which stands in a scene built in Python: `Scene(..., loads=Loads(own=(...,)))`.
+
 Lab frame; units D w / L^3 and D w / L^2. Numbers are parameters of the problem by name, the paths
 of the scene; `theta` gives their symbols.
 """
@@ -20,6 +23,8 @@ Theta = Callable[[str], ca.SX]
 class Load(ABC):
     """Force and couple per length."""
 
+    #: path in the scene, for messages
+    name: str = "loads"
     #: it does not depend on the shape, so that it has a potential
     dead: bool = False
 

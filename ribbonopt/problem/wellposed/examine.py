@@ -15,6 +15,7 @@ from ribbonopt.problem.ribbon import Ribbon
 
 from .linearized import linearize
 from .motions import refuse_motions
+from .symmetric import refuse_asymmetry
 
 Sample = tuple[Array, Array]
 PARALLEL = 1e-10
@@ -30,6 +31,7 @@ def examine(ribbon: Ribbon, problem: BoundaryValueProblem, posed: Posed) -> None
     ModelError
         With counts, names and remedy.
     """
+    refuse_asymmetry(ribbon, posed)
     conditions = linearize(ribbon, posed)
     names = list(conditions.names)
     samples = [conditions.at(conditions.generic(seed)) for seed in (0.3, 0.8)]

@@ -14,6 +14,8 @@ from typing import Annotated, Any, Literal, Union, get_args, get_origin, get_typ
 
 from ribbonopt.scene.faults import nearest
 
+from .bounds import InPython
+
 
 def key_of(name: str) -> str:
     """Return the key of a field: its name without the underscore that tells it from a keyword."""
@@ -25,6 +27,19 @@ def hints(cls: type) -> dict[str, Any]:
     """Return the annotations of a dataclass, by the key of the field."""
     members = get_type_hints(cls, include_extras=True).items()
     return {key_of(name): annotation for name, annotation in members}
+
+
+def only_in_python(annotation: Any) -> bool:
+    """Whether no file can say what an annotation asks for: `InPython`, or a list of that."""
+    origin, arguments = get_origin(annotation), get_args(annotation)
+    if origin is tuple:
+        return only_in_python(arguments[0])
+    return origin is Annotated and isinstance(arguments[1], InPython)
+
+
+def written_keys(cls: type) -> list[str]:
+    """Return the keys of a dataclass that a file may have."""
+    return [key for key, annotation in hints(cls).items() if not only_in_python(annotation)]
 
 
 @cache
@@ -65,11 +80,14 @@ def tag_chooser(annotation: Any) -> Callable[[Any], str | None]:
     that is returned.
     """
     classes = {tag: hints(cls) for tag, cls in classes_of(annotation).items()}
-    types = types_of(annotation)
+    types, known = types_of(annotation), branches(annotation)
+    own = {tag: get_args(some)[0] for tag, some in known.items() if only_in_python(some)}
 
     def choose(value: Any) -> str | None:
         if not isinstance(value, dict) or not classes:
-            return _tag_of_value(value)
+            tag = _tag_of_value(value)
+            mine = own if tag not in known else {}
+            return next((name for name, cls in mine.items() if isinstance(value, cls)), tag)
         if len(classes) == 1:
             return next(iter(classes))
         if types:
@@ -101,6 +119,8 @@ def inside(annotation: Any, step: str | int) -> Any:
 
 def _tag_of_annotation(annotation: Any) -> str:
     origin, arguments = get_origin(annotation), get_args(annotation)
+    if only_in_python(annotation):
+        return str(arguments[0].__name__)
     if origin is Annotated:
         return _tag_of_annotation(arguments[0])
     if origin is Literal:

@@ -16,8 +16,16 @@ from pydantic_core import ErrorDetails
 
 from ribbonopt.scene.faults import KeyPath, Problem, nearest, shown, suggestion
 
-from .annotations import branches, classes_of, hints, inside, types_of
-from .bounds import Bounds, InPython
+from .annotations import (
+    branches,
+    classes_of,
+    hints,
+    inside,
+    only_in_python,
+    types_of,
+    written_keys,
+)
+from .bounds import Bounds
 
 _KEY_OF_MAPPING = "[key]"
 
@@ -95,6 +103,8 @@ def _problem(place: _Place, error: ErrorDetails) -> Problem:
 def expected(annotation: Any) -> str:
     """Return what an annotation asks for, in words."""
     origin, arguments = get_origin(annotation), get_args(annotation)
+    if only_in_python(annotation):
+        return "what only Python can say"
     if origin is Annotated:
         return expected(arguments[0]) + _limits(*arguments[1:])
     if branches(annotation):
@@ -108,7 +118,7 @@ def expected(annotation: Any) -> str:
     if origin is dict:
         return f"a mapping of names, each to {expected(arguments[1])}"
     if is_dataclass(annotation) and isinstance(annotation, type):
-        return f"a mapping with keys among {', '.join(hints(annotation))}"
+        return f"a mapping with keys among {', '.join(written_keys(annotation))}"
     words = {float: "a number", int: "a whole number", bool: "true or false", str: "text"}
     return words.get(annotation, "null")
 
@@ -118,7 +128,7 @@ def _expected_of_union(annotation: Any) -> str:
     members = [
         branch
         for branch in branches(annotation).values()
-        if branch is not NoneType and not any(isinstance(a, InPython) for a in get_args(branch))
+        if branch is not NoneType and not only_in_python(branch)
     ]
     types, classes = types_of(annotation), classes_of(annotation).values()
     grouped = bool(types) or len(classes) > 1
@@ -130,7 +140,7 @@ def _expected_of_union(annotation: Any) -> str:
     if types:
         parts.append(f"a mapping whose `type` is {_one_of(types)}")
     elif grouped:
-        keys = ", or ".join(", ".join(hints(member)) for member in classes)
+        keys = ", or ".join(", ".join(written_keys(member)) for member in classes)
         parts.append(f"a mapping with keys {keys}")
     return " or ".join(parts)
 
@@ -197,7 +207,7 @@ def _rivals(place: _Place) -> list[type]:
 
 
 def _unknown_key(place: _Place) -> str:
-    key, known = str(place.path[-1]), hints(place.owner)
+    key, known = str(place.path[-1]), written_keys(place.owner)
     if _rivals(place):
         return f"cannot stand beside {', '.join(known)}; keep one of the two"
     message = f"unknown key{suggestion(key, known)} (known keys: {', '.join(known)})"

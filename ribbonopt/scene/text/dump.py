@@ -8,6 +8,7 @@ from typing import Any
 import yaml
 
 from ribbonopt.errors import SceneError
+from ribbonopt.scene.laws import OwnLaw
 from ribbonopt.scene.model import Scene
 from ribbonopt.scene.schema.annotations import key_of
 from ribbonopt.scene.supports import SUPPORTS, Support
@@ -18,7 +19,15 @@ _CORE = "tag:yaml.org,2002:"
 
 
 def dump(scene: Scene) -> str:
-    """Write a valid scene, leaving out the fields equal to their default (except every `type`)."""
+    """Write a valid scene, leaving out the fields equal to their default (except every `type`).
+
+    Raises
+    ------
+    SceneError
+        If something of it is declared in Python.
+    """
+    if reason := unsayable(scene):
+        raise SceneError(reason)
     text: str = yaml.dump(
         _plain(scene),
         Dumper=_Dumper,
@@ -53,9 +62,25 @@ _Dumper.add_representer(str, _write_text)
 _Dumper.add_representer(float, _write_float)
 
 
+def unsayable(scene: Scene) -> str:
+    """Return why no file can say a scene: what of it is declared in Python; "" where one can."""
+    for end in (scene.boundary.start, scene.boundary.end):
+        if isinstance(end.support, Support) and SUPPORTS.get(end.support.name) != end.support:
+            return (
+                f"support {end.support.name!r} is declared in Python, which no file can say; name "
+                f"one of {', '.join(SUPPORTS)}, or write the conditions of that end one by one"
+            )
+    if isinstance(scene.law, OwnLaw):
+        return f"law {scene.law.type!r} is declared in Python, which no file can say"
+    if scene.loads.own:
+        kind = type(scene.loads.own[0]).__name__
+        return f"loads.own: {kind} is declared in Python, which no file can say"
+    return ""
+
+
 def _plain(value: Any) -> Any:
     if isinstance(value, Support):
-        return _name_of(value)
+        return value.name
     if is_dataclass(value):
         kept = [member for member in fields(value) if _is_told(member, value)]
         return {key_of(member.name): _plain(getattr(value, member.name)) for member in kept}
@@ -69,12 +94,3 @@ def _is_told(member: Field[Any], owner: Any) -> bool:
     if member.default_factory is not MISSING:
         default = member.default_factory()
     return member.name == "type" or bool(getattr(owner, member.name) != default)
-
-
-def _name_of(support: Support) -> str:
-    if SUPPORTS.get(support.name) != support:
-        raise SceneError(
-            f"support {support.name!r} is declared in Python, which no file can say; name one of "
-            f"{', '.join(SUPPORTS)}, or write the conditions of that end one by one"
-        )
-    return support.name

@@ -16,12 +16,11 @@ from typing import Any
 import numpy as np
 
 from ribbonopt.output.summary import versions
-from ribbonopt.pipeline.prepared import Prepared
 from ribbonopt.scene import Scene
 from ribbonopt.studies.machine import machine
 
 from .compare import TOLERANCES
-from .measure import Measurement, Profile, cost_of, errors_of, measure
+from .measure import Measurement, Profile, Repeated, errors_of, measure
 from .pairs import Mesh, Pair, pairs_of
 from .rows import PairRow, cheapest, row_of
 from .truth import UNKNOWN, Numbers, SourcedLoads, fine_solves, reference_of, truth_of
@@ -166,10 +165,10 @@ def _order(points: Sequence[tuple[float, float]]) -> float:
     return -float(h @ error / (h @ h))
 
 
-def _on_grid(pair: Pair, scene: Scene, quick: bool) -> list[tuple[Measurement, Prepared | None]]:
+def _on_grid(pair: Pair, scene: Scene, quick: bool) -> list[tuple[Measurement, Repeated | None]]:
     degrees = sorted({getattr(mesh, "degree", 0) for mesh in pair.family.grid})
     meshes = [m for m in pair.family.grid if not quick or m.degree in degrees[:2]]
-    found: list[tuple[Measurement, Prepared | None]] = []
+    found: list[tuple[Measurement, Repeated | None]] = []
     started = time.perf_counter()
     for mesh in meshes:
         if _exact(found, mesh) or time.perf_counter() - started > PATIENCE:
@@ -180,7 +179,7 @@ def _on_grid(pair: Pair, scene: Scene, quick: bool) -> list[tuple[Measurement, P
     return found
 
 
-def _exact(found: Sequence[tuple[Measurement, Prepared | None]], mesh: Mesh) -> bool:
+def _exact(found: Sequence[tuple[Measurement, Repeated | None]], mesh: Mesh) -> bool:
     """Whether a coarser mesh of this degree is exact already, so that finer ones show nothing."""
     return any(
         one.mesh.degree == mesh.degree and one.estimate is not None and one.estimate < ROUNDING
@@ -189,7 +188,7 @@ def _exact(found: Sequence[tuple[Measurement, Prepared | None]], mesh: Mesh) -> 
 
 
 def _timed(
-    built: Sequence[Prepared | None], peers: Sequence[Peer], repeat: int
+    built: Sequence[Repeated | None], peers: Sequence[Peer], repeat: int
 ) -> tuple[list[float | None], list[float]]:
     """Median seconds of one solve of each, every round through all of them."""
     ours: list[list[float]] = [[] for _ in built]
@@ -197,7 +196,7 @@ def _timed(
     for _ in range(repeat):
         for prepared, seconds in zip(built, ours, strict=True):
             if prepared is not None and not (seconds and seconds[0] > SLOW):
-                seconds.append(cost_of(prepared).solve)
+                seconds.append(prepared.cost().solve)
         for peer, seconds in zip(peers, theirs, strict=True):
             if not (seconds and seconds[0] > SLOW):
                 start = time.perf_counter()

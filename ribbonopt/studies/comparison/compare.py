@@ -14,11 +14,10 @@ from statistics import median
 from typing import Any
 
 from ribbonopt.output.summary import versions
-from ribbonopt.pipeline.prepared import Prepared
 from ribbonopt.scene import Scene
 from ribbonopt.studies.machine import machine
 
-from .measure import Measurement, cost_of, errors_of, measure
+from .measure import Measurement, Repeated, errors_of, measure
 from .pairs import Pair, pairs_of
 from .rows import Cheapest, PairRow, cheapest, row_of
 from .truth import UNKNOWN, SourcedLoads, Truth, fine_solves, reference_of, truth_of
@@ -133,7 +132,7 @@ def compare(
 
 
 def _leaders_again(
-    rows: list[PairRow], built: Sequence[Prepared | None], tolerances: Iterable[float]
+    rows: list[PairRow], built: Sequence[Repeated | None], tolerances: Iterable[float]
 ) -> list[PairRow]:
     """Time those that might be cheapest again, interleaved: a busy machine should not decide."""
     leaders: set[int] = set()
@@ -146,14 +145,14 @@ def _leaders_again(
         for i, values in seconds.items():
             prepared = built[i]
             if prepared is not None:
-                values.append(cost_of(prepared).solve)
+                values.append(prepared.cost().solve)
     again = {i: median(values) for i, values in seconds.items() if values}
     return [replace(row, solve=again.get(i, row.solve)) for i, row in enumerate(rows)]
 
 
 def _climb(
     pair: Pair, scene: Scene, truth: Truth | None, wanted: float
-) -> Iterator[tuple[Measurement, Prepared | None]]:
+) -> Iterator[tuple[Measurement, Repeated | None]]:
     """Measure from cheap to fine meshes until the error is met."""
     started, failures = time.perf_counter(), 0
     for mesh in pair.family.ladder:

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass, replace
-from functools import cached_property, lru_cache
+from functools import cached_property
 from statistics import median
 from typing import Any
 
@@ -18,9 +18,11 @@ from ribbonopt.accuracy.estimate import ROUNDING, analyse
 from ribbonopt.arrays import Array
 from ribbonopt.errors import ConvergenceError, RibbonoptError
 from ribbonopt.guess import Guess
+from ribbonopt.mechanics.laws.catalogue import capabilities
+from ribbonopt.mechanics.laws.law import Stress
+from ribbonopt.mechanics.outputs import own_name
 from ribbonopt.pipeline.prepared import Prepared, prepare
 from ribbonopt.problem import Posed, Ribbon
-from ribbonopt.problem.equilibrium import local_stress
 from ribbonopt.scene import Scene
 from ribbonopt.scene.units import Units
 from ribbonopt.solution.solution import Solution
@@ -86,19 +88,21 @@ class LawResidual:
 
     posed: Posed
 
-    def __call__(self, outputs: dict[str, Array], units: Units) -> float:
-        """Return the largest departure on sampled outputs."""
+    def __call__(self, s: Array, outputs: dict[str, Array], units: Units) -> float:
+        """Return the largest departure on outputs sampled at arclengths s (k,)."""
         known = [outputs[f"{v}{i}"] / units.of(v) for v in "nm" for i in (1, 2, 3)]
-        start = self.posed.scene.interval[0]
-        expected = np.array(self._strain(np.stack(known), start))
+        own = [outputs[own_name(state)] for state in capabilities(self.posed.scene.law).states]
+        expected = np.array(self._strain(np.stack([*known, *own, s / units.length])))
         found = outputs["u"].T / units.strain
         return _relative(found - expected, found)
 
     @cached_property
     def _strain(self) -> ca.Function:
-        ribbon, (local, stress) = Ribbon.of(self.posed), local_stress()
-        u = ca.substitute(ribbon.law.strain(stress), ribbon.parameters, ca.DM(self.posed.values))
-        return ca.Function("strain", [local, ribbon.position], [u])
+        ribbon = Ribbon.of(self.posed)
+        n, m, own = ca.SX.sym("n", 3), ca.SX.sym("m", 3), ca.SX.sym("own", len(ribbon.law.states))
+        u = ribbon.law.strain(Stress(n, m, own))
+        u = ca.substitute(u, ribbon.parameters, ca.DM(self.posed.values))
+        return ca.Function("strain", [ca.vertcat(n, m, own, ribbon.position)], [u])
 
 
 @dataclass(frozen=True)
@@ -110,37 +114,42 @@ class Cost:
     solve: float
 
 
-@lru_cache(maxsize=1)
-def _guess(prepared: Prepared) -> Guess:
-    """First guess of a prepared scene, made once for its repeated solves."""
-    return prepared.guess()
+@dataclass(frozen=True, eq=False)
+class Repeated:
+    """A prepared scene that is solved again and again, from one guess."""
 
+    prepared: Prepared
 
-def cost_of(prepared: Prepared) -> Cost:
-    """Solve again and return the cost; guess and checks, the same for all pairs, are left out."""
-    attempts = prepared.solver.solve(*prepared.start(guess=_guess(prepared))).tried
-    return Cost(
-        sum(a.evaluate for a in attempts),
-        sum(a.linear for a in attempts),
-        sum(a.total for a in attempts),
-    )
+    @cached_property
+    def guess(self) -> Guess:
+        """The first guess, made once."""
+        return self.prepared.guess()
+
+    def cost(self) -> Cost:
+        """Solve again; guess and checks, the same for all pairs, are left out of the cost."""
+        reports = self.prepared.solver.solve(*self.prepared.start(guess=self.guess)).tried
+        return Cost(
+            sum(report.evaluate for report in reports),
+            sum(report.linear for report in reports),
+            sum(report.total for report in reports),
+        )
 
 
 def measure(
     pair: Pair, scene: Scene, mesh: Mesh, repeat: int = 3
-) -> tuple[Measurement, Prepared | None]:
+) -> tuple[Measurement, Repeated | None]:
     """Solve a scene by a pair on a mesh; times are medians of `repeat` further solves.
 
     What was built is returned too, to solve again; None where it was refused.
     """
     try:
-        prepared = prepare(pair.scene(scene, mesh))
+        built = Repeated(prepare(pair.scene(scene, mesh)))
         # The one guess: a pair that needs another start than the rest has failed here.
-        solution = prepared.solve(guess=_guess(prepared), fallback=False)
-        costs = [cost_of(prepared)]
+        solution = built.prepared.solve(guess=built.guess, fallback=False)
+        costs = [built.cost()]
         while len(costs) < repeat and costs[0].solve < SLOW:
-            costs.append(cost_of(prepared))
-        return _measured(pair, mesh, prepared, solution, costs), prepared
+            costs.append(built.cost())
+        return _measured(pair, mesh, built.prepared, solution, costs), built
     except ConvergenceError as error:
         return _failed(pair, mesh, error.status, error), None
     except np.linalg.LinAlgError as error:
@@ -164,12 +173,13 @@ def _measured(
     profile = estimate = None
     if solution.status.converged:
         start, end = solution.scene.interval
-        o = solution.outputs(start + (end - start) * (np.arange(SAMPLES) + 0.5) / SAMPLES)
+        s = start + (end - start) * (np.arange(SAMPLES) + 0.5) / SAMPLES
+        o = solution.outputs(s)
         profile = Profile(solution.n0, solution.m0, o["u"], solution.units)
         estimate = _estimate(solution, profile)
         numbers |= {
             "drift_invariant": solution.verification.drift["H"],
-            "drift_law": LawResidual(solution.posed)(o, solution.units),
+            "drift_law": LawResidual(solution.posed)(s, o, solution.units),
             "drift_frame": float(o["orthonormality"].max()),
         }
     message = "" if solution.verified else _line(solution.message)

@@ -10,6 +10,7 @@ from collections.abc import Iterable, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, Literal, TypeVar
 
+from ribbonopt import problem
 from ribbonopt.errors import SceneError
 from ribbonopt.scene import Algebraic, Collocation, Scene, Shooting
 
@@ -21,11 +22,8 @@ STATES: tuple[States, ...] = ("reduced", "full")
 
 #: formulations by the name the command line knows, as a scene writes them
 FORMULATIONS: dict[str, Any] = {
-    "inverted": "inverted",
-    "algebraic": Algebraic(),
+    **{name: name for name in problem.FORMULATIONS},
     "algebraic-unbounded": Algebraic(bounds=False),
-    "differentiated": "differentiated",
-    "energy": "energy",
 }
 
 # (degree, intervals) from cheap to fine. Higher degrees before more intervals: ribbons are smooth

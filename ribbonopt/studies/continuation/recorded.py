@@ -12,7 +12,7 @@ from ribbonopt.accuracy.estimate import relative_error
 from ribbonopt.errors import ModelError
 from ribbonopt.plain import Row, finite
 from ribbonopt.scene import ContinuationStage, Scene
-from ribbonopt.scene.quantities import ANSWERS
+from ribbonopt.scene.quantities import ANSWERS, START_VECTORS
 from ribbonopt.scene.stages import parse_record, parse_stop, stages_of, words_of
 from ribbonopt.solution.sampling import evaluate_formula
 from ribbonopt.solution.solution import Solution
@@ -128,9 +128,9 @@ def sampled(
 def numbers_of(solution: Solution) -> dict[str, float]:
     """Return energy, invariant, loads (lab frame) and strains at the start, in scene units."""
     row = {"energy": solution.energy, "H0": float(solution.start["H"])}
-    for name, vector in (("n0", solution.n0), ("m0", solution.m0)):
-        row |= {f"{name}{axis}": float(vector[i]) for i, axis in enumerate("xyz")}
-    return row | {"u2": float(solution.u0[1]), "u3": float(solution.u0[2])}
+    for names, vector in zip(START_VECTORS, (solution.n0, solution.m0, solution.u0), strict=True):
+        row |= {name: float(value) for name, value in zip(names, vector, strict=True)}
+    return row
 
 
 def stopped(row: Mapping[str, Any], stage: ContinuationStage) -> str:

@@ -126,11 +126,14 @@ class MultipleShooting:
 
     def _flows(self, bvp: BoundaryValueProblem) -> tuple[Flow, ...]:
         nx, nz = bvp.state.numel(), bvp.algebraic.numel()
-        start = bvp.algebraic_start if bvp.algebraic_start.numel() else ca.SX.zeros(nz)
-        result = []
-        for stage in stage_functions(bvp):
+        given = bvp.algebraic_start if bvp.algebraic_start.numel() else ca.SX.zeros(nz)
+        result, begin = [], bvp.start
+        for phase, stage in zip(bvp.phases, stage_functions(bvp), strict=True):
+            position = begin + stage.inputs[3][0] * phase.length
+            start = ca.substitute(given, bvp.position, position)
             step = self.method.step(stage, nx, start).repeated(self.steps)
             result.append(Flow(stage, step, algebraic_function(stage, nx, start), self.steps))
+            begin = begin + phase.length
         return tuple(result)
 
     def _refuse(self, bvp: BoundaryValueProblem) -> None:

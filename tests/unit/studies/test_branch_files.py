@@ -67,7 +67,7 @@ continuation:
 SCENES = {"branches and stages": COLUMN, "phases and meshes": MOEBIUS, "stopped": STOPPED}
 HEAD = [
     *("number", "stage", "branch", "parameter", "value", "kind", "negative", "error", "energy"),
-    *("H0", "n0x", "n0y", "n0z", "m0x", "m0y", "m0z", "u2", "u3"),
+    *("H0", "n0x", "n0y", "n0z", "m0x", "m0y", "m0z", "u1", "u2", "u3"),
 ]
 TAIL = ["switches", "intervals", "iterations"]
 

@@ -233,11 +233,13 @@ def test_bands_are_drawn_whole_and_said_to_be():
 
 def test_files_are_written(tmp_path):
     pairs = [("value", "energy"), ("value", "u2"), ("u2", "energy"), ("number", "error")]
-    paths = save_branch_figures(fold(), [solved("helix")], ["helix"], tmp_path, [*pairs, pairs[0]])
+    ribbons = [solved("helix")]
+    paths, left_out = save_branch_figures(fold(), ribbons, ["helix"], tmp_path, [*pairs, pairs[0]])
+    assert left_out == []
     assert [path.name for path in paths] == ["branch.png", "ribbons.png"]
     assert all(imread(path).std() > 0.02 for path in paths)
     assert imread(paths[0]).shape[1] > 1500  # two panels wide
-    (only,) = save_branch_figures(fold(), [], [], tmp_path, pairs[:1])
+    (only,) = save_branch_figures(fold(), [], [], tmp_path, pairs[:1]).paths
     assert only == tmp_path / "branch.png"
 
 
