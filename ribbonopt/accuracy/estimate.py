@@ -19,7 +19,7 @@ from ribbonopt.solution.trajectory import Trajectory
 from ribbonopt.solvers.condense import CondensedSystem
 
 ROUNDING = 1e-15
-NOTHING = 1e-100  # sizes below it are those of a straight ribbon, whose laws are guarded at m = 0
+LEAST = 1e-3  # size of an answer, Dw = L = 1, below which its error counts absolutely
 
 
 @dataclass(frozen=True, eq=False)
@@ -81,14 +81,11 @@ def relative_error(solution: Solution) -> tuple[float, str]:
     """Largest estimated error over the size of what it is an error of, and the name of that.
 
     Loads are measured by the larger of force times length and moment, strains by the largest
-    along the ribbon, states by the length.
+    along the ribbon, states by the length. Next to a straight ribbon without stress errors count
+    absolutely: there is nothing that they could be relative to.
     """
     found = analyse(solution)
-    floor = NOTHING
-    relative = {
-        name: (found.errors[name] if size > floor else 0.0) / max(size, floor)
-        for name, size in found.sizes.items()
-    }
+    relative = {name: found.errors[name] / max(size, LEAST) for name, size in found.sizes.items()}
     worst = max(relative, key=lambda name: relative[name])
     return relative[worst], worst
 

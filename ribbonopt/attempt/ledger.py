@@ -15,16 +15,22 @@ Step = Mapping[str, Any]
 class Ledger:
     """Steps in order, each with its cost, and reports of the solvers that worked on the scene.
 
-    Steps on the way to a guess are notes: their iterations are their own.
+    Steps on the way to a guess are notes: their iterations are their own. What a user asked for and
+    was not done is given up, in words.
     """
 
     steps: list[Step] = field(default_factory=list)
     reports: list[SolveReport] = field(default_factory=list)
+    given_up: list[str] = field(default_factory=list)
 
     def note(self, step: str, seconds: float, iterations: int | None = None) -> None:
         """Note a step that needed no solver of the scene itself."""
         count = {} if iterations is None else {"iterations": iterations}
         self.steps.append({"step": step, **count, "seconds": seconds})
+
+    def give_up(self, what: str) -> None:
+        """Say what was asked for and is not what led to the answer."""
+        self.given_up.append(what)
 
     def enter(self, report: SolveReport, words: str) -> None:
         """Enter what a solver reports, one step for each solver that was tried."""

@@ -11,6 +11,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from ribbonopt.accuracy.estimate import LEAST, analyse
 from ribbonopt.arrays import Array
 from ribbonopt.problem import Ribbon
 from ribbonopt.solution.solution import Solution
@@ -18,6 +19,8 @@ from ribbonopt.solution.verification import Verification, unverified
 from ribbonopt.transcription.buffered import Buffered
 
 TOLERANCE = 1e-8
+SPARE, MOST = 10.0, 1e-2  # times the estimated error; of the strains: how far off the law may be
+JUMP = 1e-6  # of the largest moment, on either side of a jump of the law
 
 
 def verify(solution: Solution, ribbon: Ribbon) -> Verification:
@@ -57,6 +60,7 @@ def verify(solution: Solution, ribbon: Ribbon) -> Verification:
                 f"|eta| = {eta.max():.4g} at s = {s:.4g}, beyond 1: eq. (4.1) forbids it; the "
                 "ribbon wants to switch sheets there (law: sadowsky, regularized or variational)"
             )
+    problems += _off_the_law(solution, ribbon)
     loop = solution.scene.boundary.loop
     if loop is not None:
         from .topology import loop_problems  # only where a scene has one
@@ -65,6 +69,35 @@ def verify(solution: Solution, ribbon: Ribbon) -> Verification:
     law = float(solution.at_stages["law_residual"].max())
     law /= max(_size(nodes["u"]), np.finfo(float).tiny)  # a straight ribbon has no strains
     return Verification(tuple(problems), worst, residual, law, drift)
+
+
+def _off_the_law(solution: Solution, ribbon: Ribbon) -> list[str]:
+    """Say whether the strains at the nodes are others than those of the law at the moments.
+
+    By more than the estimated error of the answer explains, or so far that nothing excuses it. In
+    phases and in the inverted form they are the law's own; minima of a relaxed energy have others.
+    """
+    nodes = solution.trajectory.at_nodes
+    off = nodes["law_residual"]
+    if not ribbon.law.smooth:
+        # Where the law jumps rounding decides on which side it is.
+        off = np.where(np.abs(nodes["switching"]) > JUMP * _size(nodes["m"]), off, 0.0)
+    size = max(_size(nodes["u"]), LEAST)
+    found = float(off.max()) / size
+    if found <= TOLERANCE or solution.problem.recovered:
+        return []
+    try:
+        errors = analyse(solution).errors
+        explained = max(errors["states"], errors["u0"] / size)
+    except np.linalg.LinAlgError:  # no estimate: nothing is explained
+        explained = 0.0
+    if found <= min(TOLERANCE + SPARE * explained, MOST):
+        return []
+    s = solution.nodes[int(off.argmax())]
+    return [
+        f"the strains at s = {s:.4g} are off the law by {found:.1e} of the largest: refine the "
+        "mesh (transcription), or use formulation: inverted, which holds the law exactly"
+    ]
 
 
 def _worst_condition(solution: Solution, ribbon: Ribbon) -> tuple[str, float]:

@@ -16,6 +16,7 @@ def report(summary: Mapping[str, Any]) -> str:
     head = f"{s['name']}: {s['status'].replace('_', ' ')}"
     lines = [
         head + (", verified" if s["verified"] else f"\n  {s['message']}"),
+        *(f"  note: {what}" for what in s["given_up"]),
         f"  law {s['law']['type']}{f' ({law})' if law else ''}, {s['formulation']} formulation, "
         f"{s['states']} states",
         f"  {s['transcription']}, {s['scheme']} {s['degree']} on {s['intervals']} intervals, "

@@ -139,6 +139,7 @@ def load_solution(path: str | Path, scene: Scene | None = None) -> Solution:
         timings=summary["timings"],
         steps=tuple(summary["path"]),
         skipped=tuple(summary["skipped"]),
+        given_up=tuple(summary.get("given_up", ())),
         verification=Verification((), worst, between, law, drift),
         sheets=sheets,
     )

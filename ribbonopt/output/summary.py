@@ -60,6 +60,7 @@ def summarize(solution: Solution) -> dict[str, Any]:
         "iterations": solution.iterations,
         "equilibria": [_equilibrium(found) for found in (solution, *solution.others)],
         "path": [dict(step) for step in solution.steps],
+        "given_up": list(solution.given_up),
         "skipped": list(solution.skipped),
         "timings": dict(solution.timings),
         "versions": versions(),

@@ -161,8 +161,12 @@ class Prepared:
         if own is not None:
             step = "guess: given" if guess else f"guess: {words(posed.scene.guess)}"
             search.ledger.note(step, time.perf_counter() - started)
-        if own is None or (not search.run(own, quick=quick) and fallback):
+        led = own is not None and search.run(own, quick=quick)
+        if not led and (own is None or fallback):
             search.run_all(self.automatic.guesses(posed, search.ledger))
+        if not led and own is not None and fallback:
+            what = "the guess given" if guess else f"the guess ({words(posed.scene.guess)})"
+            search.ledger.give_up(f"{what} led nowhere and was given up for the automatic start")
         return self._with_costs(search, time.perf_counter() - started)
 
     def _with_costs(self, search: Search, seconds: float) -> Solution:
@@ -177,7 +181,8 @@ class Prepared:
             best,
             timings=ledger.timings(self.seconds, seconds),
             iterations=ledger.iterations,
-            skipped=skipped(search.posed, self.problem, ledger.solvers, best.sheets),
+            given_up=tuple(ledger.given_up),
+            skipped=skipped(search.posed, self.problem, ledger, best.sheets),
         )
 
     def _own_guess(self, posed: Posed) -> Guess | None:

@@ -2,20 +2,22 @@
 
 from __future__ import annotations
 
+from ribbonopt.attempt.ledger import Ledger
 from ribbonopt.problem import BoundaryValueProblem, Posed
 
 
 def skipped(
     posed: Posed,
     problem: BoundaryValueProblem,
-    solvers: tuple[str, ...] = (),
+    ledger: Ledger | None = None,
     sheets: tuple[int, ...] = (),
 ) -> tuple[str, ...]:
     """Say what a scene does not need and what is therefore not made, each with its reason.
 
-    `solvers` are those that were used, `sheets` the phases; before a solve, none.
+    `ledger` is what a solve has cost, `sheets` the phases it ended in; before it there are none.
     """
     result, scene = [], posed.given
+    solvers = () if ledger is None else ledger.solvers
     if scene.states != "full":
         if not posed.loads:
             result.append("force and moment as states (no loads: n is constant, m follows from r)")
@@ -28,7 +30,7 @@ def skipped(
     may_need_it = scene.guess == "auto" if not solvers else "ipopt" in solvers
     if problem.square and scene.solver.type != "ipopt" and not may_need_it:
         result.append("IPOPT and the sparse Jacobian (Newton condenses element by element)")
-    if scene.guess != "auto":
+    if scene.guess != "auto" and not (ledger and ledger.given_up):
         result.append("automatic start (the guess is given)")
     if solvers and not sheets:
         result.append("phases (the law is smooth, m2 keeps its sign, or the scene says so)")

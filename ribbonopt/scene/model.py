@@ -171,7 +171,10 @@ class RibbonSizes:
 
 @dataclass(frozen=True)
 class Scene:
-    """One ribbon: its law, its interval, its boundary conditions and how to solve it."""
+    """One ribbon: its law, its interval, its boundary conditions and how to solve it.
+
+    In a file with `ribbon` the interval is by default all of its length, or the piece of a loop.
+    """
 
     name: str
     law: Law

@@ -48,8 +48,8 @@ class Solution:
         Seconds by kind of work.
     steps : tuple of mappings
         The steps that led here, with their cost.
-    skipped : tuple of str
-        What this scene did not need.
+    skipped, given_up : tuples of str
+        What this scene did not need; what it asked for and did not lead to this answer.
     verification : Verification
         What was checked afterwards.
     others : tuple of Solution
@@ -70,6 +70,7 @@ class Solution:
     timings: Mapping[str, float] = field(default_factory=dict)
     steps: tuple[Mapping[str, Any], ...] = ()
     skipped: tuple[str, ...] = ()
+    given_up: tuple[str, ...] = ()
     others: tuple[Solution, ...] = ()
     times: int = 1
     sheets: tuple[int, ...] = ()

@@ -249,12 +249,6 @@ BAD = {
         "line 8, interval",
         ("found [0, 1]", "ribbon.length: 0.3", 'write for example "interval: [0, 0.3]"'),
     ),
-    "ribbon too short for the default interval": Bad(
-        "interval: [0, 1]\n",
-        f"ribbon: {{{SIZES}}}\n",
-        "interval: ",
-        ("found [0, 1]", "ribbon.length: 0.3", 'write for example "interval: [0, 0.3]"'),
-    ),
     "thickness in millimetres": Bad(
         "interval: [0, 1]\n",
         f"interval: [0, 0.3]\nribbon: {{{SIZES.replace('1e-4', '0.1')}}}\n",

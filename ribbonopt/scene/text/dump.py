@@ -83,6 +83,10 @@ def _plain(value: Any) -> Any:
         return value.name
     if is_dataclass(value):
         kept = [member for member in fields(value) if _is_told(member, value)]
+        if isinstance(value, Scene) and value.ribbon is not None:
+            # Without an interval a file means all of such a ribbon.
+            names = {member.name for member in kept} | {"interval"}
+            kept = [member for member in fields(value) if member.name in names]
         return {key_of(member.name): _plain(getattr(value, member.name)) for member in kept}
     if isinstance(value, tuple):
         return [_plain(item) for item in value]
