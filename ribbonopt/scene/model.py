@@ -11,7 +11,7 @@ from dataclasses import dataclass, field
 from typing import Annotated, Literal
 
 from .continuation import ContinuationStage
-from .ends import Boundary, Value
+from .ends import Boundary, Loop, Value
 from .laws import Law
 from .loads import Loads
 from .schema.bounds import Bounds
@@ -167,6 +167,10 @@ class RibbonSizes:
     thickness: Annotated[float, Bounds(gt=0)]
     youngs_modulus: Annotated[float, Bounds(gt=0)]
     poisson_ratio: Annotated[float, Bounds(gt=-1, le=0.5)]
+
+    def interval(self, loop: Loop | None, start: float = 0.0) -> tuple[float, float]:
+        """Return the longest interval from a start: all of the ribbon, or the piece of a loop."""
+        return start, start + self.length / (1 if loop is None else loop.pieces)
 
 
 @dataclass(frozen=True)

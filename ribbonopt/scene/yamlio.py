@@ -13,7 +13,7 @@ from .checks.whole import check
 from .ends import Boundary
 from .faults import InvalidSceneError, Problem, report
 from .laws import Sadowsky
-from .model import RibbonSizes, Scene
+from .model import Scene
 from .schema.validation import validate
 from .supports import SUPPORTS
 from .text.yamltext import PlainData, YamlTextError, read
@@ -185,16 +185,10 @@ def _validated(data: object) -> Scene:
     except InvalidSceneError as error:
         raise InvalidSceneError([*error.problems, *_further(data, error.problems)]) from None
     if isinstance(data, dict) and "interval" not in data and scene.ribbon is not None:
-        scene = replace(scene, interval=_whole(scene, scene.ribbon))
+        scene = replace(scene, interval=scene.ribbon.interval(scene.boundary.loop))
     if problems := check(scene):
         raise InvalidSceneError(problems)
     return scene
-
-
-def _whole(scene: Scene, ribbon: RibbonSizes) -> tuple[float, float]:
-    """Return the interval of a ribbon of known length: all of it, or the piece of a loop."""
-    loop = scene.boundary.loop
-    return 0.0, ribbon.length / (1 if loop is None else loop.pieces)
 
 
 def _further(data: object, problems: Sequence[Problem]) -> list[Problem]:

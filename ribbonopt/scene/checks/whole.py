@@ -10,7 +10,7 @@ from dataclasses import is_dataclass
 from itertools import pairwise
 from typing import Any, get_origin
 
-from ribbonopt.scene.ends import Boundary, Loop
+from ribbonopt.scene.ends import Boundary
 from ribbonopt.scene.faults import KeyPath, Problem
 from ribbonopt.scene.loads import Loads
 from ribbonopt.scene.model import Guess, MoebiusGuess, RibbonSizes, Scene
@@ -103,8 +103,7 @@ def _sizes(ribbon: RibbonSizes) -> Iterator[Problem]:
 def _fits(scene: Scene, ribbon: RibbonSizes) -> Iterator[Problem]:
     start, end = scene.interval
     if end - start > ribbon.length * (1 + 1e-9):
-        loop = scene.boundary.loop or Loop(0)  # without one, all of the ribbon is solved
-        fitting = written((start, start + ribbon.length / loop.pieces))
+        fitting = written(ribbon.interval(scene.boundary.loop, start))
         message = f"is longer than the ribbon, ribbon.length: {ribbon.length:.12g}; write for "
         example = f'example "interval: {fitting}"'
         yield Problem(("interval",), message + example, written(scene.interval))
