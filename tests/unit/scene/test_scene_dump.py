@@ -6,29 +6,13 @@ from collections.abc import Iterator
 from typing import Any
 
 import pytest
+from half_scene import SCENE
 from hypothesis import assume, given
 from hypothesis import strategies as st
 
 from ribbonopt import scene as room
 from ribbonopt.errors import SceneError
 from ribbonopt.scene import Scene, dump_scene, json_schema, loads_scene
-
-SCENE = """\
-name: half
-law:
-  type: regularized
-  epsilon: 1e-2
-interval: [0, 0.5]
-boundary:
-  start: {position: [0, 0, 0], directors: identity}
-  end:
-    position: {y: 0, z: 1 - turn}
-    d1: {x: 0}
-  also:
-    - dot(n, d1(start)) = 0
-parameters: {turn: .5}
-guess: {force: [0, 40, 40], moment: [0, 2, -9]}
-"""
 
 
 def test_dump_is_readable_and_omits_defaults() -> None:

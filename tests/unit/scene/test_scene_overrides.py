@@ -3,40 +3,13 @@
 from typing import Any
 
 import pytest
+from half_scene import SCENE, changed, refusal
 from hypothesis import given
 from hypothesis import strategies as st
 
 from ribbonopt import scene as room
 from ribbonopt.errors import SceneError
 from ribbonopt.scene import Scene, loads_scene
-
-SCENE = """\
-name: half
-law:
-  type: regularized
-  epsilon: 1e-2
-interval: [0, 0.5]
-boundary:
-  start: {position: [0, 0, 0], directors: identity}
-  end:
-    position: {y: 0, z: 1 - turn}
-    d1: {x: 0}
-  also:
-    - dot(n, d1(start)) = 0
-parameters: {turn: .5}
-guess: {force: [0, 40, 40], moment: [0, 2, -9]}
-"""
-
-
-def refusal(text: str, *overrides: str) -> str:
-    with pytest.raises(SceneError) as caught:
-        loads_scene(text, "s.yaml", overrides)
-    return str(caught.value)
-
-
-def changed(old: str, new: str) -> str:
-    assert old in SCENE
-    return SCENE.replace(old, new)
 
 
 @pytest.mark.parametrize(
