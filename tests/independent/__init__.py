@@ -1,0 +1,10 @@
+"""Equilibria of ribbons by a program of its own: numpy and scipy, nothing of `ribbonopt`.
+
+The laws are typed anew, the ribbon is integrated by the explicit method DOP853 step by step, and
+all steps are closed by Newton's method at once (multiple shooting). See `polish`.
+"""
+
+from .polish import Truth, polish
+from .rod import Law
+
+__all__ = ["Law", "Truth", "polish"]

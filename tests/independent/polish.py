@@ -1,0 +1,222 @@
+"""Newton's method for all steps at once, meshes that see every layer, and two of them to compare.
+
+Unknown are the force n, the moment m0 at the start, places and frames where steps meet, and the
+points where phases meet. A phase is an arc on one sheet of the law, kind +1 or -1, or a mixture, 0.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, replace
+
+import numpy as np
+
+from .newton import Path, converged, rotation
+from .rod import Array, Law, along, cross, stiffness
+
+SHARE = 0.3  # of the distance to the nearest singularity that a step may be long
+LONGEST = 1 / 48
+LOCAL = 2e-16  # error of one step that is let be
+SAMPLES = 2001
+
+Start = Callable[[Array], tuple[Array, Array]]
+Conditions = Callable[[Array, Array, Array, Array], Array]
+
+
+@dataclass(frozen=True, eq=False)
+class Truth:
+    """What came out.
+
+    Attributes
+    ----------
+    verdict
+        `found`; `undecided`: why not; `none`: no equilibrium near, or an invalid one.
+    reason
+        In words, unless found.
+    path, coarse
+        The equilibrium, and that on steps twice as long: their difference is the error of the
+        latter, and bounds that of the former.
+    moved
+        How far the places and frames moved from the start, at most.
+    """
+
+    verdict: str
+    reason: str = ""
+    path: Path | None = None
+    coarse: Path | None = None
+    moved: float = np.nan
+
+
+def polish(
+    law: Law,
+    n: Array,
+    m0: Array,
+    start: Start,
+    end: tuple[Array, Array] | Conditions,
+    *,
+    length: float = 1.0,
+    kinds: Sequence[int] = (),
+    switches: Sequence[float] = (),
+    again: int = 2,
+) -> Truth:
+    """Find the equilibrium near a given one.
+
+    Parameters
+    ----------
+    law, length
+        What ribbon.
+    n, m0
+        Force and moment at the start (3,), lab frame, about.
+    start
+        Gives places (k, 3) and frames (k, 3, 3), directors in their rows, at arclengths (k,).
+        Those at 0 are prescribed.
+    end
+        Place (3,) and frame (3, 3) prescribed at the far end; or six conditions, a function of
+        place and frame there, n and m0.
+    kinds, switches
+        Kinds of the phases and where they meet; as m2 changes sign, where none are given.
+    again
+        How often a new mesh is made where what was found does not suit the mesh.
+    """
+    n, m0 = np.asarray(n, float), np.asarray(m0, float)
+    s = np.linspace(0, length, SAMPLES)
+    if law.switched and not len(kinds):
+        kinds, switches = changes(s, n, m0, *start(s))
+        if law.name == "sadowsky" and len(kinds) > 12:
+            return Truth("undecided", f"m2 changes sign {len(kinds) - 1} times: a mixture?")
+    if not law.switched:
+        kinds, switches = (1,), ()
+    if 0 in (kinds[0], kinds[-1]):
+        return Truth("undecided", "a mixture reaches an end")
+    path = first_path(law, n, m0, start, tuple(kinds), np.array(switches, float), length)
+    conditions = end if callable(end) else clamped(*end)
+    try:
+        path = converged(path, conditions)
+        for _ in range(4):  # in layers rounding may go on above what is wanted: see `coarse`
+            parts = wanted_parts(path)
+            if parts.max() == 1:
+                break
+            path = converged(path.split(parts), conditions)
+        coarse, path = path, converged(path.split(np.full(len(path.kind), 2)), conditions)
+    except (ArithmeticError, np.linalg.LinAlgError) as error:
+        return Truth("none", str(error))
+    wrong = invalid(path)
+    too_long = float((path.h / path.length_scales()).max())
+    if (wrong or too_long > SHARE) and again:
+        other = () if wrong and law.name == "regularized" else path.kinds
+        return polish(
+            *(law, path.n, path.m0, path.places, end),
+            length=length,
+            kinds=other,
+            switches=path.switches if other else (),
+            again=again - 1,
+        )
+    if too_long > SHARE:
+        return Truth("undecided", f"a step is {too_long:.2g} times the width of a layer")
+    places = start(path.s)
+    moved = max(float(np.abs(a - b).max()) for a, b in zip(places, path.at_joints, strict=True))
+    if wrong:
+        return Truth("none", wrong, path, coarse, moved)
+    return Truth("found", "", path, coarse, moved)
+
+
+def clamped(place: Array, frame: Array) -> Conditions:
+    """Return the conditions of a clamp."""
+
+    def conditions(r: Array, d: Array, n: Array, m0: Array) -> Array:
+        return np.concatenate([r - place, rotation(d, frame)])
+
+    return conditions
+
+
+def changes(
+    s: Array, n: Array, m0: Array, r: Array, frames: Array
+) -> tuple[tuple[int, ...], list[float]]:
+    """Kinds of phases and where m2 changes sign, about."""
+    m2 = np.einsum("kj,kj->k", frames[:, 1], m0 + np.cross(n, r - r[0]))
+    signs = np.where(m2 >= 0, 1, -1)
+    at = np.flatnonzero(signs[1:] != signs[:-1])
+    places = s[at] + (s[at + 1] - s[at]) * m2[at] / (m2[at] - m2[at + 1])
+    return (int(signs[0]), *(int(signs[i + 1]) for i in at)), places.tolist()
+
+
+def first_path(
+    law: Law, n: Array, m0: Array, start: Start, kinds: tuple[int, ...], switches: Array, length: float
+) -> Path:
+    """Return a path with joints as near to each other as layers ask for."""
+    s = np.linspace(0, length, SAMPLES)
+    r, frames = start(s)
+    if not law.switched:
+        near = np.array(changes(s, n, m0, r, frames)[1])
+    else:
+        near = switches
+    # Near changes of sign samples must be as dense as a layer is thin.
+    offsets = np.geomspace(1e-7, 1e-2, 60) * length
+    s = np.concatenate([s, *(x + side * offsets for x in near for side in (-1, 1)), near, switches])
+    s = np.unique(np.clip(s, 0, length))
+    r, frames = start(s)
+    d = np.moveaxis(frames, 0, 2)
+    own = along(d, (m0 + np.cross(n, r - r[0])).T)
+    force = along(d, n[:, None] + 0 * s)
+    phase = np.searchsorted(switches, s, side="right")
+    kind = np.array(kinds)[phase]
+    h = np.minimum(SHARE * 0.8 * law.distance(kind, own, force), LONGEST * length)
+    count = np.concatenate([[0], np.cumsum(np.diff(s) * 2 / (h[1:] + h[:-1]))])
+    ends = np.concatenate([[0.0], switches, [length]])
+    fractions, phases = [], []
+    for i, (a, b) in enumerate(zip(ends[:-1], ends[1:], strict=True)):
+        c = np.interp([a, b], s, count)
+        parts = int(np.ceil(c[1] - c[0])) + 2
+        joints = np.interp(np.linspace(*c, parts + 1), count, s)
+        widths = np.diff(joints)
+        fractions.append(widths / widths.sum())
+        phases += [i] * parts
+    path = Path(
+        law=law,
+        kinds=kinds,
+        fractions=np.concatenate(fractions),
+        phases=np.array(phases),
+        switches=switches,
+        length=length,
+        n=n,
+        m0=m0,
+        r=np.zeros((3, 0)),
+        frames=np.zeros((3, 3, 0)),
+    )
+    r, frames = start(np.clip(path.s, 0, length))
+    return replace(path, r=r.T.copy(), frames=np.moveaxis(frames, 0, 2).copy())
+
+
+def wanted_parts(path: Path) -> Array:
+    """Parts (K,) into which every step is to be split, from what two halves make of it."""
+    way, frame, energy = path.steps()
+    half = path.split(np.full(len(path.kind), 2))
+    way2, frame2, energy2 = half.steps()
+    error = np.abs(way - way2[:, ::2] - way2[:, 1::2]).max(axis=0)
+    error = np.maximum(error, np.abs(frame - frame2[:, :, 1::2]).max(axis=(0, 1)))
+    error = np.maximum(error, np.abs(energy - energy2[::2] - energy2[1::2]) / (1 + energy.sum()))
+    # What halves do not see any more is rounding.
+    parts = np.ceil((np.maximum(error / (16 * LOCAL), 1e-9)) ** (1 / 9) * 1.1)
+    return np.where(error > 16 * LOCAL, np.maximum(parts, 2), 1).astype(int)
+
+
+def invalid(path: Path) -> str:
+    """Return what is wrong with an equilibrium of sheets and mixtures, if anything."""
+    if not path.law.switched:
+        return ""
+    half = path.split(np.full(len(path.kind), 2))
+    d = half.frames[:, :, :-1]
+    own, force = along(d, half.moments[:, :-1]), along(d, half.n[:, None] + 0 * half.h)
+    inside = np.ones(len(half.kind), bool)
+    inside[np.flatnonzero(np.diff(half.phases)) + 1] = False
+    kind, small = half.kind, 1e-9 * np.abs(own).max()
+    if (kind * own[1] < -small)[inside].any():
+        return "m2 has the wrong sign on a sheet"
+    mixed = kind == 0
+    if mixed.any():
+        u2, u3 = half.law.strains(kind, own, force)
+        if (stiffness(own, force)[mixed] < -small).any():
+            return "K < 0 in a mixture"
+        if (np.abs(u2) > np.abs(u3) * (1 + 1e-9))[mixed].any():
+            return "|u2| > |u3| in a mixture"
+    return ""
