@@ -12,8 +12,9 @@ from scipy.sparse.linalg import splu
 
 from .rod import Array, Law, along, cross, dot, step
 
-DIFFERENCE = 1e-7  # relative, of difference quotients: Newton's method needs no more
+DIFFERENCE = 1e-8  # relative, of difference quotients: Newton's method needs no more
 MOST = 25
+STALLED = 1e-7  # size of a step that may be rounding
 
 
 @dataclass(frozen=True, eq=False)
@@ -148,15 +149,15 @@ def turned(frame: Array, w: Array) -> Array:
 
 def converged(path: Path, conditions: Callable[..., Array]) -> Path:
     """Return the path with all gaps closed; ArithmeticError if they cannot be."""
-    before = np.inf
+    least, stalls = np.inf, 0
     for _ in range(MOST):
         path, size = newton_step(path, conditions)
-        if not np.isfinite(size):
-            raise ArithmeticError("Newton's method met numbers that are not finite")
-        if size < 1e-9 and (size > before / 4 or size < 1e-14):
+        stalls = stalls + 1 if size > least / 4 else 0
+        least = min(least, size)
+        # Where steps do not shrink any more they are rounding: how much of it, `coarse` tells.
+        if size < 1e-14 or (size < STALLED and stalls > (size > 1e-10)):
             return path
-        before = size
-    raise ArithmeticError(f"Newton's method did not converge: last step {before:.1e}")
+    raise ArithmeticError(f"Newton's method did not converge: last step {size:.1e}")
 
 
 def newton_step(path: Path, conditions: Callable[..., Array]) -> tuple[Path, float]:
@@ -166,7 +167,12 @@ def newton_step(path: Path, conditions: Callable[..., Array]) -> tuple[Path, flo
     scale = np.ones(6 * K + 6 + J)
     scale[6 * K : 6 * K + 3] = 1 + np.abs(path.n).max()
     scale[6 * K + 3 : 6 * K + 6] = 1 + np.abs(path.m0).max()
-    change = splu(csc_matrix(matrix.multiply(scale))).solve(-residual)
+    if not np.isfinite(residual).all() or not np.isfinite(matrix.data).all():
+        raise ArithmeticError("Newton's method met numbers that are not finite")
+    try:
+        change = splu(csc_matrix(matrix.multiply(scale))).solve(-residual)
+    except RuntimeError as error:
+        raise ArithmeticError("the linearised equations are singular") from error
     size = float(np.abs(change).max())
     change = change * scale * min(1.0, 0.3 / size)
     joints = change[: 6 * K].reshape(K, 6).T

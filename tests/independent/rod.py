@@ -47,6 +47,9 @@ class Law:
             both = (q + M) / 4
             return both * (m2 / q + m2 / M), both * (d * (d * m3 / q) + m3 / M)
         a = kind * m2  # mu
+        if self.name == "regularized":
+            # A little beyond its phase it has a pole, which Newton's method must not meet.
+            a = np.where(a > -0.1 * self.number * np.abs(m3), a, np.abs(m2))
         far = M + np.abs(a)
         p = np.where(a >= 0, far, m3 * (m3 / far))  # mu + M
         u3 = m3 / M * p / 4
@@ -61,7 +64,7 @@ class Law:
         return u2, u3
 
     def distance(self, kind: Array, m: Array, n: Array) -> Array:
-        """How far the nearest singularity along s may be, to first order."""
+        """How far the nearest singularity along s may be, to first order, or a rate's inverse."""
         u2, u3 = self.strains(kind, m, n)
         m2, m3 = m[1], m[2]
         rate2, rate3 = -n[0] - u3 * m[0], u2 * m[0]
@@ -78,6 +81,11 @@ class Law:
             far = near(np.hypot(m2, d * m3), np.hypot(rate2, d * rate3))
         elif self.name == "regularized":
             far = near(np.abs(m2) + d * np.abs(m3) / 2, np.hypot(rate2, d * rate3 / 2))
+        if self.name != "sadowsky":
+            # Where m2 stays small, near a mixture, m2'' = K u2: as stiff as the law is sharp.
+            small = np.stack([m[0], np.abs(m2) + 1e-9 * np.abs(m3) + TINY, m3])
+            stiff = np.abs(stiffness(m, n)) * self.strains(kind**2, small, n)[0] / small[1]
+            far = np.minimum(far, 1.5 / np.sqrt(stiff + TINY))
         return far
 
 
