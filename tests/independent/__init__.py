@@ -4,7 +4,8 @@ The laws are typed anew, the ribbon is integrated by the explicit method DOP853 
 all steps are closed by Newton's method at once (multiple shooting). See `polish`.
 """
 
+from .newton import Path
 from .polish import Truth, polish
 from .rod import Law
 
-__all__ = ["Law", "Truth", "polish"]
+__all__ = ["Law", "Path", "Truth", "polish"]
