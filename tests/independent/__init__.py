@@ -6,6 +6,6 @@ all steps are closed by Newton's method at once (multiple shooting). See `polish
 
 from .newton import Path
 from .polish import Truth, polish
-from .rod import Law
+from .rod import Law, shot
 
-__all__ = ["Law", "Path", "Truth", "polish"]
+__all__ = ["Law", "Path", "Truth", "polish", "shot"]

@@ -16,7 +16,7 @@ from .rod import Array, Law, along, cross, stiffness
 
 SHARE = 0.3  # of the distance to the nearest singularity that a step may be long
 LONGEST = 1 / 48
-LOCAL = 2e-16  # error of one step that is let be
+LOCAL = 3e-15  # error of one step that is let be
 SAMPLES = 2001
 
 Start = Callable[[Array], tuple[Array, Array]]
@@ -92,11 +92,13 @@ def polish(
     conditions = end if callable(end) else clamped(*end)
     try:
         path = converged(path, conditions)
-        for _ in range(4):  # in layers rounding may go on above what is wanted: see `coarse`
-            parts = wanted_parts(path)
-            if parts.max() == 1:
+        before = np.inf
+        for _ in range(4):
+            parts, worst = wanted_parts(path)
+            # In layers rounding is more than what is wanted: how much of it, `coarse` tells.
+            if parts.max() == 1 or worst > before / 4:
                 break
-            path = converged(path.split(parts), conditions)
+            path, before = converged(path.split(parts), conditions), worst
         coarse, path = path, converged(path.split(np.full(len(path.kind), 2)), conditions)
     except (ArithmeticError, np.linalg.LinAlgError) as error:
         return Truth("none", str(error))
@@ -187,17 +189,16 @@ def first_path(
     return replace(path, r=r.T.copy(), frames=np.moveaxis(frames, 0, 2).copy())
 
 
-def wanted_parts(path: Path) -> Array:
-    """Parts (K,) into which every step is to be split, from what two halves make of it."""
+def wanted_parts(path: Path) -> tuple[Array, float]:
+    """Parts (K,) into which steps are to be split, from what halves make of them; worst error."""
     way, frame, energy = path.steps()
     half = path.split(np.full(len(path.kind), 2))
     way2, frame2, energy2 = half.steps()
     error = np.abs(way - way2[:, ::2] - way2[:, 1::2]).max(axis=0)
     error = np.maximum(error, np.abs(frame - frame2[:, :, 1::2]).max(axis=(0, 1)))
     error = np.maximum(error, np.abs(energy - energy2[::2] - energy2[1::2]) / (1 + energy.sum()))
-    # What halves do not see any more is rounding.
-    parts = np.ceil((np.maximum(error / (16 * LOCAL), 1e-9)) ** (1 / 9) * 1.1)
-    return np.where(error > 16 * LOCAL, np.maximum(parts, 2), 1).astype(int)
+    parts = np.ceil((np.maximum(error / LOCAL, 1e-9)) ** (1 / 9) * 1.1)
+    return np.where(error > LOCAL, np.maximum(parts, 2), 1).astype(int), float(error.max())
 
 
 def invalid(path: Path) -> str:

@@ -6,10 +6,12 @@ axes are steps that know nothing of each other. Units Dw = L = 1.
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from scipy.integrate import solve_ivp
 from scipy.integrate._ivp import dop853_coefficients as dop853
 
 Array = NDArray[np.float64]
@@ -143,3 +145,22 @@ def step(
         k[i] = rates(law, kind, n, m, at)
     y = y + h * np.tensordot(dop853.B, k, 1)
     return y[:3], y[3:12].reshape(3, 3, *shape), y[12]
+
+
+def shot(
+    law: Law, n: Array, m0: Array, place: Array, frame: Array, length: float = 1.0
+) -> Callable[[Array], tuple[Array, Array]]:
+    """Places (k, 3) and frames (k, 3, 3) at arclengths (k,), integrated from the start in one go."""
+
+    def rate(_: float, y: Array) -> Array:
+        kind = np.sign((m0 + np.cross(n, y[:3])) @ y[6:9]) or 1.0
+        return rates(law, np.array(kind), n, m0, y)
+
+    y = np.concatenate([np.zeros(3), np.ravel(frame), [0.0]])
+    path = solve_ivp(rate, (0, length), y, "DOP853", rtol=2.3e-14, atol=1e-14, dense_output=True)
+
+    def start(s: Array) -> tuple[Array, Array]:
+        y = path.sol(np.asarray(s))
+        return place + y[:3].T, np.moveaxis(y[3:12].reshape(3, 3, -1), 2, 0)
+
+    return start
