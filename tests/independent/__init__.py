@@ -4,7 +4,7 @@ The laws are typed anew, the ribbon is integrated by the explicit method DOP853 
 all steps are closed by Newton's method at once (multiple shooting). See `polish`.
 """
 
-from .newton import Path
+from .path import Path
 from .polish import Truth, polish
 from .rod import Law, shot
 

@@ -1,153 +1,26 @@
-"""A ribbon as steps that are to meet, and Newton's method that makes them meet."""
+"""Newton's method, which makes the steps of a path meet."""
 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
-from functools import cached_property
+from dataclasses import replace
+from itertools import pairwise
 
 import numpy as np
 from scipy.sparse import csc_matrix
 from scipy.sparse.linalg import splu
 
-from .rod import Array, Law, along, cross, dot, step
+from .path import Path, rotation, turned
+from .rod import Array, along, cross, step
 
 DIFFERENCE = 1e-8  # relative, of difference quotients: Newton's method needs no more
 MOST = 25
 STALLED = 1e-7  # size of a step that may be rounding
 
-
-@dataclass(frozen=True, eq=False)
-class Path:
-    """Steps k = 0 ... K - 1 in phases, with places r (3, K + 1) and frames (3, 3, K + 1)."""
-
-    law: Law
-    kinds: tuple[int, ...]
-    fractions: Array
-    phases: Array
-    switches: Array
-    length: float
-    n: Array
-    m0: Array
-    r: Array
-    frames: Array
-
-    @cached_property
-    def lengths(self) -> Array:
-        """Lengths of the phases."""
-        return np.diff(np.concatenate([[0.0], self.switches, [self.length]]))
-
-    @cached_property
-    def h(self) -> Array:
-        """Lengths (K,) of the steps."""
-        return self.fractions * self.lengths[self.phases]
-
-    @cached_property
-    def s(self) -> Array:
-        """Arclengths (K + 1,) of the joints; exact where phases meet."""
-        s = np.concatenate([[0.0], np.cumsum(self.h)])
-        first = np.flatnonzero(np.diff(self.phases)) + 1
-        s[first], s[-1] = self.switches, self.length
-        return s
-
-    @cached_property
-    def kind(self) -> Array:
-        """Kinds (K,) of the steps."""
-        return np.array(self.kinds)[self.phases]
-
-    @cached_property
-    def moments(self) -> Array:
-        """Moments (3, K + 1) at the joints, lab frame."""
-        return self.m0[:, None] + cross(self.n[:, None], self.r - self.r[:, :1])
-
-    @property
-    def at_joints(self) -> tuple[Array, Array]:
-        """Places (K + 1, 3) and frames (K + 1, 3, 3)."""
-        return self.r.T, np.moveaxis(self.frames, 2, 0)
-
-    def steps(self) -> tuple[Array, Array, Array]:
-        """Way gone, frame at the end and energy of all steps."""
-        return step(
-            self.law, self.kind, self.n[:, None], self.moments[:, :-1], self.frames[:, :, :-1], self.h
-        )
-
-    @cached_property
-    def energy(self) -> float:
-        """Strain energy."""
-        return float(self.steps()[2].sum())
-
-    def split(self, parts: Array) -> Path:
-        """Return the path with every step in equal parts (K,)."""
-        widths = np.repeat(self.fractions / parts, parts)
-        phases = np.repeat(self.phases, parts)
-        empty = replace(self, fractions=widths, phases=phases)
-        first = np.concatenate([[0], np.cumsum(parts)])
-        r, frames = (np.empty((*x.shape[:-1], len(empty.s))) for x in (self.r, self.frames))
-        within = np.arange(len(widths)) - np.repeat(first[:-1], parts)
-        owner = np.repeat(np.arange(len(parts)), parts)
-        way, frame, _ = self.partial(owner, self.h[owner] * within / parts[owner])
-        r[:, :-1], frames[:, :, :-1] = self.r[:, owner] + way, frame
-        r[:, first], frames[:, :, first] = self.r, self.frames
-        return replace(empty, r=r, frames=frames)
-
-    def partial(self, k: Array, h: Array) -> tuple[Array, Array, Array]:
-        """Parts of length h (j,) of the steps k (j,)."""
-        return step(
-            self.law, self.kind[k], self.n[:, None], self.moments[:, k], self.frames[:, :, k], h
-        )
-
-    def places(self, s: Array) -> tuple[Array, Array]:
-        """Places (k, 3) and frames (k, 3, 3) at arclengths (k,)."""
-        found = self.at(s)
-        return found["r"], np.stack([found[f"d{i}"] for i in (1, 2, 3)], axis=1)
-
-    def at(self, s: Array) -> dict[str, Array]:
-        """Everything at arclengths (k,): r, d1, d2, d3, n, m in the lab frame, u, n1 ... m3, H."""
-        s = np.asarray(s, float)
-        k = np.clip(np.searchsorted(self.s, s, side="right") - 1, 0, len(self.kind) - 1)
-        way, frame, _ = self.partial(k, s - self.s[k])
-        r = self.r[:, k] + way
-        n = self.n[:, None] + 0 * s
-        m = self.moments[:, k] + cross(n, way)
-        own, force = along(frame, m), along(frame, n)
-        u2, u3 = self.law.strains(self.kind[k], own, force)
-        result = {"r": r.T, "n": n.T, "m": m.T, "u": np.stack([0 * s, u2, u3], axis=1)}
-        result |= {f"d{i + 1}": frame[i].T for i in range(3)}
-        result |= {"u2": u2, "u3": u3, "H": force[2] + (own[1] * u2 + own[2] * u3) / 2}
-        result |= {f"n{i + 1}": force[i] for i in range(3)}
-        return result | {f"m{i + 1}": own[i] for i in range(3)}
-
-    def length_scales(self) -> Array:
-        """Distance of each step to the nearest singularity, the lesser of its two ends."""
-        d = self.frames
-        own, force = along(d, self.moments), along(d, self.n[:, None] + 0 * self.s)
-        ends = (slice(None, -1), slice(1, None))
-        return np.minimum(
-            *(self.law.distance(self.kind, own[:, e], force[:, e]) for e in ends)
-        )
+Conditions = Callable[[Array, Array, Array, Array], Array]
 
 
-def rotation(frame: Array, other: Array) -> Array:
-    """Rotation vectors (3, ...) from one frame to another that is near: zero where they agree."""
-    return sum(cross(other[i], frame[i]) for i in range(3)) / 2
-
-
-def turned(frame: Array, w: Array) -> Array:
-    """Frames turned by rotation vectors w (3, ...), exactly frames: Cayley's formula."""
-    t = w / 2
-    factor = 2 / (1 + dot(t, t))
-    new = []
-    for d in frame:
-        first = cross(t, d)
-        new.append(d + factor * (first + cross(t, first)))
-    d1, d2, d3 = new
-    # Rounding of frames must not add up.
-    gram = [[dot(a, b) for b in (d1, d2, d3)] for a in (d1, d2, d3)]
-    whole = np.stack([d1, d2, d3])
-    return np.stack([1.5 * whole[i] - sum(gram[i][j] * whole[j] for j in range(3)) / 2 for i in range(3)])
-
-
-def converged(path: Path, conditions: Callable[..., Array]) -> Path:
+def converged(path: Path, conditions: Conditions) -> Path:
     """Return the path with all gaps closed; ArithmeticError if they cannot be."""
     least, stalls = np.inf, 0
     for _ in range(MOST):
@@ -160,7 +33,7 @@ def converged(path: Path, conditions: Callable[..., Array]) -> Path:
     raise ArithmeticError(f"Newton's method did not converge: last step {size:.1e}")
 
 
-def newton_step(path: Path, conditions: Callable[..., Array]) -> tuple[Path, float]:
+def newton_step(path: Path, conditions: Conditions) -> tuple[Path, float]:
     """Take one step; its size is the largest change, loads relative to themselves."""
     K, J = len(path.kind), len(path.switches)
     residual, matrix = linearised(path, conditions)
@@ -186,14 +59,16 @@ def newton_step(path: Path, conditions: Callable[..., Array]) -> tuple[Path, flo
     return replace(path, n=n, m0=m0, r=r, frames=frames, switches=switches), size
 
 
-def linearised(path: Path, conditions: Callable[..., Array]) -> tuple[Array, csc_matrix]:
+def linearised(path: Path, conditions: Conditions) -> tuple[Array, csc_matrix]:
     """Residual of all equations and its Jacobian.
 
     Unknowns: changes (r, turn) of joints 1 ... K, of n, of m0, of the switches.
     """
     K, J = len(path.kind), len(path.switches)
     way, frame, R = propagated(path)  # R (6, K, 9): of turn, m, n at the step's start
-    gaps = np.concatenate([path.r[:, :-1] + way - path.r[:, 1:], rotation(frame, path.frames[:, :, 1:])])
+    gaps = np.concatenate(
+        [path.r[:, :-1] + way - path.r[:, 1:], rotation(frame, path.frames[:, :, 1:])]
+    )
     rows, cols, values = [], [], []
 
     def put(row: Array, col: Array, value: Array) -> None:
@@ -224,7 +99,6 @@ def linearised(path: Path, conditions: Callable[..., Array]) -> tuple[Array, csc
     residual = [gaps.T.ravel()]
     row = 6 * K
     for g, slopes, at in switch_conditions(path, n, arms):
-        # slopes (12,): of r, turn at the joint, of n, of m0
         put(row, 6 * (at - 1) + np.arange(6), slopes[:6])
         put(row, 6 * K + np.arange(6), slopes[6:])
         residual.append(np.array([g]))
@@ -261,33 +135,27 @@ def propagated(path: Path) -> tuple[Array, Array, Array]:
 
 
 def switch_conditions(path: Path, n: Array, arms: Array) -> list[tuple[float, Array, int]]:
-    """Values and slopes of what holds where phases meet, with the joint."""
+    """Values and slopes (12,) of what holds where phases meet, with the joint.
+
+    Slopes are by place and turn at the joint, n and m0.
+    """
     found = []
     joints = np.flatnonzero(np.diff(path.phases)) + 1
-    for i, at in enumerate(joints):
-        before, after = path.kinds[i : i + 2]
-        d, m = path.frames[:, :, at], path.moments[:, at]
-
-        def component(a: int, vector: Array, of_m: bool) -> tuple[float, Array]:
-            slopes = np.zeros(12)
-            slopes[3:6] = np.cross(d[a], vector)
-            if of_m:
-                slopes[:3] = d[a] @ n
-                slopes[6:9], slopes[9:] = -d[a] @ arms[:, :, at], d[a]
-            else:
-                slopes[6:9] = d[a]
-            return float(d[a] @ vector), slopes
-
-        (m1, of1), (m2, of2), (m3, of3) = (component(a, m, True) for a in range(3))
+    for (before, after), at in zip(pairwise(path.kinds), joints.tolist(), strict=True):
+        frame, m = path.frames[:, :, at], path.moments[:, at]
+        of_moment = [np.concatenate([d @ n, np.cross(d, m), -d @ arms[:, :, at], d]) for d in frame]
+        m1, m2, m3 = frame @ m
         if before != 0:
-            found.append((m2, of2, int(at)))
+            found.append((m2, of_moment[1], at))
         if after == 0:
-            n1, of = component(0, path.n, False)
-            found.append((n1 + m1 * m3 / 4, of + (m1 * of3 + m3 * of1) / 4, int(at)))
+            d1 = frame[0]
+            slopes = np.concatenate([0 * d1, np.cross(d1, path.n), d1, 0 * d1])
+            slopes += (m1 * of_moment[2] + m3 * of_moment[0]) / 4
+            found.append((d1 @ path.n + m1 * m3 / 4, slopes, at))
     return found
 
 
-def end_conditions(path: Path, conditions: Callable[..., Array]) -> tuple[Array, Array]:
+def end_conditions(path: Path, conditions: Conditions) -> tuple[Array, Array]:
     """Values (6,) and slopes (6, 12): of r, turn at the far end, of n, of m0."""
     r, d = path.r[:, -1], path.frames[:, :, -1]
     value = conditions(r, d, path.n, path.m0)

@@ -8,11 +8,13 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from itertools import pairwise
 
 import numpy as np
 
-from .newton import Path, converged, rotation
-from .rod import Array, Law, along, cross, stiffness
+from .newton import Conditions, converged
+from .path import Path, rotation
+from .rod import Array, Law, along, stiffness
 
 SHARE = 0.3  # of the distance to the nearest singularity that a step may be long
 LONGEST = 1 / 48
@@ -20,7 +22,6 @@ LOCAL = 3e-15  # error of one step that is let be
 SAMPLES = 2001
 
 Start = Callable[[Array], tuple[Array, Array]]
-Conditions = Callable[[Array, Array, Array, Array], Array]
 
 
 @dataclass(frozen=True, eq=False)
@@ -143,7 +144,13 @@ def changes(
 
 
 def first_path(
-    law: Law, n: Array, m0: Array, start: Start, kinds: tuple[int, ...], switches: Array, length: float
+    law: Law,
+    n: Array,
+    m0: Array,
+    start: Start,
+    kinds: tuple[int, ...],
+    switches: Array,
+    length: float,
 ) -> Path:
     """Return a path with joints as near to each other as layers ask for."""
     s = np.linspace(0, length, SAMPLES)
@@ -166,7 +173,7 @@ def first_path(
     count = np.concatenate([[0], np.cumsum(np.diff(s) * 2 / (h[1:] + h[:-1]))])
     ends = np.concatenate([[0.0], switches, [length]])
     fractions, phases = [], []
-    for i, (a, b) in enumerate(zip(ends[:-1], ends[1:], strict=True)):
+    for i, (a, b) in enumerate(pairwise(ends)):
         c = np.interp([a, b], s, count)
         parts = int(np.ceil(c[1] - c[0])) + 2
         joints = np.interp(np.linspace(*c, parts + 1), count, s)

@@ -150,7 +150,7 @@ def step(
 def shot(
     law: Law, n: Array, m0: Array, place: Array, frame: Array, length: float = 1.0
 ) -> Callable[[Array], tuple[Array, Array]]:
-    """Places (k, 3) and frames (k, 3, 3) at arclengths (k,), integrated from the start in one go."""
+    """Places (k, 3) and frames (k, 3, 3) at arclengths (k,), integrated in one go."""
 
     def rate(_: float, y: Array) -> Array:
         kind = np.sign((m0 + np.cross(n, y[:3])) @ y[6:9]) or 1.0

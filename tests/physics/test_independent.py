@@ -116,7 +116,9 @@ def test_elastica(shortening: float) -> None:
 
 def test_it_shares_nothing_with_the_package() -> None:
     tests = Path(__file__).resolve().parents[1]
-    code = "import sys, independent; print([m for m in sys.modules if m in ('ribbonopt', 'casadi')])"
+    code = (
+        "import sys, independent; print([m for m in sys.modules if m in ('ribbonopt', 'casadi')])"
+    )
     run = subprocess.run(
         [sys.executable, "-c", code], cwd=tests, capture_output=True, text=True, check=True
     )

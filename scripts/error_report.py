@@ -87,13 +87,12 @@ def offenders(rows: Sequence[Row]) -> tuple[list[Row], list[Row]]:
     return small, large
 
 
-def report(rows: Sequence[Row], groups: Sequence[tuple[str, float]]) -> Row:
+def report(rows: Sequence[Row]) -> Row:
     """Print all of it; return it by law and tolerance, and of all together."""
     result: Row = {}
-    for law, tolerance in groups:
+    for law, tolerance in dict.fromkeys((r["law"], r["tolerance"]) for r in rows):
         some = [r for r in rows if (r["law"], r["tolerance"]) == (law, tolerance)]
-        if some:
-            result[f"{law} {tolerance:g}"] = summarised(some) | {"by quantity": by_quantity(some)}
+        result[f"{law} {tolerance:g}"] = summarised(some) | {"by quantity": by_quantity(some)}
     result["all"] = summarised(rows) | {"by quantity": by_quantity(rows)}
     for name, words in result.items():
         print(f"== {name}")

@@ -114,7 +114,7 @@ def truth_of(found: Solution) -> independent.Truth:
         independent.Law(law.type, number),
         *(found.n0, found.m0, start, (np.array(end.position), frame)),
         kinds=phases,
-        switches=found.switch_points if phases else (),
+        switches=found.switch_points.tolist() if phases else (),
     )
 
 
@@ -134,7 +134,9 @@ def compared(found: Solution, truth: independent.Truth) -> dict[str, tuple[float
         "u0": (found.u0, theirs["u"][0], rough["u"][0]),
         "H0": (found.start["H"], theirs["H"][0], rough["H"][0]),
         "energy": (found.energy, path.energy, coarse.energy),
-        "states": tuple(np.stack([o[k] for k in ("r", "d1", "d2", "d3")]) for o in (ours, theirs, rough)),
+        "states": tuple(
+            np.stack([o[k] for k in ("r", "d1", "d2", "d3")]) for o in (ours, theirs, rough)
+        ),
         "u": (ours["u"][away], theirs["u"][away], rough["u"][away]),
     }
     for text, (name, part) in RECORDS.items():
