@@ -31,6 +31,7 @@ EXACT: dict[str, Any] = {
     "moebius_regularized": REGULARIZED[0.01],
 }
 QUANTILES = (0, 0.05, 0.5, 0.95, 1)
+LEAST = 1e-3
 ROUNDING = 1e-13  # true errors below are not compared
 Row = dict[str, Any]
 
@@ -95,11 +96,12 @@ def true_errors(found: Solution, truth: Solution, exact: dict[str, Any]) -> dict
 
 
 def sizes_of(solution: Solution) -> dict[str, float]:
-    """Sizes that errors are relative to, as in `relative_error`."""
+    """Sizes that errors are relative to, as in `relative_error`: none below 1e-3."""
     unit = {k: solution.units.of(k[0]) for k in ("n0", "m0")}
     loads = max(float(np.abs(getattr(solution, k)).max()) / unit[k] for k in unit)
     sizes = {k: loads * unit[k] for k in unit} | {"energy": abs(solution.energy), "states": 1.0}
-    return sizes | {"u0": float(np.abs(solution.at_stages["u"]).max())}
+    sizes["u0"] = float(np.abs(solution.at_stages["u"]).max())
+    return {name: max(size, LEAST * unit.get(name, 1.0)) for name, size in sizes.items()}
 
 
 def summarised(rows: list[Row]) -> Row:

@@ -14,7 +14,8 @@ import numpy as np
 
 from .newton import Conditions, converged
 from .path import Path, rotation
-from .rod import Array, Law, along, stiffness
+from .phases import changes, invalid, without_short
+from .rod import Array, Law, along
 
 SHARE = 0.3  # of the distance to the nearest singularity that a step may be long
 LONGEST = 1 / 48
@@ -87,6 +88,7 @@ def polish(
             return Truth("undecided", f"m2 changes sign {len(kinds) - 1} times: a mixture?")
     if not law.switched:
         kinds, switches = (1,), ()
+    kinds, switches = without_short(list(kinds), list(switches), length)
     if 0 in (kinds[0], kinds[-1]):
         return Truth("undecided", "a mixture reaches an end")
     path = first_path(law, n, m0, start, tuple(kinds), np.array(switches, float), length)
@@ -130,17 +132,6 @@ def clamped(place: Array, frame: Array) -> Conditions:
         return np.concatenate([r - place, rotation(d, frame)])
 
     return conditions
-
-
-def changes(
-    s: Array, n: Array, m0: Array, r: Array, frames: Array
-) -> tuple[tuple[int, ...], list[float]]:
-    """Kinds of phases and where m2 changes sign, about."""
-    m2 = np.einsum("kj,kj->k", frames[:, 1], m0 + np.cross(n, r - r[0]))
-    signs = np.where(m2 >= 0, 1, -1)
-    at = np.flatnonzero(signs[1:] != signs[:-1])
-    places = s[at] + (s[at + 1] - s[at]) * m2[at] / (m2[at] - m2[at + 1])
-    return (int(signs[0]), *(int(signs[i + 1]) for i in at)), places.tolist()
 
 
 def first_path(
@@ -206,25 +197,3 @@ def wanted_parts(path: Path) -> tuple[Array, float]:
     error = np.maximum(error, np.abs(energy - energy2[::2] - energy2[1::2]) / (1 + energy.sum()))
     parts = np.ceil((np.maximum(error / LOCAL, 1e-9)) ** (1 / 9) * 1.1)
     return np.where(error > LOCAL, np.maximum(parts, 2), 1).astype(int), float(error.max())
-
-
-def invalid(path: Path) -> str:
-    """Return what is wrong with an equilibrium of sheets and mixtures, if anything."""
-    if not path.law.switched:
-        return ""
-    half = path.split(np.full(len(path.kind), 2))
-    d = half.frames[:, :, :-1]
-    own, force = along(d, half.moments[:, :-1]), along(d, half.n[:, None] + 0 * half.h)
-    inside = np.ones(len(half.kind), bool)
-    inside[np.flatnonzero(np.diff(half.phases)) + 1] = False
-    kind, small = half.kind, 1e-9 * np.abs(own).max()
-    if (kind * own[1] < -small)[inside].any():
-        return "m2 has the wrong sign on a sheet"
-    mixed = kind == 0
-    if mixed.any():
-        u2, u3 = half.law.strains(kind, own, force)
-        if (stiffness(own, force)[mixed] < -small).any():
-            return "K < 0 in a mixture"
-        if (np.abs(u2) > np.abs(u3) * (1 + 1e-9))[mixed].any():
-            return "|u2| > |u3| in a mixture"
-    return ""
