@@ -114,24 +114,28 @@ def linearised(path: Path, conditions: Conditions) -> tuple[Array, csc_matrix]:
 
 
 def propagated(path: Path) -> tuple[Array, Array, Array]:
-    """Ways, frames, and derivatives (6, K, 9) of both with respect to turn, m, n at the start."""
-    K = len(path.kind)
+    """Ways, frames, and derivatives (6, K, 9) of both by turn, m, n at the start of the step.
+
+    Those by m and n are difference quotients: of m over less than the width of any layer. A turn
+    of frame, m and n together turns all that follows, so that those by the turn come from them.
+    """
     m, d = path.moments[:, :-1], path.frames[:, :, :-1]
-    eta = DIFFERENCE * np.repeat([1, 1 + np.abs(path.moments).max(), 1 + np.abs(path.n).max()], 3)
-    ms, ds = np.repeat(m[:, None], 10, axis=1), np.repeat(d[:, :, None], 10, axis=2)
-    ns = np.repeat(np.repeat(path.n[:, None, None], 10, axis=1), K, axis=2)
+    n = np.repeat(path.n[:, None], len(path.kind), axis=1)
+    eta = np.repeat([3e-11 * (1 + np.abs(m).max()), 1e-8 * (1 + np.abs(n).max())], 3)
+    ms, ns = (np.repeat(v[:, None], 7, axis=1) for v in (m, n))
     for i in range(3):
-        w = np.zeros((3, K))
-        w[i] = eta[i]
-        ds[:, :, 1 + i] = turned(d, w)
-        ms[i, 4 + i] += eta[3 + i]
-        ns[i, 7 + i] += eta[6 + i]
-    way, frame, _ = step(path.law, path.kind, ns, ms, ds, path.h)
+        ms[i, 1 + i] += eta[i]
+        ns[i, 4 + i] += eta[3 + i]
+    way, frame, _ = step(path.law, path.kind, ns, ms, d[:, :, None], path.h)
     base_way, base = way[:, 0], frame[:, :, 0]
     of_way = way[:, 1:] - way[:, :1]
     of_frame = rotation(frame[:, :, 1:], np.broadcast_to(base[:, :, None], frame[:, :, 1:].shape))
-    slopes = np.concatenate([of_way, of_frame]) / eta[None, :, None]
-    return base_way, base, np.moveaxis(slopes, 1, 2)
+    slopes = np.moveaxis(np.concatenate([of_way, of_frame]) / eta[None, :, None], 1, 2)
+    by_m, by_n = slopes[:, :, :3], slopes[:, :, 3:]
+    one = np.repeat(np.eye(3)[:, None], len(path.kind), axis=1)
+    by_turn = np.concatenate([-np.moveaxis(skew(base_way), 1, 2), one])
+    by_turn += np.einsum("ikj,jlk->ikl", by_m, skew(m)) + np.einsum("ikj,jlk->ikl", by_n, skew(n))
+    return base_way, base, np.concatenate([by_turn, by_m, by_n], axis=2)
 
 
 def switch_conditions(path: Path, n: Array, arms: Array) -> list[tuple[float, Array, int]]:
