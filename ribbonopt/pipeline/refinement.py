@@ -13,10 +13,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ribbonopt.accuracy.estimate import analyse, relative_error
+from ribbonopt.accuracy.estimate import SAFETY, analyse, relative_error
+from ribbonopt.accuracy.layers import Layers
 from ribbonopt.accuracy.remesh import (
     SIZES,
     UNSEEN,
+    WIDEST,
     analyticity,
     graded,
     redistributed,
@@ -35,9 +37,8 @@ if TYPE_CHECKING:
     from ribbonopt.scene import Scene
 
 ROUNDS = 20
-SAFE = 0.5  # share of the tolerance that the estimate, itself in error, must meet
 SLOW = 0.3  # share of the error before that a round should leave
-AIM = 0.2  # share of the tolerance that a new mesh aims at
+AIM = 0.5  # share of the tolerance that a new mesh aims at
 GROWTH = 2.0  # most that the number of elements grows in a round
 
 
@@ -75,11 +76,11 @@ def refine(
         except np.linalg.LinAlgError:
             status = Status.SINGULAR
             return replace(solution, status=status, message=status.value, steps=tuple(steps))
-        if error <= SAFE * tolerance:
+        if error <= tolerance:
             done = solution if solution is first else verified(solution, ribbon)
             return replace(done, steps=tuple(steps))
         started = time.perf_counter()
-        mesh, short = _better_mesh(solution, aim * tolerance / error, error > SLOW * before)
+        mesh, short = _better_mesh(solution, aim * tolerance, error, error > SLOW * before)
         before = error
         attempt = attempt_on(mesh, solution.trajectory.ends[1:-1])
         if not attempt.run(solution, quick=True, check=False) or attempt.best is None:
@@ -116,26 +117,39 @@ def on_finer_mesh(missed: Solution, solve: Callable[[Scene], Solution]) -> Solut
     return replace(found, iterations=iterations, timings=spent)
 
 
-def _better_mesh(solution: Solution, reduction: float, surprised: bool) -> tuple[Mesh, bool]:
-    """Return a mesh that reduces the error by a factor, and whether it is as fine as any may be.
+def _better_mesh(
+    solution: Solution, aim: float, error: float, surprised: bool
+) -> tuple[Mesh, bool]:
+    """Return a mesh that brings the error to `aim`, and whether it is as fine as any may be.
 
     `surprised` that the mesh before did not, it expects a layer that no stage has met so far.
     """
-    blocks, local = solution.dense.blocks, analyse(solution).local
+    blocks, found = solution.dense.blocks, analyse(solution)
+    local, known = found.local, found.layers
     widths, phases, short = blocks.widths(solution.dense.p), [], False
-    target = float(local.sum()) * reduction / len(local)
+    target = float(local.sum()) * min(1.0, aim / error) / len(local)
+    # Inside an element the collocation polynomial counts, whose order is lower.
+    inside = (SAFETY * found.inside / aim) ** (1 / (blocks.degree + 1))
     rho = analyticity(solution.dense.decay())
     if surprised:
         rho = np.where(local > target, UNSEEN, rho)
-    for part in blocks.layout.phase_slices:
+    lengths = np.diff(solution.trajectory.ends) * solution.trajectory.length
+    for part, near, length in zip(blocks.layout.phase_slices, known, lengths, strict=True):
         h = widths[part]
         wanted = wanted_widths(h, local[part], rho[part], blocks.order, target)
-        positions, share = graded(h, wanted)
+        wanted = np.minimum(wanted, h / np.maximum(inside[part], 1 / WIDEST))
+        limits = _limits(near, blocks.order, target / length) if len(near) else ()
+        positions, share = graded(h, wanted, *limits)
         count = max(int(np.ceil(share[-1])), len(h) // 2)
         size = size_for(min(count, int(GROWTH * len(h))))
         short = short or (size == SIZES[-1] and count > size)
         phases.append(redistributed(positions, share, size))
     return Mesh(tuple(phases)), short
+
+
+def _limits(near: Layers, order: int, target: float) -> tuple[Array, Callable[[Array], Array]]:
+    """Return where layers are, and the widths that resolve them."""
+    return near.places.real, lambda positions: near.widths(positions, order, target)
 
 
 def _missed(solution: Solution, tolerance: float) -> Solution:

@@ -98,6 +98,11 @@ class Ribbon:
         return not ca.depends_on(strain, self.position)
 
     @property
+    def conserved(self) -> tuple[str, ...]:
+        """Outputs that stay constant: H of a uniform law with an energy, without loads."""
+        return ("H",) if self.law.variational and self.uniform and not self.loads else ()
+
+    @property
     def states(self) -> tuple[str, ...]:
         """Names of the states along s: those of the model, then those of the law."""
         return (*self.model.states, *self.law.states)

@@ -11,7 +11,7 @@ from dataclasses import replace
 
 import casadi as ca
 
-from ribbonopt.mechanics.outputs import outputs
+from ribbonopt.mechanics.outputs import outputs, singular
 
 from .contract import BoundaryValueProblem, Phase
 from .equilibrium import Unknowns
@@ -53,12 +53,17 @@ def switched(ribbon: Ribbon, kinds: Kinds) -> BoundaryValueProblem:
             *(f"length of phase {i + 1}" for i in range(len(kinds) - 1)),
         ),
         parameter_names=tuple(ribbon.theta),
+        conserved=ribbon.conserved,
     )
 
 
 def _phase(ribbon: Ribbon, unknowns: Unknowns, kind: int, length: ca.SX) -> Phase:
-    u = ribbon.law.branch(kind).strain(unknowns.stress)
+    law = ribbon.law.branch(kind)
+    u = law.strain(unknowns.stress)
     section = replace(unknowns.section, u=u)
     return Phase(
-        dynamics=ribbon.rates(section, u), length=length, outputs=outputs(section, ribbon.law, u)
+        dynamics=ribbon.rates(section, u),
+        length=length,
+        outputs=outputs(section, ribbon.law, u),
+        singular=singular(law, unknowns.stress),
     )

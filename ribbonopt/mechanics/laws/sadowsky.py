@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import casadi as ca
 
 from .implicit import ImplicitLaw, bounded
-from .law import ConstitutiveLaw, Relaxed, RibbonLaw, Stress
+from .law import ConstitutiveLaw, Relaxed, RibbonLaw, Singular, Stress
 from .relations import (
     Components,
     convexified_energy,
@@ -135,6 +135,9 @@ class MixtureLaw(ConstitutiveLaw):
 
     def energy(self, u: ca.SX) -> ca.SX:
         return 2 * u[2] ** 2
+
+    def singular(self, stress: Stress) -> tuple[Singular, ...]:
+        return (Singular(mixture_stiffness(stress), ca.SX(0), ca.fabs(stress.m[2])),)
 
     def complementary_energy(self, stress: Stress) -> ca.SX:
         return sadowsky_complementary_energy(stress.m[1], stress.m[2])
