@@ -39,6 +39,7 @@ if TYPE_CHECKING:
 ROUNDS = 20
 SLOW = 0.3  # share of the error before that a round should leave
 AIM = 0.5  # share of the tolerance that a new mesh aims at
+GROUND = 2e-14  # local error of an element that is rounding
 GROWTH = 2.0  # most that the number of elements grows in a round
 
 
@@ -70,15 +71,21 @@ def refine(
         With a status that says so where the tolerance could not be met.
     """
     first, steps, before = solution, list(solution.steps), np.inf
+    best, least, status = solution, np.inf, Status.TOLERANCE_MISSED
     for _ in range(ROUNDS):
         try:
             error, _ = relative_error(solution)
         except np.linalg.LinAlgError:
-            status = Status.SINGULAR
-            return replace(solution, status=status, message=status.value, steps=tuple(steps))
+            lost = Status.SINGULAR
+            return replace(solution, status=lost, message=lost.value, steps=tuple(steps))
+        if error < least:
+            best, least = solution, error
         if error <= tolerance:
             done = solution if solution is first else verified(solution, ribbon)
             return replace(done, steps=tuple(steps))
+        if _is_rounding(solution, tolerance):
+            status = Status.ROUNDED
+            break
         started = time.perf_counter()
         mesh, short = _better_mesh(solution, aim * tolerance, error, error > SLOW * before)
         before = error
@@ -95,8 +102,17 @@ def refine(
         )
         if short:
             break
+    if solution is not best and relative_error(solution)[0] > least:
+        solution = best
     solution = verified(replace(solution, steps=tuple(steps)), ribbon)
-    return _missed(solution, tolerance) if solution.verified else solution
+    return _missed(solution, tolerance, status) if solution.verified else solution
+
+
+def _is_rounding(solution: Solution, tolerance: float) -> bool:
+    """Whether every element is as exact as it can be, so that finer ones only add their rounding."""
+    found = analyse(solution)
+    inside = SAFETY * float(found.inside.max()) <= tolerance
+    return bool(found.local.max() <= GROUND and inside)
 
 
 def on_finer_mesh(missed: Solution, solve: Callable[[Scene], Solution]) -> Solution:
@@ -152,7 +168,7 @@ def _limits(near: Layers, order: int, target: float) -> tuple[Array, Callable[[A
     return near.places.real, lambda positions: near.widths(positions, order, target)
 
 
-def _missed(solution: Solution, tolerance: float) -> Solution:
+def _missed(solution: Solution, tolerance: float, status: Status) -> Solution:
     """Return the solution, with what keeps its error from being small enough."""
     error, name = relative_error(solution)
     if error <= tolerance:
@@ -162,9 +178,9 @@ def _missed(solution: Solution, tolerance: float) -> Solution:
     a, b = solution.nodes[element], solution.nodes[element + 1]
     return replace(
         solution,
-        status=Status.TOLERANCE_MISSED,
+        status=status,
         message=(
-            f"{Status.TOLERANCE_MISSED.value}. The relative error of {name} is {error:.1e}, asked "
+            f"{status.value}. The relative error of {name} is {error:.1e}, asked "
             f"was {tolerance:.1e}, on {len(local)} intervals; most of it comes from s = {a:.4g} to "
             f"s = {b:.4g}"
         ),

@@ -113,7 +113,7 @@ class DenseOutput:
         places = self._places(phase, positions.ravel())
         equations = self.blocks.phases[phase].mapped_values
         step = (h * t)[:, None]
-        before = np.inf
+        before = last = np.inf
         for _ in range(MOST_SWEEPS):
             x = X.reshape(count * K, -1)
             z = self._solved(phase, x, z, places)
@@ -121,9 +121,10 @@ class DenseOutput:
             F = values.reshape(count, K, -1)[:, :, : lay.nx]
             improved = nodes[e][:, None] + step[:, None] * (tableau.matrix @ F)
             change = float(np.abs(improved - X).max())
-            if change >= before:  # rounding, or steps too long to converge
+            # Rounding. A change passes from position to direction and back in two sweeps.
+            if change >= last and change >= before:
                 break
-            X, before = improved, change
+            X, before, last = improved, last, change
         after: Array = nodes[e] + step * (tableau.weights @ F)
         return after
 
