@@ -101,15 +101,18 @@ class Structure:
         """
         if posed is not self.posed and posed.structure != self.posed.structure:
             raise ModelError("this scene differs from the prepared one in more than its numbers")
-        mesh = mesh or self._mesh(switches)
+        mesh = mesh or self.mesh(switches)
         nlp, solver = self.on(mesh.elements)
         p = nlp.layout.parameters(posed.values, mesh.widths)
         parts = self.ribbon, self.problem, nlp, solver, self.sheets, switches
         return Attempt(posed, p, *parts, ledger or Ledger())
 
-    def _mesh(self, switches: Array | None) -> Mesh:
-        """Uniform elements; in phases, of about the width they would have without."""
-        count = self.posed.scene.transcription.intervals
+    def mesh(self, switches: Array | None, least: int = 0) -> Mesh:
+        """Uniform elements, `least` or more; in phases, of about the width they would have without.
+
+        `switches` are the fractions of the length where phases meet.
+        """
+        count = max(self.posed.scene.transcription.intervals, least)
         if switches is None or not len(switches):
             return Mesh.uniform(count)
         shares = np.diff(np.concatenate([[0.0], switches, [1.0]]))

@@ -20,12 +20,13 @@ from ribbonopt.transcription.buffered import Buffered
 
 TOLERANCE = 1e-8
 SPARE, MOST = 10.0, 1e-2  # times the estimated error; of the strains: how far off the law may be
+SHORT = 1e-9  # of the length: a phase that is shorter is not there
 JUMP = 1e-6  # of the largest moment, on either side of a jump of the law
 
 
 def verify(solution: Solution, ribbon: Ribbon) -> Verification:
     """Check a solution against its scene."""
-    if not (np.diff(solution.trajectory.ends) > 0).all():
+    if not (np.diff(solution.trajectory.ends) > SHORT).all():
         problem = "a phase between two sign changes of m2 has no length"
         return replace(unverified(), problems=(problem,))
     worst_name, worst = _worst_condition(solution, ribbon)
@@ -48,7 +49,7 @@ def verify(solution: Solution, ribbon: Ribbon) -> Verification:
     if solution.sheets:
         from .arcs import phase_problems  # few scenes have phases
 
-        problems += phase_problems(solution, ribbon)
+        problems += phase_problems(solution, ribbon, TOLERANCE + residual)
     if ribbon.law.bounds_eta and not solution.problem.recovered:
         eta = np.abs(nodes["eta"])
         if 0 in solution.sheets:

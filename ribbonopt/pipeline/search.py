@@ -21,6 +21,7 @@ from ribbonopt.attempt.ledger import Ledger
 from ribbonopt.attempt.structure import Structure
 from ribbonopt.checks.arcs import Arcs, sign_changes, with_mixtures
 from ribbonopt.guess import Guess
+from ribbonopt.guess.flat import Flattened, nearly_flat
 from ribbonopt.problem import Posed
 from ribbonopt.scene import Scene
 from ribbonopt.solution.solution import Solution
@@ -60,14 +61,21 @@ class Search:
         A guess that has phases itself is tried in these first.
         """
         if isinstance(guess, Solution) and guess.sheets and self.phases_help:
-            if self._run_phases(Arcs(guess.sheets, guess.trajectory.ends[1:-1]), guess):
+            if self.run_in(Arcs(guess.sheets, guess.trajectory.ends[1:-1]), guess):
                 return True
         if not self.plain.run(guess, quick=quick, check=not self.phases_help):
             return False
-        found = self.plain.best
+        found = self._flattened(self.plain.best)
         if found is not None and self._in_given_phases(found):
             return True
         return self.plain.check() and found is not None and not self.jumps(found)
+
+    def run_in(self, arcs: Arcs, source: Guess, least: int = 0) -> bool:
+        """Try a guess in phases, on `least` intervals or more; whether that succeeds."""
+        structure = self.structure.in_phases(arcs.kinds)
+        mesh = structure.mesh(arcs.switches, least)
+        attempt = structure.attempt(self.posed, self.ledger, mesh, arcs.switches)
+        return self._kept(attempt).run(source, quick=True)
 
     def run_smooth(self, guess: Solution) -> bool:
         """Try an equilibrium of the smooth law; they come with delta increasing."""
@@ -80,9 +88,9 @@ class Search:
             )
         if len(self.smooth) == 2:
             blunt, sharp = self.smooth
-            arcs = with_mixtures(sharp, blunt)
-            if 0 in arcs.kinds:
-                return self._run_phases(arcs, sharp)
+            for arcs in with_mixtures(sharp, blunt):
+                if self.run_in(arcs, sharp):
+                    return True
         return self.run(guess, quick=True)
 
     def run_all(self, guesses: Iterable[Guess]) -> bool:
@@ -146,15 +154,20 @@ class Search:
         if not self.phases_help:
             return False
         if isinstance(self.posed.scene.switching, tuple):
-            if self._run_phases(_given(source, self.posed.scene), source):
+            if self.run_in(_given(source, self.posed.scene), source):
                 return True
         arcs = sign_changes(source)
-        return len(arcs.kinds) > 1 and self._run_phases(arcs, source)
+        return len(arcs.kinds) > 1 and self.run_in(arcs, source)
 
-    def _run_phases(self, arcs: Arcs, source: Solution) -> bool:
-        structure = self.structure.in_phases(arcs.kinds)
-        attempt = structure.attempt(self.posed, self.ledger, switches=arcs.switches)
-        return self._kept(attempt).run(source, quick=True)
+    def _flattened(self, found: Solution | None) -> Solution | None:
+        """Return what lies in a plane but for a little within it, if there it is a solution."""
+        if found is None or not self.needs_phases or not nearly_flat(found):
+            return found
+        attempt = self.structure.attempt(self.posed, self.ledger)
+        if attempt.run(Flattened(found), quick=True) and attempt.best is not None:
+            if not self.jumps(attempt.best):
+                self.plain = self._kept(attempt)
+        return self.plain.best
 
     def _kept(self, attempt: Attempt) -> Attempt:
         self.last = attempt

@@ -32,10 +32,10 @@ def switched(ribbon: Ribbon, kinds: Kinds) -> BoundaryValueProblem:
     points = tuple(ca.SX.sym(f"point{i}", unknowns.x.numel()) for i in range(len(kinds) + 1))
     conditions = ribbon.residuals(points[0], points[-1], unknowns.c)
     at = start
-    for i, kind in enumerate(kinds[1:], start=1):
+    for i in range(1, len(kinds)):
         at = at + each[i - 1]
         here = [unknowns.x, ribbon.position], [points[i], at]
-        for name, value in ribbon.law.entering(kind, kinds[i - 1], unknowns.stress).items():
+        for name, value in ribbon.law.entering(kinds, i, unknowns.stress).items():
             (conditions[f"switch {i}: {name}"],) = ca.substitute([value], *here)
     return BoundaryValueProblem(
         position=ribbon.position,

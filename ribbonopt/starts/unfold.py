@@ -11,6 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ribbonopt.arrays import Array
+from ribbonopt.checks.arcs import Arcs, leaps, sign_changes
 from ribbonopt.mechanics.rotations import turns_about
 from ribbonopt.mechanics.section import RodFields
 from ribbonopt.solution.solution import Solution
@@ -69,6 +70,32 @@ class Unfolded:
             n @ placed.T,
             m @ placed.T,
         )
+
+    @property
+    def arcs(self) -> Arcs | None:
+        """Arcs of this part, from those of the piece; None where the law leaps nowhere."""
+        piece = self.piece
+        if piece.sheets:
+            own = Arcs(piece.sheets, piece.trajectory.ends[1:-1])
+        elif not leaps(piece):
+            return None
+        else:
+            own = sign_changes(piece)
+        kinds: list[int] = []
+        switches: list[float] = []
+        for j in range(self.count):
+            # A flip about d2 reverses m2, and so does half a turn of the band about its tangent.
+            sign = (-1) ** ((j + 1) // 2)
+            step = -1 if j % 2 else 1
+            here = np.concatenate([own.switches, [1.0]])
+            ends = here if step > 0 else np.append(1 - own.switches[::-1], 1.0)
+            for kind, end in zip(own.kinds[::step], ends, strict=True):
+                if kinds and kinds[-1] == sign * kind:
+                    switches.pop()
+                else:
+                    kinds.append(sign * kind)
+                switches.append((j + float(end)) / self.count)
+        return Arcs(tuple(kinds), np.array(switches[:-1]))
 
 
 def _flip(axis: Array) -> Array:
