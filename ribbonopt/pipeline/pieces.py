@@ -9,6 +9,7 @@ from __future__ import annotations
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from ribbonopt.guess.flat import Flattened, nearly_flat
 from ribbonopt.starts.loops import fundamental_scene
 from ribbonopt.starts.unfold import Unfolded
 
@@ -39,6 +40,8 @@ def run_unfolded(search: Search, piece: Prepared) -> bool:
         return False
     count = loop.fundamental.pieces // loop.pieces
     unfolded = Unfolded(found, loop.half_twists, count, *posed.start)
+    if nearly_flat(found) and search.run(Flattened(unfolded), quick=True):
+        return True
     arcs = unfolded.arcs
     if arcs is None:
         return search.run(unfolded, quick=True)

@@ -89,7 +89,7 @@ class Search:
         if len(self.smooth) == 2:
             blunt, sharp = self.smooth
             for arcs in with_mixtures(sharp, blunt):
-                if self.run_in(arcs, sharp):
+                if self.run_in(arcs, self._freed(arcs, sharp)):
                     return True
         return self.run(guess, quick=True)
 
@@ -158,6 +158,15 @@ class Search:
                 return True
         arcs = sign_changes(source)
         return len(arcs.kinds) > 1 and self.run_in(arcs, source)
+
+    def _freed(self, arcs: Arcs, source: Solution) -> Solution:
+        """Return a guess nearer to a mixture from end to end: what lets m2 leave zero a little."""
+        if arcs.kinds != (0,):
+            return source
+        attempt = self.structure.in_phases(arcs.kinds, free=True).attempt(self.posed, self.ledger)
+        attempt.run(source, quick=True, check=False)
+        found = attempt.best
+        return source if found is None or not found.status.converged else found
 
     def _flattened(self, found: Solution | None) -> Solution | None:
         """Return what lies in a plane but for a little within it, if there it is a solution."""

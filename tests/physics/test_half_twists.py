@@ -11,11 +11,11 @@ from ribbonopt.checks.topology import (
     ClosedBand,
     closure,
     count_half_twists,
-    crosses_itself,
     half_twists,
     loop_problems,
     writhe,
 )
+from ribbonopt.checks.polygons import crosses_itself
 from ribbonopt.output.summary import summarize
 from ribbonopt.pipeline.prepared import prepare
 from ribbonopt.scene import Loop, load_scene
