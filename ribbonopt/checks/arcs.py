@@ -13,6 +13,7 @@ from itertools import pairwise
 import numpy as np
 
 from ribbonopt.arrays import Array
+from ribbonopt.guess import Guess
 from ribbonopt.problem import Ribbon
 from ribbonopt.solution.solution import Solution
 from ribbonopt.transcription.buffered import Mapped
@@ -29,6 +30,16 @@ class Arcs:
 
     kinds: tuple[int, ...]
     switches: Array
+
+
+MIXTURE = Arcs((0,), np.empty(0))  # from end to end
+
+
+def is_mixture(guess: Guess) -> bool:
+    """Whether a guess has twist and no m2 from end to end."""
+    fields = guess.fields(np.linspace(0.0, 1.0, 9))
+    _, m2, m3 = np.abs(np.einsum("ki,kij->jk", fields.m, fields.frames))
+    return bool(m2.max() <= NEGLIGIBLE * m3.min())
 
 
 def sign_changes(solution: Solution) -> Arcs:

@@ -19,8 +19,9 @@ from ribbonopt.arrays import Array
 from ribbonopt.attempt.attempt import Attempt
 from ribbonopt.attempt.ledger import Ledger
 from ribbonopt.attempt.structure import Structure
-from ribbonopt.checks.arcs import Arcs, sign_changes, with_mixtures
+from ribbonopt.checks.arcs import MIXTURE, Arcs, is_mixture, sign_changes, with_mixtures
 from ribbonopt.guess import Guess
+from ribbonopt.guess.balanced import Balanced
 from ribbonopt.guess.flat import Flattened, nearly_flat
 from ribbonopt.problem import Posed
 from ribbonopt.scene import Scene
@@ -63,6 +64,9 @@ class Search:
         if isinstance(guess, Solution) and guess.sheets and self.phases_help:
             if self.run_in(Arcs(guess.sheets, guess.trajectory.ends[1:-1]), guess):
                 return True
+        if self.needs_phases and not isinstance(guess, Solution) and is_mixture(guess):
+            if self.run_in(MIXTURE, Balanced(guess)):
+                return True
         if not self.plain.run(guess, quick=quick, check=not self.phases_help):
             return False
         found = self._flattened(self.plain.best)
@@ -89,7 +93,7 @@ class Search:
         if len(self.smooth) == 2:
             blunt, sharp = self.smooth
             for arcs in with_mixtures(sharp, blunt):
-                if self.run_in(arcs, self._freed(arcs, sharp)):
+                if self.run_in(*self._freed(arcs, sharp)):
                     return True
         return self.run(guess, quick=True)
 
@@ -159,14 +163,14 @@ class Search:
         arcs = sign_changes(source)
         return len(arcs.kinds) > 1 and self.run_in(arcs, source)
 
-    def _freed(self, arcs: Arcs, source: Solution) -> Solution:
-        """Return a guess nearer to a mixture from end to end: what lets m2 leave zero a little."""
-        if arcs.kinds != (0,):
-            return source
+    def _freed(self, arcs: Arcs, source: Guess) -> tuple[Arcs, Guess]:
+        """Return arcs and a guess: nearer, for a mixture from end to end, by leaving m2 free."""
+        if arcs.kinds != MIXTURE.kinds:
+            return arcs, source
         attempt = self.structure.in_phases(arcs.kinds, free=True).attempt(self.posed, self.ledger)
         attempt.run(source, quick=True, check=False)
         found = attempt.best
-        return source if found is None or not found.status.converged else found
+        return arcs, source if found is None or not found.status.converged else found
 
     def _flattened(self, found: Solution | None) -> Solution | None:
         """Return what lies in a plane but for a little within it, if there it is a solution."""
