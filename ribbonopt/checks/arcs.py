@@ -135,12 +135,13 @@ def phase_problems(solution: Solution, ribbon: Ribbon, accuracy: float) -> list[
     """Say where a solution in phases is not one of the law: wrong side of its switch, no mixture.
 
     Margins of a law are compared in units Dw = L = 1. `accuracy` is that of the equations, relative
-    to the largest moment: what must be zero is so to that.
+    to the largest load: what must be zero is so to that.
     """
     problems = []
     v, fraction, _, phase = solution.trajectory.stages
     nodes, theta = v[:, : len(ribbon.states)], solution.dense.theta
-    scale = float(np.abs(solution.trajectory.at_stages["m"]).max())
+    scale, force = (float(np.abs(solution.trajectory.at_stages[v]).max()) for v in "mn")
+    loads = max(scale, force)
     s = solution.posed.scene.interval[0] + solution.posed.length * fraction
     start, end = solution.scene.interval
     ends = start + (end - start) * solution.trajectory.ends
@@ -151,7 +152,7 @@ def phase_problems(solution: Solution, ribbon: Ribbon, accuracy: float) -> list[
         names, count, margins = ribbon.kept(_margins)[kind]
         (values,) = margins(nodes[rows], constants, theta, s[rows])
         least = values.reshape(-1, len(names)).min(axis=0)
-        allowed = scale * np.where(np.arange(len(names)) < count, MARGIN, accuracy)
+        allowed = np.where(np.arange(len(names)) < count, MARGIN * scale, accuracy * loads)
         short = zip(names, least, allowed, strict=True)
         problems += [name.format(where=where) for name, value, most in short if value < -most]
     return problems

@@ -10,6 +10,7 @@ from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from ribbonopt.guess.flat import Flattened, nearly_flat
+from ribbonopt.scene import Scene
 from ribbonopt.starts.loops import fundamental_scene
 from ribbonopt.starts.unfold import Unfolded
 
@@ -21,11 +22,11 @@ if TYPE_CHECKING:
     from .prepared import Prepared
 
 
-def piece_of(prepared: Prepared) -> Prepared | None:
+def piece_of(scene: Scene) -> Prepared | None:
     """Return the fundamental piece of a band, prepared; None where a scene is no more than that."""
     from .prepared import prepare
 
-    scene = fundamental_scene(prepared.structure.posed.scene)
+    scene = fundamental_scene(scene)
     return None if scene is None else prepare(replace(scene, tolerance=None))
 
 

@@ -154,6 +154,13 @@ class Prepared:
 
         return Automatic(self.structure.posed)
 
+    @cached_property
+    def piece(self) -> Prepared | None:
+        """The fundamental piece of a band of which this is more, when it is first needed."""
+        from .pieces import piece_of
+
+        return piece_of(self.structure.posed.scene)
+
     def _once(self, posed: Posed, guess: Guess | None, fallback: bool, quick: bool) -> Solution:
         started = time.perf_counter()
         search = self.search(posed)
@@ -162,27 +169,14 @@ class Prepared:
             step = "guess: given" if guess else f"guess: {words(posed.scene.guess)}"
             search.ledger.note(step, time.perf_counter() - started)
         led = own is not None and search.run(own, quick=quick)
-        if not led and (own is None or fallback) and not self._unfolds(search):
-            search.run_all(self.automatic.guesses(posed, search.ledger))
+        if not led and (own is None or fallback):
+            from .nothing import from_nothing  # IPOPT, which many scenes do without
+
+            search = from_nothing(self, search)
         if not led and own is not None and fallback:
             what = "the guess given" if guess else f"the guess ({words(posed.scene.guess)})"
             search.ledger.give_up(f"{what} led nowhere and was given up for the automatic start")
         return self._with_costs(search, time.perf_counter() - started)
-
-    @cached_property
-    def _piece(self) -> Prepared | None:
-        from .pieces import piece_of  # bands of several half twists
-
-        return piece_of(self)
-
-    def _unfolds(self, search: Search) -> bool:
-        """Whether a band that needs phases is found from its fundamental piece."""
-        loop = search.posed.scene.boundary.loop
-        if loop is None or not search.needs_phases or self._piece is None:
-            return False
-        from .pieces import run_unfolded
-
-        return run_unfolded(search, self._piece)
 
     def _with_costs(self, search: Search, seconds: float) -> Solution:
         """Return the best solution found, with what it has cost."""

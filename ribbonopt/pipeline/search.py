@@ -112,6 +112,17 @@ class Search:
         return first is not None and not self.needs_phases and self.run(first)
 
     @property
+    def settled(self) -> bool:
+        """Whether there is a solution of the law that is asked for."""
+        best = self.best
+        return best is not None and best.verified and self.smooth_instead is None
+
+    @property
+    def energy(self) -> float:
+        """Energy of the best solution (Dw = L = 1)."""
+        return np.inf if self.best is None else self.best.trajectory.energy
+
+    @property
     def smooth_instead(self) -> Solution | None:
         """The smooth law's sharpest equilibrium where none of a law that needs phases was found."""
         best = self.best

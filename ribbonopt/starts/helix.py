@@ -1,0 +1,85 @@
+"""The helix that joins two clamps, where one does: an equilibrium of every uniform law.
+
+Strains that are the same all along turn the frame about one axis, by an angle that the clamps
+leave open by whole turns; the advance along the axis does not depend on it. Where such a helix
+meets the end of the ribbon without bending in its own plane, its energy is one that no start
+should exceed.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ribbonopt.arrays import Array
+from ribbonopt.guess import Guess
+from ribbonopt.guess.balanced import Balanced
+from ribbonopt.guess.named import ShapeGuess, moments_of
+from ribbonopt.guess.shapes import Helical
+from ribbonopt.mechanics.ends.conditions import Component, Frame
+from ribbonopt.mechanics.laws.catalogue import capabilities
+from ribbonopt.mechanics.rotations import turn_vector
+from ribbonopt.problem import Posed, Ribbon
+from ribbonopt.problem.posed import Place
+
+CLOSE = 1e-7  # of the length, and of the strains
+TURNS = 8  # whole turns tried to either side of the shortest rotation
+
+
+@dataclass(frozen=True, eq=False)
+class Helix:
+    """A guess that is an equilibrium, and its energy (Dw = L = 1)."""
+
+    guess: Guess
+    energy: float
+
+
+def helix_between(posed: Posed, ribbon: Ribbon) -> Helix | None:
+    """Return the helix of least energy that joins the clamps of a scene, or None."""
+    ends = clamps_of(posed)
+    if ends is None or posed.loads or not ribbon.uniform or capabilities(posed.scene.law).natural:
+        return None
+    (position, frame), (goal, last) = ends
+    length, found = posed.length, None
+    across = [i for i in range(3) if i not in ribbon.law.components]
+    for u in _strains(frame, last, (goal - position) / length):
+        shape = Helical(position, frame, u / length, length)
+        gap = shape.positions(np.ones(1))[0] - goal
+        bent = np.abs(u[across]).max(initial=0.0)
+        if np.abs(gap).max() > CLOSE * length or bent > CLOSE * np.abs(u).max():
+            continue
+        moments = moments_of(posed, ribbon)
+        energy = float(moments(shape.u[None])[0] @ shape.u) * length / 2
+        if found is None or energy < found.energy:
+            found = Helix(Balanced(ShapeGuess(shape, moments)), energy)
+    return found
+
+
+def clamps_of(posed: Posed) -> tuple[Place, Place] | None:
+    """Return position and frame of both ends where nothing else is prescribed, else None."""
+    frames, places = {}, {}
+    for c in posed.conditions:
+        if isinstance(c, Frame):
+            frames[c.end] = np.reshape(c.matrix, (3, 3))
+        elif isinstance(c, Component) and c.quantity == "position" and c.axis in "xyz":
+            places[c.end, c.axis] = c.value
+        else:
+            return None
+    if len(frames) < 2 or len(places) < 6:
+        return None
+    start, end = (np.array([places[name, axis] for axis in "xyz"]) for name in ("start", "end"))
+    return (start, frames["start"]), (end, frames["end"])
+
+
+def _strains(first: Array, last: Array, chord: Array) -> list[Array]:
+    """Strains times length (3,) that turn one frame into another, the advance being right."""
+    shortest, along = turn_vector(first.T @ last), first.T @ chord
+    angle, advance = float(np.linalg.norm(shortest)), float(np.linalg.norm(along))
+    if angle > CLOSE:
+        axes = [shortest / angle]
+    else:  # whole turns: the chord is along the axis
+        axes = [along / advance] if advance > CLOSE else []
+    axes = [axis for axis in axes if abs(axis[2] - axis @ along) < CLOSE]
+    turns = 2 * np.pi * np.arange(-TURNS, TURNS + 1)
+    return [(angle + turn) * axis for axis in axes for turn in turns if angle + turn]
