@@ -161,4 +161,6 @@ def phase_problems(solution: Solution, ribbon: Ribbon, accuracy: float) -> list[
 def _margins(ribbon: Ribbon) -> dict[int, tuple[tuple[str, ...], int, Mapped]]:
     """Names of the margins of every kind of phase, how many are none of zeros, and all values."""
     found = {kind: ribbon.margins_function(kind) for kind in (-1, 0, 1)}
-    return {kind: (names, count, Mapped(function)) for kind, (names, count, function) in found.items()}
+    return {
+        kind: (names, count, Mapped(function)) for kind, (names, count, function) in found.items()
+    }

@@ -137,7 +137,7 @@ def _counted(band: ClosedBand, asked: int | None) -> tuple[int, float]:
     """Half twists of a band; those asked for where it is midway between them and others."""
     found, off = band.half_twists()
     if asked is not None and found != asked:
-        # Passing through itself, a centre line gains or loses four: the figure of eight has 2 or -2.
+        # Passing through itself a line gains or loses four: the figure of eight has 2 or -2.
         rest, crossings = writhe_and_crossings(band.line(POINTS[1]))
         middle = 2 * (band.twist + rest)
         passed = (asked - middle) / 4 + crossings / 2

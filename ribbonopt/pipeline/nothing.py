@@ -1,31 +1,66 @@
-"""From nothing: a band from its fundamental piece, else the automatic start; a helix if better."""
+"""From nothing: a band from its fundamental piece, else the automatic start; a helix if better.
+
+Least energy untwists a band of several half twists, and where a law changes sheets a guess must
+know where: the piece, solved in the scene's own law, has one sign change of m2 at most, or is a
+mixture; its images have the rest.
+"""
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Callable, Iterable
+from dataclasses import replace
 
+from ribbonopt.guess import Guess
+from ribbonopt.guess.flat import Flattened, nearly_flat
+from ribbonopt.scene import Scene
+from ribbonopt.solution.solution import Solution
 from ribbonopt.starts.helix import helix_between
+from ribbonopt.starts.loops import fundamental_scene
+from ribbonopt.starts.unfold import Unfolded, unfolded
 
-from .pieces import run_unfolded
 from .search import Search
 
-if TYPE_CHECKING:
-    from .prepared import Prepared
-
 SAME = 1e-6  # relative, of energies
+LEAST = 4  # intervals on every piece of a guess that is nearly the solution
 
 
-def from_nothing(prepared: Prepared, search: Search) -> Search:
-    """Return the search that led to a solution, or the one given."""
+def from_nothing(
+    search: Search,
+    guesses: Callable[[], Iterable[Guess]],
+    solve: Callable[[Scene], Solution],
+) -> Search:
+    """Return the search that led to a solution, or the one given.
+
+    Parameters
+    ----------
+    search
+        Nothing has led anywhere in it so far.
+    guesses
+        Gives those of the automatic start.
+    solve
+        Solves another scene, on its own number of intervals.
+    """
     posed = search.posed
-    loop = posed.scene.boundary.loop
-    piece = prepared.piece if loop is not None and search.needs_phases else None
-    if piece is not None and run_unfolded(search, piece):
-        return search
-    search.run_all(prepared.automatic.guesses(posed, search.ledger))
-    helix = helix_between(posed, prepared.ribbon)
+    scene = fundamental_scene(posed.scene) if search.needs_phases else None
+    if scene is not None:
+        piece = solve(replace(scene, tolerance=None))
+        search.ledger.steps.extend(piece.steps)
+        if piece.verified and _run_unfolded(search, unfolded(piece, posed)):
+            return search
+    search.run_all(guesses())
+    helix = helix_between(posed, search.structure.ribbon)
     if helix is None or (search.settled and search.energy <= helix.energy * (1 + SAME)):
         return search
-    other = Search(posed, prepared.structure, search.ledger)
+    other = Search(posed, search.structure, search.ledger)
     other.ledger.note("a helix joins the clamps", 0.0)
     return other if other.run(helix.guess, quick=True) else search
+
+
+def _run_unfolded(search: Search, guess: Unfolded) -> bool:
+    """Try what unfolds from a piece; whether that succeeds."""
+    if nearly_flat(guess.piece) and search.run(Flattened(guess), quick=True):
+        return True
+    arcs = guess.arcs
+    if arcs is None:
+        return search.run(guess, quick=True)
+    return search.run_in(arcs, guess, LEAST * guess.count)

@@ -154,13 +154,6 @@ class Prepared:
 
         return Automatic(self.structure.posed)
 
-    @cached_property
-    def piece(self) -> Prepared | None:
-        """The fundamental piece of a band of which this is more, when it is first needed."""
-        from .pieces import piece_of
-
-        return piece_of(self.structure.posed.scene)
-
     def _once(self, posed: Posed, guess: Guess | None, fallback: bool, quick: bool) -> Solution:
         started = time.perf_counter()
         search = self.search(posed)
@@ -172,7 +165,8 @@ class Prepared:
         if not led and (own is None or fallback):
             from .nothing import from_nothing  # IPOPT, which many scenes do without
 
-            search = from_nothing(self, search)
+            guesses = partial(self.automatic.guesses, posed, search.ledger)
+            search = from_nothing(search, guesses, lambda s: prepare(s).solve_once())
         if not led and own is not None and fallback:
             what = "the guess given" if guess else f"the guess ({words(posed.scene.guess)})"
             search.ledger.give_up(f"{what} led nowhere and was given up for the automatic start")

@@ -14,6 +14,7 @@ from ribbonopt.arrays import Array
 from ribbonopt.checks.arcs import Arcs, leaps, sign_changes
 from ribbonopt.mechanics.rotations import turns_about
 from ribbonopt.mechanics.section import RodFields
+from ribbonopt.problem import Posed
 from ribbonopt.solution.solution import Solution
 
 
@@ -96,6 +97,13 @@ class Unfolded:
                     kinds.append(sign * kind)
                 switches.append((j + float(end)) / self.count)
         return Arcs(tuple(kinds), np.array(switches[:-1]))
+
+
+def unfolded(piece: Solution, posed: Posed) -> Unfolded:
+    """Return what a scene asks for of a band, unfolded from its fundamental piece."""
+    loop = posed.scene.boundary.loop
+    assert loop is not None
+    return Unfolded(piece, loop.half_twists, loop.fundamental.pieces // loop.pieces, *posed.start)
 
 
 def _flip(axis: Array) -> Array:

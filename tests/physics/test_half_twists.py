@@ -7,6 +7,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from ribbonopt.checks.polygons import crosses_itself
 from ribbonopt.checks.topology import (
     ClosedBand,
     closure,
@@ -15,7 +16,6 @@ from ribbonopt.checks.topology import (
     loop_problems,
     writhe,
 )
-from ribbonopt.checks.polygons import crosses_itself
 from ribbonopt.output.summary import summarize
 from ribbonopt.pipeline.prepared import prepare
 from ribbonopt.scene import Loop, load_scene

@@ -24,6 +24,7 @@ from .relations import (
     sheet_sum,
 )
 
+
 class SwitchedLaw(RibbonLaw):
     """A law whose strains have a jump or a kink at m2 = 0, in phases of one sheet or a mixture."""
 
