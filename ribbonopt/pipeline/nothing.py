@@ -1,4 +1,4 @@
-"""From nothing: a band from its fundamental piece, else the automatic start; a helix if better.
+"""From nothing: a band from its fundamental piece, else the automatic start; or what is better.
 
 Least energy untwists a band of several half twists, and where a law changes sheets a guess must
 know where: the piece, solved in the scene's own law, has one sign change of m2 at most, or is a
@@ -10,11 +10,14 @@ from __future__ import annotations
 from collections.abc import Callable, Iterable
 from dataclasses import replace
 
+from ribbonopt.arrays import Array
+from ribbonopt.checks.winding import winds_as
 from ribbonopt.guess import Guess
 from ribbonopt.guess.flat import Flattened, nearly_flat
+from ribbonopt.mechanics.ends.winding import winding
 from ribbonopt.scene import Scene
 from ribbonopt.solution.solution import Solution
-from ribbonopt.starts.helix import helix_between
+from ribbonopt.starts.helix import helix_between, wound_evenly
 from ribbonopt.starts.loops import fundamental_scene
 from ribbonopt.starts.unfold import Unfolded, unfolded
 
@@ -48,12 +51,37 @@ def from_nothing(
         if piece.verified and _run_unfolded(search, unfolded(piece, posed)):
             return search
     search.run_all(guesses())
-    helix = helix_between(posed, search.structure.ribbon)
+    wound = winding(posed.scene.boundary, posed.scene.parameters)
+    return _less_energy(search) if wound is None else _as_wound(search, wound)
+
+
+def _less_energy(search: Search) -> Search:
+    """Return the search, or one for the helix that joins the clamps, if any has less energy."""
+    helix = helix_between(search.posed, search.structure.ribbon)
     if helix is None or (search.settled and search.energy <= helix.energy * (1 + SAME)):
         return search
-    other = Search(posed, search.structure, search.ledger)
-    other.ledger.note("a helix joins the clamps", 0.0)
-    return other if other.run(helix.guess, quick=True) else search
+    return _another(search, helix.guess, "a helix joins the clamps") or search
+
+
+def _as_wound(search: Search, wound: Array) -> Search:
+    """Return the search, or one for the ribbon wound evenly, if only that winds as the ends say."""
+    best = search.best
+    if best is not None and search.settled and winds_as(best, wound):
+        return search
+    even = wound_evenly(search.posed, search.structure.ribbon, wound)
+    other = _another(search, even, "wound evenly as the ends say")
+    if other is not None and other.best is not None and winds_as(other.best, wound):
+        return other
+    if best is not None and not winds_as(best, wound):
+        search.ledger.give_up("the whole turns of the ends: no equilibrium wound so was found")
+    return search
+
+
+def _another(search: Search, guess: Guess, words: str) -> Search | None:
+    """Return a search of the same scene that a guess leads to an end, or None."""
+    other = Search(search.posed, search.structure, search.ledger)
+    other.ledger.note(words, 0.0)
+    return other if other.run(guess, quick=True) else None
 
 
 def _run_unfolded(search: Search, guess: Unfolded) -> bool:

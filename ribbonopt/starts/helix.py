@@ -35,6 +35,15 @@ class Helix:
     energy: float
 
 
+def wound_evenly(posed: Posed, ribbon: Ribbon, winding: Array) -> Guess:
+    """Return the ribbon wound evenly by a rotation vector (3,), along the directors of the start.
+
+    Straight where the axis is d3; an equilibrium if its end is where the scene wants it.
+    """
+    shape = Helical(*posed.start, winding / posed.length, posed.length)
+    return Balanced(ShapeGuess(shape, moments_of(posed, ribbon)))
+
+
 def helix_between(posed: Posed, ribbon: Ribbon) -> Helix | None:
     """Return the helix of least energy that joins the clamps of a scene, or None."""
     ends = clamps_of(posed)
