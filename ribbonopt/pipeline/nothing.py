@@ -24,12 +24,13 @@ from ribbonopt.starts.unfold import Unfolded, unfolded
 from .search import Search
 
 SAME = 1e-6  # relative, of energies
+MORE = 1.5  # times the energy of a helix that nearly fits
 LEAST = 4  # intervals on every piece of a guess that is nearly the solution
 
 
 def from_nothing(
     search: Search,
-    guesses: Callable[[], Iterable[Guess]],
+    guesses: Callable[..., Iterable[Guess]],
     solve: Callable[[Scene], Solution],
 ) -> Search:
     """Return the search that led to a solution, or the one given.
@@ -39,7 +40,7 @@ def from_nothing(
     search
         Nothing has led anywhere in it so far.
     guesses
-        Gives those of the automatic start.
+        Gives those of the automatic start, from a `shape` if there is one.
     solve
         Solves another scene, on its own number of intervals.
     """
@@ -52,15 +53,22 @@ def from_nothing(
             return search
     search.run_all(guesses())
     wound = winding(posed.scene.boundary, posed.scene.parameters)
-    return _less_energy(search) if wound is None else _as_wound(search, wound)
+    return _less_energy(search, guesses) if wound is None else _as_wound(search, wound)
 
 
-def _less_energy(search: Search) -> Search:
-    """Return the search, or one for the helix that joins the clamps, if any has less energy."""
+def _less_energy(search: Search, guesses: Callable[..., Iterable[Guess]]) -> Search:
+    """Return the search, or one from a helix that joins the clamps if that has less energy."""
     helix = helix_between(search.posed, search.structure.ribbon)
-    if helix is None or (search.settled and search.energy <= helix.energy * (1 + SAME)):
+    if helix is None:
         return search
-    return _another(search, helix.guess, "a helix joins the clamps") or search
+    bound = helix.energy * (1 + SAME if helix.exact else MORE)
+    if search.settled and search.energy <= bound:
+        return search
+    words = "a helix joins the clamps" if helix.exact else "a helix nearly joins the clamps"
+    start = [helix.guess] if helix.exact else guesses(shape=helix.shape)
+    other = _another(search, start, words)
+    better = other.settled and not (search.settled and search.energy <= other.energy)
+    return other if better else search
 
 
 def _as_wound(search: Search, wound: Array) -> Search:
@@ -69,19 +77,20 @@ def _as_wound(search: Search, wound: Array) -> Search:
     if best is not None and search.settled and winds_as(best, wound):
         return search
     even = wound_evenly(search.posed, search.structure.ribbon, wound)
-    other = _another(search, even, "wound evenly as the ends say")
-    if other is not None and other.best is not None and winds_as(other.best, wound):
+    other = _another(search, [even], "wound evenly as the ends say")
+    if other.settled and other.best is not None and winds_as(other.best, wound):
         return other
     if best is not None and not winds_as(best, wound):
         search.ledger.give_up("the whole turns of the ends: no equilibrium wound so was found")
     return search
 
 
-def _another(search: Search, guess: Guess, words: str) -> Search | None:
-    """Return a search of the same scene that a guess leads to an end, or None."""
+def _another(search: Search, guesses: Iterable[Guess], words: str) -> Search:
+    """Return a search of the same scene from other guesses."""
     other = Search(search.posed, search.structure, search.ledger)
     other.ledger.note(words, 0.0)
-    return other if other.run(guess, quick=True) else None
+    other.run_all(guesses)
+    return other
 
 
 def _run_unfolded(search: Search, guess: Unfolded) -> bool:

@@ -3,7 +3,8 @@
 Strains that are the same all along turn the frame about one axis, by an angle that the clamps
 leave open by whole turns; the advance along the axis does not depend on it. Where such a helix
 meets the end of the ribbon without bending in its own plane, its energy is one that no start
-should exceed.
+should exceed. Where it nearly does, as an arc of more than half a turn that somewhat deviates from
+a circle, it is a shape to start from, of about the energy that should be found.
 """
 
 from __future__ import annotations
@@ -24,15 +25,18 @@ from ribbonopt.problem import Posed, Ribbon
 from ribbonopt.problem.posed import Place
 
 CLOSE = 1e-7  # of the length, and of the strains
+NEAR = 0.1  # the same of what is only a start
 TURNS = 8  # whole turns tried to either side of the shortest rotation
 
 
 @dataclass(frozen=True, eq=False)
 class Helix:
-    """A guess that is an equilibrium, and its energy (Dw = L = 1)."""
+    """A helix, as a guess with loads, and its energy (Dw = L = 1); whether it fits exactly."""
 
+    shape: Helical
     guess: Guess
     energy: float
+    exact: bool
 
 
 def wound_evenly(posed: Posed, ribbon: Ribbon, winding: Array) -> Guess:
@@ -45,24 +49,24 @@ def wound_evenly(posed: Posed, ribbon: Ribbon, winding: Array) -> Guess:
 
 
 def helix_between(posed: Posed, ribbon: Ribbon) -> Helix | None:
-    """Return the helix of least energy that joins the clamps of a scene, or None."""
+    """Return the helix of least energy that joins the clamps of a scene, or nearly, or None."""
     ends = clamps_of(posed)
     if ends is None or posed.loads or not ribbon.uniform or capabilities(posed.scene.law).natural:
         return None
     (position, frame), (goal, last) = ends
-    length, found = posed.length, None
-    across = [i for i in range(3) if i not in ribbon.law.components]
+    length = posed.length
+    found: list[Helix] = []
     for u in _strains(frame, last, (goal - position) / length):
         shape = Helical(position, frame, u / length, length)
-        gap = shape.positions(np.ones(1))[0] - goal
-        bent = np.abs(u[across]).max(initial=0.0)
-        if np.abs(gap).max() > CLOSE * length or bent > CLOSE * np.abs(u).max():
-            continue
-        moments = moments_of(posed, ribbon)
-        energy = float(moments(shape.u[None])[0] @ shape.u) * length / 2
-        if found is None or energy < found.energy:
-            found = Helix(Balanced(ShapeGuess(shape, moments)), energy)
-    return found
+        gap = np.abs(shape.positions(np.ones(1))[0] - goal).max() / length
+        across = [i for i in range(3) if i not in ribbon.law.components]
+        off = max(gap, np.abs(u[across]).max(initial=0.0) / np.abs(u).max())
+        if off < NEAR:
+            moments = moments_of(posed, ribbon)
+            energy = float(moments(shape.u[None])[0] @ shape.u) * length / 2
+            guess = Balanced(ShapeGuess(shape, moments))
+            found.append(Helix(shape, guess, energy, bool(off < CLOSE)))
+    return min(found, key=lambda helix: (not helix.exact, helix.energy), default=None)
 
 
 def clamps_of(posed: Posed) -> tuple[Place, Place] | None:
@@ -82,13 +86,13 @@ def clamps_of(posed: Posed) -> tuple[Place, Place] | None:
 
 
 def _strains(first: Array, last: Array, chord: Array) -> list[Array]:
-    """Strains times length (3,) that turn one frame into another, the advance being right."""
+    """Strains times length (3,) that turn one frame into another and advance about as far."""
     shortest, along = turn_vector(first.T @ last), first.T @ chord
     angle, advance = float(np.linalg.norm(shortest)), float(np.linalg.norm(along))
     if angle > CLOSE:
         axes = [shortest / angle]
     else:  # whole turns: the chord is along the axis
         axes = [along / advance] if advance > CLOSE else []
-    axes = [axis for axis in axes if abs(axis[2] - axis @ along) < CLOSE]
+    axes = [axis for axis in axes if abs(axis[2] - axis @ along) < NEAR]
     turns = 2 * np.pi * np.arange(-TURNS, TURNS + 1)
     return [(angle + turn) * axis for axis in axes for turn in turns if angle + turn]
