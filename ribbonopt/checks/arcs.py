@@ -21,6 +21,7 @@ from ribbonopt.transcription.buffered import Mapped
 NEGLIGIBLE = 1e-7  # m2 over the largest |m| that has no sign
 BEYOND = 1.05  # |eta| of a mixture
 MARGIN = 1e-6  # of the largest moment: how far below zero a margin of the law may be
+EMPTY = 1e-5  # of the length of the ribbon: a phase that may not be there
 SHORTEST = 0.01  # of an arc of a mixture, and of the phase before one that begins at an end
 
 
@@ -94,6 +95,24 @@ def with_mixtures(sharp: Solution, blunt: Solution) -> Iterator[Arcs]:
         yield apart
     else:
         yield from (to_ends, apart) if to_ends.kinds == (0,) else (apart, to_ends)
+
+
+def without_empty(solution: Solution) -> Arcs | None:
+    """Return the arcs of a solution without phases that seem to have no length, if any do.
+
+    Such a length is often a double root, and known to half the digits.
+    """
+    ends = solution.trajectory.ends
+    lengths = np.diff(ends)
+    if not (np.abs(lengths) <= EMPTY).any() or (lengths < -EMPTY).any():
+        return None
+    kinds: list[int] = []
+    switches: list[float] = []
+    for kind, start, length in zip(solution.sheets, ends, lengths, strict=False):
+        if length > EMPTY and (not kinds or kinds[-1] != kind):
+            switches += [float(start)] if kinds else []
+            kinds.append(kind)
+    return Arcs(tuple(kinds), np.array(switches))
 
 
 def _reaching(mixture: tuple[float, float], first: float, last: float) -> tuple[float, float]:

@@ -15,18 +15,17 @@ from ribbonopt.accuracy.estimate import LEAST, analyse
 from ribbonopt.arrays import Array
 from ribbonopt.problem import Ribbon
 from ribbonopt.solution.solution import Solution
-from ribbonopt.solution.verification import Verification, unverified
+from ribbonopt.solution.verification import NO_LENGTH, Verification, unverified
 from ribbonopt.transcription.buffered import Buffered
 
 TOLERANCE = 1e-8
 SPARE, MOST = 10.0, 1e-2  # times the estimated error; of the strains: how far off the law may be
-SHORT = 1e-9  # of the length: a phase that is shorter is not there
 JUMP = 1e-6  # of the largest moment, on either side of a jump of the law
 
 
 def verify(solution: Solution, ribbon: Ribbon) -> Verification:
     """Check a solution against its scene."""
-    if not (np.diff(solution.trajectory.ends) > SHORT).all():
+    if not (np.diff(solution.trajectory.ends) > NO_LENGTH).all():
         problem = "a phase between two sign changes of m2 has no length"
         return replace(unverified(), problems=(problem,))
     worst_name, worst = _worst_condition(solution, ribbon)

@@ -19,7 +19,14 @@ from ribbonopt.arrays import Array
 from ribbonopt.attempt.attempt import Attempt
 from ribbonopt.attempt.ledger import Ledger
 from ribbonopt.attempt.structure import Structure
-from ribbonopt.checks.arcs import MIXTURE, Arcs, is_mixture, sign_changes, with_mixtures
+from ribbonopt.checks.arcs import (
+    MIXTURE,
+    Arcs,
+    is_mixture,
+    sign_changes,
+    with_mixtures,
+    without_empty,
+)
 from ribbonopt.guess import Guess
 from ribbonopt.guess.balanced import Balanced
 from ribbonopt.guess.flat import Flattened, nearly_flat
@@ -79,7 +86,15 @@ class Search:
         structure = self.structure.in_phases(arcs.kinds)
         mesh = structure.mesh(arcs.switches, least)
         attempt = structure.attempt(self.posed, self.ledger, mesh, arcs.switches)
-        return self._kept(attempt).run(source, quick=True)
+        done = self._kept(attempt).run(source, quick=True)
+        found = attempt.best
+        if found is None or not found.status.converged:
+            return False
+        fewer = without_empty(found)
+        if fewer is not None and self.run_in(fewer, found, least):
+            return True
+        self._kept(attempt)
+        return done
 
     def run_smooth(self, guess: Solution) -> bool:
         """Try an equilibrium of the smooth law; they come with delta increasing."""
