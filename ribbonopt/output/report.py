@@ -55,9 +55,10 @@ def _phases(s: Mapping[str, Any]) -> list[str]:
         lines.append(f"  half twists              {s['half_twists']}")
     if s["phases"]:
         at = ", ".join(f"{point:.6g}" for point in s["switch_points"])
+        where = f"; switches at s = {at}" if at else " all along"
         words = {1: "m2 > 0", -1: "m2 < 0", 0: "m2 = 0 (mixture)"}
         arcs = ", ".join(words[kind] for kind in s["phases"])
-        lines.append(f"  phases                   {arcs}; switches at s = {at}")
+        lines.append(f"  phases                   {arcs}{where}")
     return lines
 
 

@@ -19,8 +19,17 @@ from ribbonopt.arrays import Array
 from ribbonopt.attempt.attempt import Attempt
 from ribbonopt.attempt.ledger import Ledger
 from ribbonopt.attempt.structure import Structure
-from ribbonopt.checks.arcs import Arcs, sign_changes, with_mixtures
+from ribbonopt.checks.arcs import (
+    MIXTURE,
+    Arcs,
+    is_mixture,
+    sign_changes,
+    with_mixtures,
+    without_empty,
+)
 from ribbonopt.guess import Guess
+from ribbonopt.guess.balanced import Balanced
+from ribbonopt.guess.flat import Flattened, nearly_flat
 from ribbonopt.problem import Posed
 from ribbonopt.scene import Scene
 from ribbonopt.solution.solution import Solution
@@ -60,14 +69,32 @@ class Search:
         A guess that has phases itself is tried in these first.
         """
         if isinstance(guess, Solution) and guess.sheets and self.phases_help:
-            if self._run_phases(Arcs(guess.sheets, guess.trajectory.ends[1:-1]), guess):
+            if self.run_in(Arcs(guess.sheets, guess.trajectory.ends[1:-1]), guess):
+                return True
+        if self.needs_phases and not isinstance(guess, Solution) and is_mixture(guess):
+            if self.run_in(MIXTURE, Balanced(guess)):
                 return True
         if not self.plain.run(guess, quick=quick, check=not self.phases_help):
             return False
-        found = self.plain.best
+        found = self._flattened(self.plain.best)
         if found is not None and self._in_given_phases(found):
             return True
         return self.plain.check() and found is not None and not self.jumps(found)
+
+    def run_in(self, arcs: Arcs, source: Guess, least: int = 0) -> bool:
+        """Try a guess in phases, on `least` intervals or more; whether that succeeds."""
+        structure = self.structure.in_phases(arcs.kinds)
+        mesh = structure.mesh(arcs.switches, least)
+        attempt = structure.attempt(self.posed, self.ledger, mesh, arcs.switches)
+        done = self._kept(attempt).run(source, quick=True)
+        found = attempt.best
+        if found is None or not found.status.converged:
+            return False
+        fewer = without_empty(found)
+        if fewer is not None and self.run_in(fewer, found, least):
+            return True
+        self._kept(attempt)
+        return done
 
     def run_smooth(self, guess: Solution) -> bool:
         """Try an equilibrium of the smooth law; they come with delta increasing."""
@@ -80,9 +107,9 @@ class Search:
             )
         if len(self.smooth) == 2:
             blunt, sharp = self.smooth
-            arcs = with_mixtures(sharp, blunt)
-            if 0 in arcs.kinds:
-                return self._run_phases(arcs, sharp)
+            for arcs in with_mixtures(sharp, blunt):
+                if self.run_in(*self._freed(arcs, sharp)):
+                    return True
         return self.run(guess, quick=True)
 
     def run_all(self, guesses: Iterable[Guess]) -> bool:
@@ -98,6 +125,17 @@ class Search:
             first = first or guess
         # All that was spared to be quick.
         return first is not None and not self.needs_phases and self.run(first)
+
+    @property
+    def settled(self) -> bool:
+        """Whether there is a solution of the law that is asked for."""
+        best = self.best
+        return best is not None and best.verified and self.smooth_instead is None
+
+    @property
+    def energy(self) -> float:
+        """Energy of the best solution (Dw = L = 1)."""
+        return np.inf if self.best is None else self.best.trajectory.energy
 
     @property
     def smooth_instead(self) -> Solution | None:
@@ -146,15 +184,29 @@ class Search:
         if not self.phases_help:
             return False
         if isinstance(self.posed.scene.switching, tuple):
-            if self._run_phases(_given(source, self.posed.scene), source):
+            if self.run_in(_given(source, self.posed.scene), source):
                 return True
         arcs = sign_changes(source)
-        return len(arcs.kinds) > 1 and self._run_phases(arcs, source)
+        return len(arcs.kinds) > 1 and self.run_in(arcs, source)
 
-    def _run_phases(self, arcs: Arcs, source: Solution) -> bool:
-        structure = self.structure.in_phases(arcs.kinds)
-        attempt = structure.attempt(self.posed, self.ledger, switches=arcs.switches)
-        return self._kept(attempt).run(source, quick=True)
+    def _freed(self, arcs: Arcs, source: Guess) -> tuple[Arcs, Guess]:
+        """Return arcs and a guess: nearer, for a mixture from end to end, by leaving m2 free."""
+        if arcs.kinds != MIXTURE.kinds:
+            return arcs, source
+        attempt = self.structure.in_phases(arcs.kinds, free=True).attempt(self.posed, self.ledger)
+        attempt.run(source, quick=True, check=False)
+        found = attempt.best
+        return arcs, source if found is None or not found.status.converged else found
+
+    def _flattened(self, found: Solution | None) -> Solution | None:
+        """Return what lies in a plane but for a little within it, if there it is a solution."""
+        if found is None or not self.needs_phases or not nearly_flat(found):
+            return found
+        attempt = self.structure.attempt(self.posed, self.ledger)
+        if attempt.run(Flattened(found), quick=True) and attempt.best is not None:
+            if not self.jumps(attempt.best):
+                self.plain = self._kept(attempt)
+        return self.plain.best
 
     def _kept(self, attempt: Attempt) -> Attempt:
         self.last = attempt

@@ -171,12 +171,19 @@ class ConstitutiveLaw(ABC):
         """
         return self
 
-    def entering(self, kind: int, before: int, stress: Stress) -> Mapping[str, ca.SX]:
-        """Conditions, by name, where a phase of a kind begins after one of kind `before`."""
+    def entering(self, kinds: tuple[int, ...], i: int, stress: Stress) -> Mapping[str, ca.SX]:
+        """Conditions, by name, where phase i > 0 of phases of these kinds begins.
+
+        As many in all as there are phases after the first: their lengths are unknown.
+        """
         return {}
 
     def margins(self, kind: int, stress: Stress, u: ca.SX) -> Mapping[str, ca.SX]:
         """Return what must not be negative along a phase, by what is wrong where it is."""
+        return {}
+
+    def zeros(self, kind: int, stress: Stress) -> Mapping[str, ca.SX]:
+        """Return what must be zero along a phase, by what is wrong where it is not."""
         return {}
 
 
