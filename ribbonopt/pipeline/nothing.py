@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import replace
+from typing import TYPE_CHECKING
 
 from ribbonopt.arrays import Array
 from ribbonopt.checks.winding import winds_as
@@ -22,6 +23,10 @@ from ribbonopt.starts.loops import fundamental_scene
 from ribbonopt.starts.unfold import Unfolded, unfolded
 
 from .search import Search
+from .sharpening import with_sharper
+
+if TYPE_CHECKING:
+    from .prepared import Prepared
 
 SAME = 1e-6  # relative, of energies
 MORE = 1.5  # times the energy of a helix that nearly fits
@@ -31,7 +36,7 @@ LEAST = 4  # intervals on every piece of a guess that is nearly the solution
 def from_nothing(
     search: Search,
     guesses: Callable[..., Iterable[Guess]],
-    solve: Callable[[Scene], Solution],
+    prepare: Callable[[Scene], Prepared],
 ) -> Search:
     """Return the search that led to a solution, or the one given.
 
@@ -41,17 +46,18 @@ def from_nothing(
         Nothing has led anywhere in it so far.
     guesses
         Gives those of the automatic start, from a `shape` if there is one.
-    solve
-        Solves another scene, on its own number of intervals.
+    prepare
+        Builds what solves another scene.
     """
     posed = search.posed
     scene = fundamental_scene(posed.scene) if search.needs_phases else None
     if scene is not None:
-        piece = solve(replace(scene, tolerance=None))
+        piece = prepare(replace(scene, tolerance=None)).solve_once()
         search.ledger.steps.extend(piece.steps)
         if piece.verified and _run_unfolded(search, unfolded(piece, posed)):
             return search
-    search.run_all(guesses())
+    start = guesses()
+    search.run_all(with_sharper(start, prepare) if search.needs_phases else start)
     wound = winding(posed.scene.boundary, posed.scene.parameters)
     return _less_energy(search, guesses) if wound is None else _as_wound(search, wound)
 

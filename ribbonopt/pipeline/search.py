@@ -30,6 +30,7 @@ from ribbonopt.checks.arcs import (
 from ribbonopt.guess import Guess
 from ribbonopt.guess.balanced import Balanced
 from ribbonopt.guess.flat import Flattened, nearly_flat
+from ribbonopt.mechanics.laws.smooth import sharpness
 from ribbonopt.problem import Posed
 from ribbonopt.scene import Scene
 from ribbonopt.solution.solution import Solution
@@ -49,13 +50,16 @@ class Search:
     ledger : Ledger
         Steps so far, with their cost.
     smooth : list of Solution
-        Equilibria of the smooth law met on the way, delta decreasing.
+        Equilibria of the smooth law met on the way.
+    tried : set of tuples of int
+        Kinds of phases that sharper ones of these showed, and that led nowhere.
     """
 
     posed: Posed
     structure: Structure
     ledger: Ledger = field(default_factory=Ledger)
     smooth: list[Solution] = field(default_factory=list)
+    tried: set[tuple[int, ...]] = field(default_factory=set)
     last: Attempt | None = None
 
     @cached_property
@@ -97,20 +101,31 @@ class Search:
         return done
 
     def run_smooth(self, guess: Solution) -> bool:
-        """Try an equilibrium of the smooth law; they come with delta increasing."""
-        self.smooth.insert(0, guess)
+        """Try an equilibrium of the smooth law.
+
+        The first one is sharp; sharper ones may follow, then blunter ones.
+        """
+        sharpest = self.sharpest
+        self.smooth.append(guess)
         if not self.phases_help:
             return self.plain.run(guess, quick=True)
-        if len(self.smooth) == 1:
+        if sharpest is None:
             return self._in_given_phases(guess) or (
                 not self.jumps(guess) and self.run(guess, quick=True)
             )
-        if len(self.smooth) == 2:
-            blunt, sharp = self.smooth
-            for arcs in with_mixtures(sharp, blunt):
+        sharp, blunt = sorted((guess, sharpest), key=_bluntness)
+        if sharp is guess or len(self.smooth) == 2:
+            every = list(with_mixtures(sharp, blunt))
+            if sharp is guess and self.jumps(sharp):
+                every.append(sign_changes(sharp))
+            for arcs in every:
+                if arcs.kinds in self.tried:
+                    continue
+                if arcs.kinds != MIXTURE.kinds:
+                    self.tried.add(arcs.kinds)
                 if self.run_in(*self._freed(arcs, sharp)):
                     return True
-        return self.run(guess, quick=True)
+        return sharp is not guess and self.run(guess, quick=True)
 
     def run_all(self, guesses: Iterable[Guess]) -> bool:
         """Try the guesses of an automatic start, equilibria of the smooth law among them."""
@@ -130,7 +145,7 @@ class Search:
     def settled(self) -> bool:
         """Whether there is a solution of the law that is asked for."""
         best = self.best
-        return best is not None and best.verified and self.smooth_instead is None
+        return best is not None and best.verified and not self.smooth_instead
 
     @property
     def energy(self) -> float:
@@ -138,13 +153,18 @@ class Search:
         return np.inf if self.best is None else self.best.trajectory.energy
 
     @property
-    def smooth_instead(self) -> Solution | None:
-        """The smooth law's sharpest equilibrium where none of a law that needs phases was found."""
+    def smooth_instead(self) -> list[Solution]:
+        """Equilibria of the smooth law, sharpest first, where none was found of one with phases."""
         best = self.best
-        if best is None or not (self.needs_phases and self.smooth):
-            return None
+        if best is None or not self.needs_phases:
+            return []
         wrong = not best.verified or (self.jumps(best) and not best.sheets)
-        return self.smooth[-1] if wrong else None
+        return sorted(self.smooth, key=_bluntness) if wrong else []
+
+    @property
+    def sharpest(self) -> Solution | None:
+        """The sharpest equilibrium of the smooth law that was met."""
+        return min(self.smooth, key=_bluntness, default=None)
 
     def changes_sign(self, solution: Solution) -> bool:
         """Whether m2 changes sign along a solution."""
@@ -211,6 +231,10 @@ class Search:
     def _kept(self, attempt: Attempt) -> Attempt:
         self.last = attempt
         return attempt
+
+
+def _bluntness(solution: Solution) -> float:
+    return sharpness(solution.posed.scene.law, 1.0)
 
 
 def _given(source: Solution, scene: Scene) -> Arcs:
