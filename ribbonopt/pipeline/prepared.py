@@ -163,7 +163,10 @@ class Prepared:
             search.ledger.note(step, time.perf_counter() - started)
         led = own is not None and search.run(own, quick=quick)
         if not led and (own is None or fallback):
-            search.run_all(self.automatic.guesses(posed, search.ledger))
+            from .nothing import from_nothing  # IPOPT, which many scenes do without
+
+            guesses = partial(self.automatic.guesses, posed, search.ledger)
+            search = from_nothing(search, guesses, prepare)
         if not led and own is not None and fallback:
             what = "the guess given" if guess else f"the guess ({words(posed.scene.guess)})"
             search.ledger.give_up(f"{what} led nowhere and was given up for the automatic start")
@@ -176,7 +179,12 @@ class Prepared:
             raise _no_start()
         best = replace(best, steps=tuple(ledger.steps))
         smooth = search.smooth_instead
-        best = self.refined(best) if smooth is None else _regularized(best, smooth) or best
+        found = (_regularized(best, one) for one in smooth)
+        best = next(filter(None, found), best) if smooth else self.refined(best)
+        if best.sheets != () and not best.verified or best.status is Status.TOLERANCE_MISSED:
+            from .sharpening import without_phases  # after a failure only
+
+            best = without_phases(search, self, prepare) or best
         return replace(
             best,
             timings=ledger.timings(self.seconds, seconds),

@@ -14,7 +14,6 @@ from ribbonopt.accuracy.estimate import relative_error
 from ribbonopt.arrays import Array
 from ribbonopt.attempt.attempt import Attempt, verified
 from ribbonopt.pipeline.prepared import Prepared
-from ribbonopt.pipeline.refinement import SAFE
 from ribbonopt.solution.solution import Solution
 from ribbonopt.solvers import SolveReport
 from ribbonopt.solvers.extended import ExtendedSystem, Local, local
@@ -94,7 +93,7 @@ class RibbonEquations:
         tolerance = found.scene.tolerance
         if not found.sheets and self._needs_phases(found):
             found = self.prepared.solve(found.posed, guess=found, fallback=False)
-        elif tolerance is not None and relative_error(found)[0] > SAFE * tolerance:
+        elif tolerance is not None and relative_error(found)[0] > tolerance:
             found = self.prepared.refined(found, SPARE)
         else:
             found = verified(found, self.prepared.ribbon)
