@@ -1,6 +1,7 @@
 """One answer of `ribbonopt` beside the truth of `tests/independent`: true errors and bars.
 
-Every quantity is a triple: true error, estimated error (None: not known), error of the truth.
+Of every quantity: true error, estimated error (None: not known), error of the truth, and the size
+of what it is a part of (loads, strains, 1 for places and directors), of which rounding is a share.
 All are absolute, vectors by their largest component, units Dw = L = 1.
 """
 
@@ -118,8 +119,10 @@ def truth_of(found: Solution) -> independent.Truth:
     )
 
 
-def compared(found: Solution, truth: independent.Truth) -> dict[str, tuple[float, Any, float]]:
-    """Return true error, bar and the truth's own error of every quantity."""
+def compared(
+    found: Solution, truth: independent.Truth
+) -> dict[str, tuple[float, Any, float, float]]:
+    """Return true error, bar, the truth's own error and size of every quantity."""
     try:
         bars = estimate_error(found)
     except np.linalg.LinAlgError:
@@ -145,8 +148,12 @@ def compared(found: Solution, truth: independent.Truth) -> dict[str, tuple[float
         exact, other = (p.at(point)[name] for p in (path, coarse))
         pick = (0,) if part is None else (0, part)
         values[text] = (found.sample(float(at), formula), exact[pick], other[pick])
+    loads = max(gap(path.n, 0), gap(path.m0, 0))
+    size = {"n": loads, "m": loads, "H": max(loads, gap(theirs["H"], 0)), "u": gap(theirs["u"], 0)}
+    size["e"] = abs(path.energy)
     return {
-        name: (gap(a, b), number(bars.get(name)), gap(b, c)) for name, (a, b, c) in values.items()
+        name: (gap(a, b), number(bars.get(name)), gap(b, c), size.get(name[0], 1.0))
+        for name, (a, b, c) in values.items()
     }
 
 

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 Row = dict[str, Any]
-ROUNDING = 1e-13  # of a size of 1 to 100: true errors below are taken to be as large
+ROUNDING = 1e-13  # relative: true errors below are taken to be as large
 WORST = 40
 COLOURS = {"sadowsky": "#c2410c", "regularized": "#2f7d32", "variational": "#1f5fa8"}
 
@@ -19,15 +19,17 @@ def judged(row: Row) -> list[Row]:
     """Return what is to be said of every quantity of an answer.
 
     `holds`: the truth is inside the bar, None where the truth's own error leaves it open;
-    `tight`: the bar is at most ten times the true error; both None where the bar is not known.
+    `tight`: the bar is at most ten times the true error or rounding; both None where it is not
+    known.
     """
     result = []
-    for name, (true, bar, own) in row.get("quantities", {}).items():
+    for name, (true, bar, own, size) in row.get("quantities", {}).items():
         words: Row = {k: row[k] for k in ("law", "tolerance", "clamp", "status")}
         words |= {"quantity": name, "true": true, "bar": bar, "own": own, "known": bar is not None}
+        words["floor"] = floor = max(true, own, ROUNDING * size)
         holds = tight = None
         if bar is not None:
-            tight = bar <= 10 * max(true, own, ROUNDING)
+            tight = bar <= 10 * floor
             if true + own <= bar or (true <= bar and own <= true / 10):
                 holds = True
             elif true - own > bar:
@@ -45,7 +47,7 @@ def summarised(rows: Sequence[Row]) -> Row:
     tight = [q["tight"] for q in every if q["tight"] is not None]
     seconds = [row["seconds"] for row in rows]
     refuted = [_place(row) for row in rows if row["verdict"] in ("none", "elsewhere")]
-    labelled = status["REGULARIZED"] + status["TOLERANCE_MISSED"]
+    labelled = sum(status[k] for k in ("REGULARIZED", "TOLERANCE_MISSED", "ROUNDED"))
     return {
         "answers": len(rows),
         "exact": _share(status["CONVERGED"], len(rows)),
@@ -83,7 +85,7 @@ def offenders(rows: Sequence[Row]) -> tuple[list[Row], list[Row]]:
     small = [q for q in every if q["holds"] is False]
     large = [q for q in every if q["tight"] is False]
     small.sort(key=lambda q: -q["true"] / q["bar"])
-    large.sort(key=lambda q: -q["bar"] / max(q["true"], q["own"], ROUNDING))
+    large.sort(key=lambda q: -q["bar"] / q["floor"])
     return small, large
 
 
