@@ -17,6 +17,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ribbonopt.arrays import Array
 from ribbonopt.solution.solution import Solution
@@ -26,6 +27,7 @@ from ribbonopt.solvers.condense import CondensedSystem
 from .layers import Layers, between, layers, overlooked
 
 ROUNDING = 1e-15
+UNIT = 3e-16  # local error by rounding alone
 LEAST = 1e-3  # size of an answer, Dw = L = 1, below which its error counts absolutely
 SAFETY = 4.0  # bar over estimate: what the next better scheme itself may miss
 DOUBTFUL = 3.0  # times the difference of the schemes, from which on errors are not known
@@ -131,7 +133,7 @@ def _analysed(trajectory: Trajectory, near: CondensedSystem | None, keep: bool) 
     witnessed = np.maximum(_witness(better, split), overlooked(trajectory, near_by))
     local, doubt = _more(local, witnessed)
     # Rounding of one element counts as its local error does.
-    rounding = 1 + len(local) * ROUNDING / float(local.sum())
+    rounding = 1 + len(local) * UNIT / float(local.sum())
     errors = {name: error * doubt * rounding for name, error in errors.items()}
     # Between the nodes the output starts from the node before, with the error of that element.
     states, strains, inside = _between(trajectory, better, near_by)
@@ -209,9 +211,10 @@ def _shifted(trajectory: Trajectory, nodes: Array) -> dict[str, Array]:
     return found | {"u": ours["u"] + shift * slope}
 
 
-def _same_side(ours: Mapping[str, Array], theirs: Mapping[str, Array]) -> Array:
+def _same_side(ours: Mapping[str, Array], theirs: Mapping[str, Array]) -> NDArray[np.bool_]:
     """Places (k,) where two solutions are on the same side of a jump that strains may have."""
-    return np.asarray(ours["switching"] * theirs["switching"] > 0) | (ours["leap"] == 0)
+    same: NDArray[np.bool_] = (ours["switching"] * theirs["switching"] > 0) | (ours["leap"] == 0)
+    return same
 
 
 def _sizes(trajectory: Trajectory) -> dict[str, float]:

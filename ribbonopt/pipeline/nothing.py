@@ -17,7 +17,6 @@ from ribbonopt.guess import Guess
 from ribbonopt.guess.flat import Flattened, nearly_flat
 from ribbonopt.mechanics.ends.winding import winding
 from ribbonopt.scene import Scene
-from ribbonopt.solution.solution import Solution
 from ribbonopt.starts.helix import helix_between, wound_evenly
 from ribbonopt.starts.loops import fundamental_scene
 from ribbonopt.starts.unfold import Unfolded, unfolded

@@ -179,9 +179,10 @@ class Prepared:
             raise _no_start()
         best = replace(best, steps=tuple(ledger.steps))
         smooth = search.smooth_instead
-        found = (_regularized(best, one) for one in smooth)
+        found = (_regularized(best, one) for one in smooth)  # on demand
         best = next(filter(None, found), best) if smooth else self.refined(best)
-        if best.sheets != () and not best.verified or best.status is Status.TOLERANCE_MISSED:
+        in_vain = bool(best.sheets) and not best.verified
+        if in_vain or best.status is Status.TOLERANCE_MISSED:
             from .sharpening import without_phases  # after a failure only
 
             best = without_phases(search, self, prepare) or best
