@@ -53,11 +53,6 @@ class Path:
         """Moments (3, K + 1) at the joints, lab frame."""
         return self.m0[:, None] + cross(self.n[:, None], self.r - self.r[:, :1])
 
-    @property
-    def at_joints(self) -> tuple[Array, Array]:
-        """Places (K + 1, 3) and frames (K + 1, 3, 3)."""
-        return self.r.T, np.moveaxis(self.frames, 2, 0)
-
     def steps(self) -> tuple[Array, Array, Array]:
         """Way gone, frame at the end and energy of all steps."""
         return step(

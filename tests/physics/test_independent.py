@@ -88,6 +88,7 @@ def test_a_jump_of_the_curvature_is_a_phase_of_its_own() -> None:
     assert len(truth.path.kinds) > 1
     H = truth.path.at(np.linspace(0, 1, 57))["H"]
     np.testing.assert_allclose(H, H[0], rtol=0, atol=1e-11)
+    np.testing.assert_allclose(truth.path.n, n, rtol=0, atol=1e-9)  # as integrated in one go
 
 
 def test_sharp_layers_are_seen() -> None:
@@ -97,6 +98,22 @@ def test_sharp_layers_are_seen() -> None:
     assert truth.verdict == "found", truth.reason
     H = truth.path.at(np.linspace(0, 1, 57))["H"]
     np.testing.assert_allclose(H, H[0], rtol=0, atol=1e-10)
+
+
+def test_what_is_no_equilibrium_is_refuted() -> None:
+    """The wrong sheet; and places that are no equilibrium, from which another one is found."""
+    n, m0 = np.array([0.0, 12.5, 8.3]), np.array([0.0, 2.5, 5.8])
+    places, frames = shot(Law("sadowsky"), n, m0, np.zeros(3), FRAME)(np.array([0.0, 1.0]))
+    end = places[1], frames[1]
+
+    def straightened(s: Array) -> tuple[Array, Array]:
+        r, d = shot(Law("kirchhoff"), 0.3 * n, 0.6 * m0, np.zeros(3), FRAME)(s)
+        return r + np.outer(s, end[0] - r[-1] * (len(s) > 0)), d
+
+    near = shot(Law("sadowsky"), n, m0, np.zeros(3), FRAME)
+    assert polish(Law("sadowsky"), n, m0, near, end, kinds=(-1,)).verdict == "none"
+    truth = polish(Law("sadowsky"), n, m0, straightened, end, kinds=(1,))
+    assert truth.verdict == "none" or truth.moved > 1e-2
 
 
 @pytest.mark.parametrize("shortening", ELASTICA)
