@@ -11,7 +11,7 @@ from ribbonopt.arrays import Array
 from ribbonopt.scene.stages import parse_record
 from ribbonopt.solution.solution import Solution
 
-from .estimate import DOUBTFUL, ROUNDING, SAFETY, analyse
+from .estimate import ROUNDING, SAFETY, analyse
 
 AROUND = np.array([0.0, -0.15, 0.15])  # of an element: errors vanish here and there
 
@@ -35,7 +35,7 @@ def recorded_errors(solution: Solution) -> dict[str, float]:
         return {}
     found = analyse(solution)
     better = replace(solution, trajectory=found.better)
-    bar = SAFETY * found.doubt if found.doubt <= DOUBTFUL else math.nan
+    bar = SAFETY * found.more if found.known else math.nan
     result = {}
     for name, text, s in _formulas(solution):
         places = _near(solution, s)
