@@ -132,7 +132,7 @@ def between(trajectory: Trajectory, found: tuple[Layers, ...]) -> tuple[Array, N
 
 
 def overlooked(trajectory: Trajectory, found: tuple[Layers, ...]) -> Array:
-    """Local errors (N,) of all elements that no stage can have seen; (1,) zero if there are none."""
+    """Local errors (N,) of elements that no stage can have seen; (1,) zero if there are none."""
     blocks = trajectory.dense.blocks
     if not any(map(len, found)):
         return np.zeros(1)
