@@ -11,6 +11,7 @@ import numpy as np
 
 from ribbonopt.accuracy.estimate import estimate_error
 from ribbonopt.checks.topology import count_half_twists
+from ribbonopt.checks.validity import warnings_of
 from ribbonopt.plain import finite
 from ribbonopt.problem import formulation_name
 from ribbonopt.solution.solution import Solution
@@ -65,19 +66,10 @@ def summarize(solution: Solution) -> dict[str, Any]:
         "timings": dict(solution.timings),
         "versions": versions(),
         "units": solution.units.name,
-        "warnings": _warnings(solution),
+        "warnings": warnings_of(solution),
     }
     plain: dict[str, Any] = finite(summary)
     return plain
-
-
-def _warnings(solution: Solution) -> list[str]:
-    """Return reasons to doubt the model, which only sizes in SI can give."""
-    if solution.scene.ribbon is None:
-        return []
-    from ribbonopt.checks.validity import warnings_of
-
-    return warnings_of(solution)
 
 
 def _equilibrium(solution: Solution) -> dict[str, Any]:
