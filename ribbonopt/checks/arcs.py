@@ -29,6 +29,12 @@ class Arcs:
     switches: Array
 
 
+def phase_words(kinds: tuple[int, ...]) -> str:
+    """Return the kinds of phases in words."""
+    words = {1: "m2 > 0", -1: "m2 < 0", 0: "m2 = 0 (mixture)"}
+    return ", ".join(words[kind] for kind in kinds) or "one, without a sign change"
+
+
 def sign_changes(solution: Solution) -> Arcs:
     """Return the arcs between sign changes of the law's switch, as far as the stages can tell.
 

@@ -27,7 +27,7 @@ FLAT = 1e-9  # of the largest moment, or of D w / L: below it m3 counts as zero
 
 
 def warnings_of(solution: Solution) -> list[str]:
-    """Return a sentence for each reason to doubt the answer or, where there are sizes, the model."""
+    """Return a sentence for each reason to doubt the answer or, with sizes, the model."""
     ribbon, converged = solution.scene.ribbon, solution.status.converged
     result = []
     if ribbon is not None:

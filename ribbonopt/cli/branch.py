@@ -133,6 +133,8 @@ def _report(folder: BranchFolder, continuation: Continuation) -> str:
         rows = [r for r in folder.rows if (r["stage"], r["branch"]) == (stage, branch)]
         where = f"stage {stage + 1}" + (f", branch {branch}" if branch else "")
         lines.append(f"  {where}: {_extent(rows)}: {ending.reason}")
+        noted = [row for row in rows if row.get("note")]
+        lines += [f"    note at {r['parameter']} = {r['value']:.6g}: {r['note']}" for r in noted]
         for row in rows:
             if row["kind"] != "point":
                 lines.append(f"    {row['kind']} at {row['parameter']} = {row['value']:.10g}")

@@ -62,6 +62,7 @@ def summarize(solution: Solution) -> dict[str, Any]:
         "equilibria": [_equilibrium(found) for found in (solution, *solution.others)],
         "path": [dict(step) for step in solution.steps],
         "given_up": list(solution.given_up),
+        "fell_back": list(solution.fell_back),
         "skipped": list(solution.skipped),
         "timings": dict(solution.timings),
         "versions": versions(),

@@ -24,6 +24,7 @@ from ribbonopt.transcription import NLP
 
 from .search import Search
 from .skipped import skipped
+from .told import of_finer_mesh, of_starts
 
 if TYPE_CHECKING:
     from ribbonopt.solvers import Solver
@@ -99,7 +100,7 @@ class Prepared:
         if found.status is Status.TOLERANCE_MISSED and guess is None:
             from ribbonopt.pipeline.refinement import on_finer_mesh  # after a failure only
 
-            found = on_finer_mesh(found, lambda s: prepare(s).solve_once())
+            found = of_finer_mesh(found, on_finer_mesh(found, lambda s: prepare(s).solve_once()))
         return found
 
     def solve_once(self) -> Solution:
@@ -110,8 +111,8 @@ class Prepared:
         """Solve a scene (default: the prepared one) from one guess that is thought to be near."""
         started = time.perf_counter()
         search = self.search(scene)
-        _ = search.run_smooth(guess) if isinstance(guess, Solution) else search.run(guess)
-        return self._with_costs(search, time.perf_counter() - started)
+        done = search.run_smooth(guess) if isinstance(guess, Solution) else search.run(guess)
+        return self._with_costs(search, time.perf_counter() - started, done)
 
     def search(self, scene: Scene | Posed | None = None) -> Search:
         """Return a search for solutions of a scene of this structure; nothing is solved yet."""
@@ -161,27 +162,30 @@ class Prepared:
         if own is not None:
             step = "guess: given" if guess else f"guess: {words(posed.scene.guess)}"
             search.ledger.note(step, time.perf_counter() - started)
-        led = own is not None and search.run(own, quick=quick)
+        led = done = own is not None and search.run(own, quick=quick)
         if not led and (own is None or fallback):
-            search.run_all(self.automatic.guesses(posed, search.ledger))
+            done = search.run_all(self.automatic.guesses(posed, search.ledger))
         if not led and own is not None and fallback:
             what = "the guess given" if guess else f"the guess ({words(posed.scene.guess)})"
             search.ledger.give_up(f"{what} led nowhere and was given up for the automatic start")
-        return self._with_costs(search, time.perf_counter() - started)
+        return self._with_costs(search, time.perf_counter() - started, done)
 
-    def _with_costs(self, search: Search, seconds: float) -> Solution:
+    def _with_costs(self, search: Search, seconds: float, done: bool) -> Solution:
         """Return the best solution found, with what it has cost."""
         ledger, best = search.ledger, search.best
         if best is None:
             raise _no_start()
         best = replace(best, steps=tuple(ledger.steps))
         smooth = search.smooth_instead
-        best = self.refined(best) if smooth is None else _regularized(best, smooth) or best
+        if smooth is not None:
+            best = _regularized(best, smooth) or best
+        best = self.refined(best if done else search.judged(best))
         return replace(
             best,
             timings=ledger.timings(self.seconds, seconds),
             iterations=ledger.iterations,
-            given_up=tuple(ledger.given_up),
+            given_up=(*ledger.given_up, *search.other_phases),
+            fell_back=tuple(ledger.fell_back.values()),
             skipped=skipped(search.posed, self.problem, ledger, best.sheets),
         )
 
@@ -212,7 +216,8 @@ def solve(scene: Scene) -> Solution:
         return solution
     from ribbonopt.starts.equilibria import equilibria  # few scenes ask for it
 
-    return equilibria(prepared.posed(), solution, prepared.automatic, prepared.polish)
+    found = equilibria(prepared.posed(), solution, prepared.automatic, prepared.polish)
+    return of_starts(solution, found)
 
 
 def prepare(scene: Scene) -> Prepared:

@@ -10,7 +10,7 @@ phase assumes.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -24,6 +24,7 @@ from ribbonopt.guess import Guess
 from ribbonopt.problem import Posed
 from ribbonopt.scene import Scene
 from ribbonopt.solution.solution import Solution
+from ribbonopt.solvers import Status
 from ribbonopt.transcription import Mesh
 
 
@@ -107,6 +108,27 @@ class Search:
             return None
         wrong = not best.verified or (self.jumps(best) and not best.sheets)
         return self.smooth[-1] if wrong else None
+
+    def judged(self, best: Solution) -> Solution:
+        """Return a solution, as a wrong one where its strains jump without a phase that ends there.
+
+        Newton's method may report success on one (see the module), which is then not refined.
+        """
+        if not best.verified or best.sheets or not self.jumps(best):
+            return best
+        what = "m2 changes sign along it, and no phases that end there were found"
+        status = Status.WRONG_SOLUTION
+        return replace(best, status=status, message=f"{status.value}. {what}")
+
+    @property
+    def other_phases(self) -> tuple[str, ...]:
+        """What the scene says of its phases and the solution does not have."""
+        named, best = self.posed.scene.switching, self.best
+        if not isinstance(named, tuple) or best is None or not best.verified:
+            return ()
+        wanted, found = len(named) + 1, max(len(best.sheets), 1)
+        words = f"the sign changes that `switching` names led nowhere: {found} phases, not {wanted}"
+        return () if found == wanted else (words,)
 
     def changes_sign(self, solution: Solution) -> bool:
         """Whether m2 changes sign along a solution."""

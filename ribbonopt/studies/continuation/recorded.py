@@ -25,7 +25,7 @@ NUMBERS = (
     *("value", "error", *ANSWERS),
     *("number", "stage", "branch", "negative", "intervals", "iterations"),
 )
-WORDS = ("parameter", "kind", "switches")
+WORDS = ("parameter", "kind", "switches", "note")
 
 
 class Recorder:
@@ -86,6 +86,8 @@ class Recorder:
         row["switches"] = solution.switch_points.tolist()
         row["intervals"] = solution.dense.blocks.layout.element_count
         row["iterations"] = solution.iterations
+        told = (*solution.given_up, *solution.fell_back)
+        row["note"] = "; ".join(filter(None, [point.note, *told]))
         return row
 
 

@@ -13,6 +13,7 @@ import numpy as np
 from ribbonopt.accuracy.estimate import relative_error
 from ribbonopt.arrays import Array
 from ribbonopt.attempt.attempt import Attempt, verified
+from ribbonopt.checks.arcs import phase_words
 from ribbonopt.pipeline.prepared import Prepared
 from ribbonopt.pipeline.refinement import SAFE
 from ribbonopt.solution.solution import Solution
@@ -98,7 +99,7 @@ class RibbonEquations:
             found = self.prepared.refined(found, SPARE)
         else:
             found = verified(found, self.prepared.ribbon)
-        done = _checked(trial, found)
+        done = replace(_checked(trial, found), note=_changed_phases(origin.solution, found))
         if not done.converged and self.prepared.ribbon.law.kinked:
             # Phases may have changed on the way.
             return self._anew(origin.solution, float(trial.unknowns[-1])) or done
@@ -112,7 +113,8 @@ class RibbonEquations:
         """Solve at a position with all that a single scene may need, from a solution near by."""
         found = self.prepared.solve(self.curve.posed_at(position), guess=solution, fallback=False)
         unknowns = np.append(found.dense.w, position)
-        return Trial(found, unknowns, True, found.message) if found.verified else None
+        note = _changed_phases(solution, found)
+        return Trial(found, unknowns, True, found.message, note) if found.verified else None
 
     def _beside(self, solution: Solution, position: float) -> Attempt:
         """Return the means to solve at a position, on the mesh and in the phases of a solution."""
@@ -122,6 +124,13 @@ class RibbonEquations:
     def _needs_phases(self, solution: Solution) -> bool:
         search = self.prepared.search(solution.posed)
         return search.phases_help and search.changes_sign(solution)
+
+
+def _changed_phases(before: Solution, after: Solution) -> str:
+    """Say which phases a point has instead of those of the point before; "" if the same."""
+    if before.sheets == after.sheets:
+        return ""
+    return f"phases: {phase_words(after.sheets)}; at the point before: {phase_words(before.sheets)}"
 
 
 def reduced(solution: Solution, extended: Array) -> Array:

@@ -35,6 +35,8 @@ class Point(Generic[S]):
         POINT, FOLD or BRANCH_POINT.
     row : mapping
         What is recorded, by name.
+    note : str
+        What is to be told of it: how it is other than the continuation of the point before.
     """
 
     solution: S
@@ -47,6 +49,7 @@ class Point(Generic[S]):
     branch: int = 0
     kind: str = POINT
     row: Mapping[str, Any] = field(default_factory=dict)
+    note: str = ""
 
     @property
     def position(self) -> float:

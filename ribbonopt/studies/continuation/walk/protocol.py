@@ -34,12 +34,15 @@ class Trial(Generic[S]):
         Whether it can be a point of the curve.
     message : str
         How it went, in words.
+    note : str
+        What is to be told of it as a point of the curve, "" for nothing.
     """
 
     solution: S
     unknowns: Array
     converged: bool
     message: str
+    note: str = ""
 
 
 class Linearised(Protocol):
