@@ -35,7 +35,7 @@ class Ledger:
         self.given_up.append(what)
 
     def fall_back(self, tried: str, words: str) -> None:
-        """Say what was tried, led nowhere, and what was done instead; the last word on it counts."""
+        """Say what was tried, led nowhere, and what was done instead; the last word counts."""
         self.fell_back[tried] = words
 
     def enter(self, report: SolveReport, words: str) -> None:
