@@ -18,6 +18,7 @@ from ribbonopt.scene import RibbonSizes
 from ribbonopt.solution.solution import Solution
 
 from .shape import contact_problems, planar_problems
+from .zero_moment import zero_moment_problems
 
 SLENDER = 10.0  # least ratio of length to width, and of width to thickness
 WIDEST = 1 / math.sqrt(3)  # w / L of a Moebius band in space (Schwartz 2023)
@@ -34,6 +35,7 @@ def warnings_of(solution: Solution) -> list[str]:
         result += [*_slenderness(ribbon), *_width_of_loop(solution, ribbon)]
         result += _generatrices(solution, ribbon.width) if converged else []
     if converged:
+        result += zero_moment_problems(solution)
         result += [*planar_problems(solution), *contact_problems(solution)]
     return result
 

@@ -12,6 +12,7 @@ import numpy as np
 from ribbonopt.accuracy.estimate import estimate_error
 from ribbonopt.checks.topology import count_half_twists
 from ribbonopt.checks.validity import warnings_of
+from ribbonopt.checks.zero_moment import lacks_linearisation
 from ribbonopt.plain import finite
 from ribbonopt.problem import formulation_name
 from ribbonopt.solution.solution import Solution
@@ -84,8 +85,9 @@ def _equilibrium(solution: Solution) -> dict[str, Any]:
 
 
 def _error_estimate(solution: Solution) -> dict[str, float | None]:
-    """Estimated absolute errors; None without convergence, and for minima (no square system)."""
-    if not solution.status.converged or solution.problem.recovered:
+    """Estimated absolute errors; None without convergence or linearisation, and for minima."""
+    unknown = not solution.status.converged or lacks_linearisation(solution)
+    if unknown or solution.problem.recovered:
         return dict.fromkeys(("n0", "m0", "u0", "H0", "energy", "states"))
     try:
         return dict(estimate_error(solution))

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 from ribbonopt.arrays import Array
 from ribbonopt.attempt.structure import Structure
+from ribbonopt.checks.zero_moment import unbent_share
 from ribbonopt.errors import ConvergenceError
 from ribbonopt.guess import Guess, guess_of, words
 from ribbonopt.problem import BoundaryValueProblem, Posed, Ribbon
@@ -127,7 +128,7 @@ class Prepared:
         scene, if given, remembers what it took.
         """
         tolerance = solution.scene.tolerance
-        if tolerance is None or not solution.verified:
+        if tolerance is None or not solution.verified or unbent_share(solution, self.ribbon.law):
             return solution
         from ribbonopt.pipeline.refinement import AIM, refine  # for scenes with a tolerance
 

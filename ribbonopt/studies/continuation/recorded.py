@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from ribbonopt.accuracy.estimate import relative_error
+from ribbonopt.checks.zero_moment import lacks_linearisation
 from ribbonopt.errors import ModelError
 from ribbonopt.plain import Row, finite
 from ribbonopt.scene import ContinuationStage, Scene
@@ -108,8 +109,8 @@ class StageRecords:
 
 
 def error_of(solution: Solution) -> float | None:
-    """Relative error of the answer; None for minima and singular equations."""
-    if solution.problem.recovered:
+    """Relative error of the answer; None for minima, singular equations and those without slope."""
+    if solution.problem.recovered or lacks_linearisation(solution):
         return None
     try:
         return relative_error(solution)[0]

@@ -14,6 +14,7 @@ from ribbonopt.accuracy.estimate import relative_error
 from ribbonopt.arrays import Array
 from ribbonopt.attempt.attempt import Attempt, verified
 from ribbonopt.checks.arcs import phase_words
+from ribbonopt.checks.zero_moment import unbent_share
 from ribbonopt.pipeline.prepared import Prepared
 from ribbonopt.pipeline.refinement import SAFE
 from ribbonopt.solution.solution import Solution
@@ -95,6 +96,8 @@ class RibbonEquations:
         tolerance = found.scene.tolerance
         if not found.sheets and self._needs_phases(found):
             found = self.prepared.solve(found.posed, guess=found, fallback=False)
+        elif unbent_share(found, self.prepared.ribbon.law):  # no error can be told of it
+            found = verified(found, self.prepared.ribbon)
         elif tolerance is not None and relative_error(found)[0] > SAFE * tolerance:
             found = self.prepared.refined(found, SPARE)
         else:
