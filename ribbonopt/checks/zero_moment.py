@@ -46,11 +46,16 @@ def lacks_linearisation(solution: Solution) -> bool:
     return unbent_share(solution, capabilities(solution.scene.law)) > 0
 
 
-def zero_moment_problems(solution: Solution) -> list[str]:
+def unknown_of(solution: Solution) -> list[str]:
     """Say what is not known of such a state; nothing of all others."""
     share = unbent_share(solution, capabilities(solution.scene.law))
     if not share:
         return []
     where = "the ribbon" if share > 1 - SHORTEST else f"{share:.0%} of the ribbon"
-    words = WORDS.format(where=where, law=solution.scene.law.type)
-    return [f"{words} (a load that buckles it: `continue` finds it)"]
+    return [WORDS.format(where=where, law=solution.scene.law.type)]
+
+
+def zero_moment_problems(solution: Solution) -> list[str]:
+    """Say the same with what finds out more."""
+    more = "`continue` finds the loads that buckle it; `switch: true` follows the buckled ribbon"
+    return [f"{words} ({more})" for words in unknown_of(solution)]

@@ -65,7 +65,7 @@ def places_of(blocks: Blocks, p: Array, ends: Array) -> Array:
         positions = np.hstack([nodes[:, None], local[s]])
         parts.append(ends[i] + (ends[i + 1] - ends[i]) * positions)
     fractions = np.append(np.concatenate(parts).ravel(), 1.0)
-    return np.minimum(fractions, 1.0)
+    return np.asarray(np.minimum(fractions, 1.0))
 
 
 def laid_out(blocks: Blocks, v: Array, constants: Array) -> Array:

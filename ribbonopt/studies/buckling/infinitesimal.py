@@ -154,7 +154,8 @@ def infinitesimal(
     row = ca.SX.sym("row", 2 * nx + nc)
     start, end = deflected.interval
     each = [*ca.vertsplit(lengths), end - start - ca.sum1(lengths)] if kinds else [end - start]
-    sides = [law.branch(kind).strain for kind in kinds] or [strain]
+    sides: list[Strain] = [law.branch(kind).strain for kind in kinds]
+    sides = sides or [strain]
     outputs = {"m": deflected.stress.m}
     phases = tuple(
         Phase(deflected.dynamics(side), length, outputs)

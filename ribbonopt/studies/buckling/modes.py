@@ -107,7 +107,8 @@ class Search:
 
         def strain(stress: Stress) -> ca.SX:
             rod = [stress.m[i] / stiffnesses[i] if i in law.components else 0 for i in range(3)]
-            return (1 - t) * ca.vertcat(*rod) + t * smooth.strain(stress)
+            blend: ca.SX = (1 - t) * ca.vertcat(*rod) + t * smooth.strain(stress)
+            return blend
 
         return infinitesimal(self.deflected, t, strain, law)
 

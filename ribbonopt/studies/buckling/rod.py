@@ -93,9 +93,10 @@ class RodBuckling:
 
         def strain(stress: Stress) -> ca.SX:
             free = self.deflected.ribbon.law.components
-            return ca.vertcat(
+            found: ca.SX = ca.vertcat(
                 *(stress.m[i] / self.stiffnesses[i] if i in free else 0 for i in range(3))
             )
+            return found
 
         nx, _, _ = self.deflected.sizes
         rates, parts = self.deflected.dynamics(strain), self.deflected.parts

@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from ribbonopt.accuracy.estimate import relative_error
-from ribbonopt.checks.zero_moment import lacks_linearisation
+from ribbonopt.checks.zero_moment import lacks_linearisation, unknown_of
 from ribbonopt.errors import ModelError
 from ribbonopt.plain import Row, finite
 from ribbonopt.scene import ContinuationStage, Scene
@@ -87,7 +87,7 @@ class Recorder:
         row["switches"] = solution.switch_points.tolist()
         row["intervals"] = solution.dense.blocks.layout.element_count
         row["iterations"] = solution.iterations
-        told = (*solution.given_up, *solution.fell_back)
+        told = (*unknown_of(solution), *solution.given_up, *solution.fell_back)
         row["note"] = "; ".join(filter(None, [point.note, *told]))
         return row
 

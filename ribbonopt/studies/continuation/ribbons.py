@@ -7,6 +7,7 @@ changes of m2 do. So a layout is a mesh and its phases.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
@@ -23,9 +24,10 @@ from ribbonopt.solvers.extended import ExtendedSystem, Local, local
 from ribbonopt.solvers.newton import NewtonSolver
 from ribbonopt.studies.spare import SPARE
 
+from .buckled import AMPLITUDE, StageBuckling
 from .curve import Curve
 from .walk.metric import Metric
-from .walk.points import Point
+from .walk.points import BUCKLING, Point
 from .walk.protocol import Trial
 
 
@@ -54,7 +56,9 @@ class RibbonEquations:
     def linearise(self, solution: Solution, unknowns: Array, ahead: Array) -> Local:
         """Linearise at a solution with a row along the branch."""
         row = row_of(solution, self.metric.dual(ahead))
-        return local(self.curve.line(solution), row, solution.dense.w, float(unknowns[-1]))
+        found = local(self.curve.line(solution), row, solution.dense.w, float(unknowns[-1]))
+        # Its determinant would be that of the law's guard.
+        return replace(found, sign=0.0) if self._unbent(solution) else found
 
     def correct_at(self, origin: Solution, guess: Array) -> Trial[Solution]:
         """Correct at a position (natural continuation)."""
@@ -82,6 +86,35 @@ class RibbonEquations:
         attempt.take(_without_last(report), check=False)
         return _trial(attempt, report.w[-1:])
 
+    def crossings(self, a: Point[Solution], b: Point[Solution]) -> list[Point[Solution]]:
+        """Return the buckling points between two points where m2 = m3 = 0 along the ribbon."""
+        if not (self._unbent(a.solution) and self._unbent(b.solution)):
+            return []
+        found, whole = [], b.position - a.position
+        for load in self.buckling.loads(a.solution):
+            share = (self.curve.position(load.value) - a.position) / whole
+            if 0 < share <= 1:
+                trial = self._straight(a, b, share)
+                parts = {"solution": trial.solution, "unknowns": trial.unknowns, "note": ""}
+                found += [replace(a, kind=BUCKLING, **parts)] if trial.converged else []
+        return found
+
+    def departure(self, point: Point[Solution]) -> Array | None:
+        """Return the infinitesimal deflection at a buckling point, None at others."""
+        if point.kind != BUCKLING:
+            return None
+        solution, position = point.solution, point.position
+        load = self.buckling.nearest(solution, self.curve.value(position))
+        attempt = self._beside(solution, position)
+        bent, straight = (attempt.unknowns(load.guess(a)) for a in (AMPLITUDE, 0.0))
+        direction = np.append(bent - straight, 0.0)
+        return np.asarray(direction / self.metric.length(reduced(solution, direction)))
+
+    @cached_property
+    def buckling(self) -> StageBuckling:
+        """Buckling loads of straight states, found when they are first asked for."""
+        return StageBuckling(self.prepared, self.curve)
+
     def restored(self, origin: Solution, unknowns: Array) -> Solution:
         """Return a solution of known unknowns on the mesh and in the phases of another."""
         return self._beside(origin, float(unknowns[-1])).restored(unknowns[:-1])
@@ -96,7 +129,7 @@ class RibbonEquations:
         tolerance = found.scene.tolerance
         if not found.sheets and self._needs_phases(found):
             found = self.prepared.solve(found.posed, guess=found, fallback=False)
-        elif unbent_share(found, self.prepared.ribbon.law):  # no error can be told of it
+        elif self._unbent(found):  # no error can be told of it
             found = verified(found, self.prepared.ribbon)
         elif tolerance is not None and relative_error(found)[0] > SAFE * tolerance:
             found = self.prepared.refined(found, SPARE)
@@ -118,6 +151,15 @@ class RibbonEquations:
         unknowns = np.append(found.dense.w, position)
         note = _changed_phases(solution, found)
         return Trial(found, unknowns, True, found.message, note) if found.verified else None
+
+    def _straight(self, a: Point[Solution], b: Point[Solution], share: float) -> Trial[Solution]:
+        """Solve between two straight points."""
+        position = a.position + share * (b.position - a.position)
+        trial = self.correct_at(a.solution, np.append(a.unknowns[:-1], position))
+        return self.verified(trial) if trial.converged else trial
+
+    def _unbent(self, solution: Solution) -> bool:
+        return unbent_share(solution, self.prepared.ribbon.law) > 0
 
     def _beside(self, solution: Solution, position: float) -> Attempt:
         """Return the means to solve at a position, on the mesh and in the phases of a solution."""

@@ -140,7 +140,10 @@ class Stepper(Generic[S]):
             sign=found.sign,
             step=abs(prediction.arc) * _growth(error),
         )
-        special = special_points(equations, point, following) if self.range.special else []
+        special = []
+        if self.range.special:
+            special = special_points(equations, point, following)
+            special += equations.crossings(point, following)
         final = equations.finished(point, trial)
         self.trouble = final.message
         if not final.converged:
