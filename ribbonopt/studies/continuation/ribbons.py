@@ -95,8 +95,9 @@ class RibbonEquations:
             share = (self.curve.position(load.value) - a.position) / whole
             if 0 < share <= 1:
                 trial = self._straight(a, b, share)
-                parts = {"solution": trial.solution, "unknowns": trial.unknowns, "note": ""}
-                found += [replace(a, kind=BUCKLING, **parts)] if trial.converged else []
+                if trial.converged:
+                    straight = replace(a, solution=trial.solution, unknowns=trial.unknowns)
+                    found.append(replace(straight, kind=BUCKLING, note=""))
         return found
 
     def departure(self, point: Point[Solution]) -> Array | None:
