@@ -191,33 +191,32 @@ class _States:
         search, result = Search(rod), []
         for load, start in rod.loads():
             mode = search.mode(load, start)
-            if mode is not None:
-                result.append(self.settled(search, mode, low, high))
+            found = None if mode is None else self.settled(search, mode, low, high)
+            result += [] if found is None else [found]
         return result
 
-    def settled(self, search: Search, mode: Mode, low: float, high: float) -> Buckling:
+    def settled(self, search: Search, mode: Mode, low: float, high: float) -> Buckling | None:
         """Return a load where the straight state is what it is taken for, affine or not."""
-        first = high - low
+        whole = abs(high - low)
         for _ in range(TURNS):
             value = low + mode.load * (high - low)
             exact, taken = self.at(value), search.at(mode.load)
             if exact is None:
-                break
-            off = np.abs(exact - taken).max() / max(1.0, float(np.abs(exact).max()))
+                return None
+            off = float(np.abs(exact - taken).max()) / max(1.0, float(np.abs(exact).max()))
             if off <= AFFINE:
-                break
+                error = mode.error * abs(high - low) + SETTLED * whole
+                return Buckling(value, error, self.least(value), self.ribbon, mode)
             low, high = (value + sign * NEARER * (high - low) for sign in (-1, 1))
-            ends = self.at(low), self.at(high)
-            if ends[0] is None or ends[1] is None:
-                break
-            search = Search(replace(search.rod, a=ends[0], b=ends[1]))
-            again = search.moved(mode, 0.5)
+            a, b = self.at(low), self.at(high)
+            if a is None or b is None:
+                return None
+            search = Search(replace(search.rod, a=a, b=b))
+            again = search.moved(mode, taken)
             if again is None:
-                break
+                return None
             mode = again
-        value = low + mode.load * (high - low)
-        error = mode.error * (high - low) + SETTLED * abs(first)
-        return Buckling(value, error, self.least(value), search.deflected.ribbon, mode)
+        return None
 
     def least(self, value: float) -> Posed:
         """Return the scene at a value, in the states with the fewest unknowns."""

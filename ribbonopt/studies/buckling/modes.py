@@ -30,7 +30,8 @@ from .rod import STEPS, RodBuckling
 DEGREE, INTERVALS = 8, 12
 SMOOTH = 0.03  # delta of the smooth law that stands for one with a kink
 LEAST_STEP = 1 / 64  # of t
-RESIDUAL = 1e-11  # of the equations between the stages, relative
+WANTED = 1e-12  # error of the load, relative to the range that is searched
+RESIDUALS = (1e-5, 1e-7, 1e-9, 1e-11)  # of the equations between the stages, relative
 ROUNDS, MOST = 30, 640  # of refinement; elements
 NEGLIGIBLE = 1e-7  # m2 over the largest moment of the mode that has no sign
 
@@ -71,13 +72,11 @@ class Mode:
         """Signs of m2 one after another, and the fractions (k,) of the length where they change."""
         m, size = self._moments
         f, m2 = self.trajectory.stages[1], m[:, 1]
-        # Where nothing is twisted the law has no kink: such changes do not count.
-        f, m2, leap = (v[np.abs(m2) > NEGLIGIBLE * size] for v in (f, m2, np.abs(m[:, 2])))
+        f, m2 = (v[np.abs(m2) > NEGLIGIBLE * size] for v in (f, m2))
         if not len(m2):
             return (1,), np.empty(0)
         sign = np.sign(m2).astype(int)
-        twisted = leap > NEGLIGIBLE * size
-        at = np.flatnonzero((sign[1:] != sign[:-1]) & (twisted[1:] | twisted[:-1]))
+        at = np.flatnonzero(sign[1:] != sign[:-1])
         places = f[at] + (f[at + 1] - f[at]) * m2[at] / (m2[at] - m2[at + 1])
         return (int(sign[0]), *(int(sign[i + 1]) for i in at)), places
 
@@ -134,11 +133,13 @@ class Search:
         found: Array = self.rod.a + load * (self.rod.b - self.rod.a)
         return found
 
-    def moved(self, mode: Mode, load: float) -> Mode | None:
-        """Solve again from a mode of a search over other loads, where it is at this one."""
+    def moved(self, mode: Mode, straight: Array) -> Mode | None:
+        """Solve again from a mode of a search over other loads, and its straight state."""
         trajectory, output = mode.trajectory, mode.trajectory.dense
+        nx, nc, _ = self.deflected.sizes
+        a, b, there = (part[: nx + nc] for part in (self.rod.a, self.rod.b, straight))
         constants = output.constants.copy()
-        constants[self.deflected.sizes[1]] = load
+        constants[nc] = (there - a) @ (b - a) / ((b - a) @ (b - a))
         parts = trajectory.approximate, trajectory.ends, constants
         numbers, mesh = output.theta[self._named :], self._mesh(mode)
         found = self._solved(trajectory.problem, mesh, *parts, numbers, mode.kinds)
@@ -220,11 +221,20 @@ class Search:
         output = nlp.output(report.w, p)
         return Mode(float(output.constants[nc]), np.inf, Trajectory(problem, output), kinds)
 
-    def _refined(self, mode: Mode, problem: BoundaryValueProblem) -> Mode | None:
+    def _refined(self, mode: Mode, problem: BoundaryValueProblem) -> Mode:
+        """Refine the mesh until the load is as exact as is wanted, or no mesh does better."""
+        mode = replace(mode, error=self._error(mode))
+        for allowed in RESIDUALS:
+            if mode.error <= WANTED:
+                break
+            mode = self._halved(mode, problem, allowed)
+        return mode
+
+    def _halved(self, mode: Mode, problem: BoundaryValueProblem, allowed: float) -> Mode:
         """Halve elements whose equations do not hold between the stages, until they do."""
         for _ in range(ROUNDS):
             output = mode.trajectory.dense
-            off = output.residual_between_nodes().max(axis=1) > RESIDUAL
+            off = output.residual_between_nodes().max(axis=1) > allowed
             widths = output.blocks.widths(output.p)
             if not off.any() or len(widths) + off.sum() > MOST:
                 break
@@ -237,7 +247,7 @@ class Search:
             if found is None:
                 break
             mode = found
-        return Mode(mode.load, self._error(mode), mode.trajectory, mode.kinds)
+        return replace(mode, error=self._error(mode))
 
     def _error(self, mode: Mode) -> float:
         """One Newton step of the next better scheme: what it changes the load by."""

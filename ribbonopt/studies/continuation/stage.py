@@ -73,4 +73,3 @@ def refuse_idle(curve: Curve, problem: BoundaryValueProblem) -> None:
             "continue a number that its equations contain",
             "continuation.parameter",
         )
-
