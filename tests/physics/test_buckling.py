@@ -163,9 +163,9 @@ def test_a_rod_is_a_law_of_this_family() -> None:
 
 @pytest.mark.parametrize("states", ["reduced", "planar"])
 @pytest.mark.parametrize(
-    ("law", "bending"), [("sadowsky", 1.0), ("variational, delta: 0.1", 1.0)]
-    + [("regularized, epsilon: 0.01", 1.01)],
-)  # fmt: skip
+    ("law", "bending"),
+    [("sadowsky", 1.0), ("variational, delta: 0.1", 1.0), ("regularized, epsilon: 0.01", 1.01)],
+)
 def test_columns_buckle_as_eulers(law: str, bending: float, states: str) -> None:
     this = loads_scene((COLUMN + "states: {states}\n").format(law=law, states=states))
     found = [one.value for one in buckling_loads(this, "parameters.P", 1, 30)]
@@ -179,7 +179,8 @@ def test_loads_the_other_way_and_of_other_units() -> None:
     # D w = Y h^3 w / (12 (1 - nu^2)); force in units of D w / L^2
     L, w, h, Y, nu = 0.3, 0.01, 1e-4, 2e9, 0.25
     unit = Y * h**3 * w / (12 * (1 - nu**2)) / L**2
-    sizes = f"ribbon: {{length: {L}, width: {w}, thickness: {h}, youngs_modulus: {Y}, poisson_ratio: {nu}}}\n"
+    material = f"youngs_modulus: {Y}, poisson_ratio: {nu}"
+    sizes = f"ribbon: {{length: {L}, width: {w}, thickness: {h}, {material}}}\n"
     si = loads_scene(TIP.format(law="sadowsky").replace("P: 1", f"P: {unit}") + sizes)
     (found,) = buckling_loads(si, "parameters.P", unit, 8 * unit)
     assert found.value / unit == pytest.approx(6.729347255, abs=1e-8)
