@@ -26,7 +26,8 @@ from ribbonopt.scene.lens import value_at, with_value
 from ribbonopt.solution.solution import Solution
 
 from .infinitesimal import Deflected
-from .modes import Mode, Search
+from .mode import Mode
+from .modes import Search
 from .rod import RodBuckling, pure_stiffnesses
 
 AFFINE = 1e-10  # of the straight state's numbers: how far from affine in the load they may be

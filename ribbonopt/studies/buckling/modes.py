@@ -25,6 +25,7 @@ from ribbonopt.solvers.condense import CondensedSystem
 from ribbonopt.transcription import CollocationMethod, Mesh
 
 from .infinitesimal import Deflected, Kinds, infinitesimal, packed
+from .mode import Mode
 from .rod import STEPS, RodBuckling
 
 DEGREE, INTERVALS = 8, 12
@@ -33,57 +34,8 @@ LEAST_STEP = 1 / 64  # of t
 WANTED = 1e-12  # error of the load, relative to the range that is searched
 RESIDUALS = (1e-5, 1e-7, 1e-9, 1e-11)  # of the equations between the stages, relative
 ROUNDS, MOST = 30, 640  # of refinement; elements
-NEGLIGIBLE = 1e-7  # m2 over the largest moment of the mode that has no sign
 
 Read = Callable[[Array], Array]  # fractions (k,) of the length to states (k, 2 nx)
-
-
-@dataclass(frozen=True, eq=False)
-class Mode:
-    """A buckling load and its infinitesimal deflection.
-
-    Attributes
-    ----------
-    load : float
-        p, from 0 at the load a to 1 at b.
-    error : float
-        Estimated error of p.
-    trajectory : Trajectory
-        States [x; xi] along the ribbon; m is that of the deflection, along the directors.
-    kinds : tuple of int
-        Signs of m2 in the phases; empty for a law that needs none.
-    """
-
-    load: float
-    error: float
-    trajectory: Trajectory
-    kinds: Kinds = ()
-
-    @property
-    def admissible(self) -> bool:
-        """Whether m2 has the sign in each phase that the phase assumes."""
-        m, size = self._moments
-        phase = self.trajectory.stages[3]
-        signs = np.array(self.kinds or (0,))[phase]
-        return bool((signs * m[:, 1] >= -NEGLIGIBLE * size).all())
-
-    @property
-    def signs(self) -> tuple[Kinds, Array]:
-        """Signs of m2 one after another, and the fractions (k,) of the length where they change."""
-        m, size = self._moments
-        f, m2 = self.trajectory.stages[1], m[:, 1]
-        f, m2 = (v[np.abs(m2) > NEGLIGIBLE * size] for v in (f, m2))
-        if not len(m2):
-            return (1,), np.empty(0)
-        sign = np.sign(m2).astype(int)
-        at = np.flatnonzero(sign[1:] != sign[:-1])
-        places = f[at] + (f[at + 1] - f[at]) * m2[at] / (m2[at] - m2[at + 1])
-        return (int(sign[0]), *(int(sign[i + 1]) for i in at)), places
-
-    @property
-    def _moments(self) -> tuple[Array, float]:
-        m = self.trajectory.at_stages["m"]
-        return m, float(np.abs(m[:, 1:]).max())
 
 
 @dataclass(frozen=True, eq=False)
