@@ -35,6 +35,13 @@ def phase_words(kinds: tuple[int, ...]) -> str:
     return ", ".join(words[kind] for kind in kinds) or "one, without a sign change"
 
 
+def changed_phases(before: tuple[int, ...], after: tuple[int, ...]) -> str:
+    """Say which phases there are instead of those before; "" if the same."""
+    if before == after:
+        return ""
+    return f"phases: {phase_words(after)}; at the point before: {phase_words(before)}"
+
+
 def sign_changes(solution: Solution) -> Arcs:
     """Return the arcs between sign changes of the law's switch, as far as the stages can tell.
 

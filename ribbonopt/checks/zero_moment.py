@@ -28,6 +28,11 @@ def unbent_share(solution: Solution, law: ConstitutiveLaw) -> float:
     """Share of the length along which a law without a linearisation at zero has no moment."""
     if law.linear_at_zero or law.natural or not solution.status.converged:
         return 0.0
+    return share_without_moment(solution, law)
+
+
+def share_without_moment(solution: Solution, law: ConstitutiveLaw) -> float:
+    """Share of the length along which the moments of a law's free strains vanish."""
     values = solution.trajectory.at_stages
     free = np.max([np.abs(values[f"m{i + 1}"]) for i in law.components], axis=0)
     largest = max(float(np.abs(values[name]).max()) for name in ("n", "m"))

@@ -16,7 +16,7 @@ from functools import cached_property
 import numpy as np
 
 from ribbonopt.arrays import Array
-from ribbonopt.checks.zero_moment import SHORTEST, unbent_share
+from ribbonopt.checks.zero_moment import SHORTEST, share_without_moment, unbent_share
 from ribbonopt.errors import ModelError, SceneError
 from ribbonopt.mechanics.section import RodFields
 from ribbonopt.pipeline.prepared import Prepared, prepare
@@ -29,6 +29,7 @@ from .infinitesimal import Deflected
 from .mode import Mode
 from .modes import Search
 from .rod import RodBuckling, pure_stiffnesses
+from .twin import has_twin, twin_of, twin_scene
 
 AFFINE = 1e-10  # of the straight state's numbers: how far from affine in the load they may be
 NEARER = 1e-3  # of the distance of two loads that an affine line is drawn through, the next time
@@ -227,15 +228,21 @@ class _States:
 
     def at(self, value: float) -> Array | None:
         """Start, constants and parameters (nx + nc + nt,) of the straight state, or None."""
-        posed = Posed.of(with_value(self.straight.scene, self.parameter, value))
-        found = self.prepared.solve(posed, guess=self.straight, fallback=False)
-        share = unbent_share(found, self.prepared.ribbon.law)
-        if not found.verified or share < 1 - SHORTEST:
+        scene = with_value(self.straight.scene, self.parameter, value)
+        found = self.prepared.solve(scene, guess=self.straight, fallback=False)
+        if not found.verified and self._rod is not None:
+            found = self._rod.solve(twin_scene(scene), guess=self.straight, fallback=False)
+        if not found.verified or share_without_moment(found, self.ribbon.law) < 1 - SHORTEST:
             return None
         least = self.least(value)
         ends = found.fields(np.array([0.0, 1.0]))
         x, c = self.ribbon.model.pack(ends, least.start[0])
         return np.concatenate([x[0], c, least.values])
+
+    @cached_property
+    def _rod(self) -> Prepared | None:
+        law, scene = self.prepared.ribbon.law, self.straight.scene
+        return twin_of(scene) if has_twin(law, self.parameter) else None
 
     @cached_property
     def ribbon(self) -> Ribbon:

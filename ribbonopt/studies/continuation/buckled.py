@@ -2,14 +2,20 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING
 
+import numpy as np
+
+from ribbonopt.arrays import Array
+from ribbonopt.attempt.attempt import Attempt
 from ribbonopt.checks.zero_moment import SHORTEST, unbent_share
 from ribbonopt.pipeline.prepared import Prepared
 from ribbonopt.solution.solution import Solution
 
 from .curve import Curve
+from .walk.points import BUCKLING, Point
+from .walk.protocol import Equations
 
 if TYPE_CHECKING:
     from ribbonopt.studies.buckling.buckling import Buckling
@@ -37,6 +43,25 @@ class StageBuckling:
             self._found.append(buckling_from(self.prepared, straight, self.curve.name, *ends))
         return self._found[0]
 
-    def nearest(self, straight: Solution, value: float) -> Buckling:
-        """Return the one that is nearest to a value of the parameter."""
-        return min(self.loads(straight), key=lambda one: abs(one.value - value))
+    def between(
+        self, equations: Equations[Solution], a: Point[Solution], b: Point[Solution]
+    ) -> list[Point[Solution]]:
+        """Return the buckling points between two straight ones."""
+        found, whole = [], b.position - a.position
+        for load in self.loads(a.solution):
+            position = self.curve.position(load.value)
+            if not 0 < (position - a.position) / whole <= 1:
+                continue
+            trial = equations.correct_at(a.solution, np.append(a.unknowns[:-1], position))
+            trial = equations.verified(trial) if trial.converged else trial
+            if trial.converged:
+                straight = replace(a, solution=trial.solution, unknowns=trial.unknowns)
+                found.append(replace(straight, kind=BUCKLING, note=""))
+        return found
+
+    def direction(self, attempt: Attempt, point: Point[Solution]) -> Array:
+        """Direction (n + 1,) of the deflection at a buckling point; the attempt is beside it."""
+        value, loads = self.curve.value(point.position), self.loads(point.solution)
+        load = min(loads, key=lambda one: abs(one.value - value))
+        bent, straight = (attempt.unknowns(load.guess(a)) for a in (AMPLITUDE, 0.0))
+        return np.append(bent - straight, 0.0)

@@ -14,7 +14,7 @@ import numpy as np
 from ribbonopt.accuracy.estimate import relative_error
 from ribbonopt.arrays import Array
 from ribbonopt.attempt.attempt import Attempt, verified
-from ribbonopt.checks.arcs import phase_words
+from ribbonopt.checks.arcs import changed_phases
 from ribbonopt.checks.zero_moment import unbent_share
 from ribbonopt.pipeline.prepared import Prepared
 from ribbonopt.pipeline.refinement import SAFE
@@ -22,9 +22,10 @@ from ribbonopt.solution.solution import Solution
 from ribbonopt.solvers import SolveReport
 from ribbonopt.solvers.extended import ExtendedSystem, Local, local
 from ribbonopt.solvers.newton import NewtonSolver
+from ribbonopt.studies.buckling.twin import has_twin, twin_of, twin_scene
 from ribbonopt.studies.spare import SPARE
 
-from .buckled import AMPLITUDE, StageBuckling
+from .buckled import StageBuckling
 from .curve import Curve
 from .walk.metric import Metric
 from .walk.points import BUCKLING, Point
@@ -56,15 +57,28 @@ class RibbonEquations:
     def linearise(self, solution: Solution, unknowns: Array, ahead: Array) -> Local:
         """Linearise at a solution with a row along the branch."""
         row = row_of(solution, self.metric.dual(ahead))
-        found = local(self.curve.line(solution), row, solution.dense.w, float(unknowns[-1]))
+        there, unbent = (solution.dense.w, float(unknowns[-1])), self._unbent(solution)
+        try:
+            found = local(self.curve.line(solution), row, *there)
+        except np.linalg.LinAlgError:
+            if not (unbent and self._rod):
+                raise
+            line = self._rod.curve.line(self._rod.restored(solution, unknowns))
+            found = local(line, row, *there)
         # Its determinant would be that of the law's guard.
-        return replace(found, sign=0.0) if self._unbent(solution) else found
+        return replace(found, sign=0.0) if unbent else found
 
     def correct_at(self, origin: Solution, guess: Array) -> Trial[Solution]:
         """Correct at a position (natural continuation)."""
         attempt = self._beside(origin, float(guess[-1]))
         attempt.run_from(guess[:-1], quick=True, check=False)
-        return _trial(attempt, guess[-1:])
+        trial = _trial(attempt, guess[-1:])
+        if trial.converged or not (self._unbent(origin) and self._rod):
+            return trial
+        straight = self._rod.correct_at(origin, guess)
+        found = attempt.restored(straight.unknowns[:-1])
+        same = straight.converged and self._unbent(found)
+        return replace(straight, solution=found) if same else trial
 
     def correct_along(
         self,
@@ -90,31 +104,28 @@ class RibbonEquations:
         """Return the buckling points between two points where m2 = m3 = 0 along the ribbon."""
         if not (self._unbent(a.solution) and self._unbent(b.solution)):
             return []
-        found, whole = [], b.position - a.position
-        for load in self.buckling.loads(a.solution):
-            share = (self.curve.position(load.value) - a.position) / whole
-            if 0 < share <= 1:
-                trial = self._straight(a, b, share)
-                if trial.converged:
-                    straight = replace(a, solution=trial.solution, unknowns=trial.unknowns)
-                    found.append(replace(straight, kind=BUCKLING, note=""))
-        return found
+        return self.buckling.between(self, a, b)
 
     def departure(self, point: Point[Solution]) -> Array | None:
         """Return the infinitesimal deflection at a buckling point, None at others."""
         if point.kind != BUCKLING:
             return None
-        solution, position = point.solution, point.position
-        load = self.buckling.nearest(solution, self.curve.value(position))
-        attempt = self._beside(solution, position)
-        bent, straight = (attempt.unknowns(load.guess(a)) for a in (AMPLITUDE, 0.0))
-        direction = np.append(bent - straight, 0.0)
-        return np.asarray(direction / self.metric.length(reduced(solution, direction)))
+        attempt = self._beside(point.solution, point.position)
+        direction = self.buckling.direction(attempt, point)
+        return np.asarray(direction / self.metric.length(reduced(point.solution, direction)))
 
     @cached_property
     def buckling(self) -> StageBuckling:
         """Buckling loads of straight states, found when they are first asked for."""
         return StageBuckling(self.prepared, self.curve)
+
+    @cached_property
+    def _rod(self) -> RibbonEquations | None:
+        """The same with a linear law, where straight states have a linearisation."""
+        if not has_twin(self.prepared.ribbon.law, self.curve.name):
+            return None
+        curve = Curve(twin_scene(self.curve.scene), self.curve.stage)
+        return RibbonEquations(twin_of(curve.scene_at(curve.start)), curve, self.metric)
 
     def restored(self, origin: Solution, unknowns: Array) -> Solution:
         """Return a solution of known unknowns on the mesh and in the phases of another."""
@@ -136,7 +147,9 @@ class RibbonEquations:
             found = self.prepared.refined(found, SPARE)
         else:
             found = verified(found, self.prepared.ribbon)
-        done = replace(_checked(trial, found), note=_changed_phases(origin.solution, found))
+        done = replace(
+            _checked(trial, found), note=changed_phases(origin.solution.sheets, found.sheets)
+        )
         if not done.converged and self.prepared.ribbon.law.kinked:
             # Phases may have changed on the way.
             return self._anew(origin.solution, float(trial.unknowns[-1])) or done
@@ -150,14 +163,8 @@ class RibbonEquations:
         """Solve at a position with all that a single scene may need, from a solution near by."""
         found = self.prepared.solve(self.curve.posed_at(position), guess=solution, fallback=False)
         unknowns = np.append(found.dense.w, position)
-        note = _changed_phases(solution, found)
+        note = changed_phases(solution.sheets, found.sheets)
         return Trial(found, unknowns, True, found.message, note) if found.verified else None
-
-    def _straight(self, a: Point[Solution], b: Point[Solution], share: float) -> Trial[Solution]:
-        """Solve between two straight points."""
-        position = a.position + share * (b.position - a.position)
-        trial = self.correct_at(a.solution, np.append(a.unknowns[:-1], position))
-        return self.verified(trial) if trial.converged else trial
 
     def _unbent(self, solution: Solution) -> bool:
         return unbent_share(solution, self.prepared.ribbon.law) > 0
@@ -170,13 +177,6 @@ class RibbonEquations:
     def _needs_phases(self, solution: Solution) -> bool:
         search = self.prepared.search(solution.posed)
         return search.phases_help and search.changes_sign(solution)
-
-
-def _changed_phases(before: Solution, after: Solution) -> str:
-    """Say which phases a point has instead of those of the point before; "" if the same."""
-    if before.sheets == after.sheets:
-        return ""
-    return f"phases: {phase_words(after.sheets)}; at the point before: {phase_words(before.sheets)}"
 
 
 def reduced(solution: Solution, extended: Array) -> Array:
