@@ -1,11 +1,14 @@
-"""Honest bars: the estimated error of scenes and random clamps beside the true one.
+"""Bars that nobody can refute: estimated errors beside the true ones.
 
-    python scripts/bench_error_estimate.py [--out results/bench_error_estimate] [--clamps 20]
-                                           [--intervals N]
+    python scripts/bench_error_estimate.py [--clamps 300] [--laws sadowsky regularized variational]
+        [--tolerances 1e-6 1e-9] [--seed 1] [--only 14 19] [--seconds 500]
+        [--scenes [--intervals N]] [--out results/bench_error_estimate]
 
-True: against the same equilibrium at tolerance 1e-12 by a scheme of higher degree, n(0) and m(0)
-against 28 digits where there are any. All errors are relative, as `relative_error` has them.
-`--intervals` starts every scene on so many, so that more must be refined. Writes JSON and figure.
+Random clamps are solved from nothing, and judged by an integrator that shares no code with the
+package (`tests/independent`). Rows go to `rows.jsonl` as they are measured and those there are not
+measured again: a long run can be interrupted, or cut in pieces by `--seconds`. Summary and figure
+are of all rows there that were asked for. `--scenes` adds the shipped scenes at four tolerances,
+against themselves at 1e-12; `--intervals` starts these on so many, so that more must be refined.
 """
 
 from __future__ import annotations
@@ -13,187 +16,77 @@ from __future__ import annotations
 import argparse
 import json
 import os
-import sys
+import time
 from collections.abc import Iterator
-from dataclasses import replace
 from pathlib import Path
-from typing import Any
+from typing import Any, TextIO
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
-import numpy as np
-from bench_path import ROOT
+from error_clamps import LAWS, cases, measured
+from error_report import draw, report
 
-from ribbonopt.accuracy.estimate import estimate_error
-from ribbonopt.errors import ConvergenceError, ModelError
-from ribbonopt.mechanics.rotations import matrix_of
 from ribbonopt.output.summary import versions
-from ribbonopt.pipeline.prepared import prepare, solve
-from ribbonopt.scene import Boundary, Collocation, Directors, End, Scene, Variational, load_scene
-from ribbonopt.solution.solution import Solution
-from ribbonopt.solvers import Status
+from ribbonopt.pipeline.prepared import prepare
 from ribbonopt.studies.machine import machine
 
-sys.path.append(str(ROOT / "tests"))
-from references import HALF_MOEBIUS, REGULARIZED
-
-TOLERANCES = (1e-4, 1e-6, 1e-8, 1e-10)
-COLOURS = ("#c2410c", "#b8860b", "#2f7d32", "#1f5fa8")
-NAMES = ("n0", "m0", "u0", "energy", "states")
-EXACT: dict[str, Any] = {
-    **dict.fromkeys(("moebius_half", "moebius_half_full", "ribbon_si"), HALF_MOEBIUS),
-    "moebius_regularized": REGULARIZED[0.01],
-}
-QUANTILES = (0, 0.05, 0.5, 0.95, 1)
-ROUNDING = 1e-13  # true errors below are not compared
 Row = dict[str, Any]
+Key = tuple[str, float, int, int]  # law, tolerance, seed, clamp
 
 
 def main() -> None:
-    """Run all cases, print the table, write JSON and figure."""
+    """Measure what is missing, print what is there, write JSON and figure."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--out", type=Path, default=Path("results") / "bench_error_estimate")
-    parser.add_argument("--clamps", type=int, default=20, help="random clamps")
-    parser.add_argument("--intervals", type=int, help="of the first mesh of every scene")
+    parser.add_argument("--clamps", type=int, default=300, help="how many random clamps")
+    parser.add_argument("--laws", nargs="+", default=list(LAWS), choices=list(LAWS))
+    parser.add_argument("--tolerances", nargs="+", type=float, default=[1e-6, 1e-9])
+    parser.add_argument("--seed", type=int, default=1)
+    parser.add_argument("--only", nargs="+", type=int, help="numbers of clamps, not all")
+    parser.add_argument("--seconds", type=float, default=float("inf"), help="end after so many")
+    parser.add_argument("--scenes", action="store_true", help="the shipped scenes too")
+    parser.add_argument("--intervals", type=int, help="of the first mesh of every shipped scene")
     options = parser.parse_args()
     options.out.mkdir(parents=True, exist_ok=True)
-    rows: list[Row] = []
-    skipped: dict[str, str] = {}
-    for name, scene in cases(options.clamps, options.intervals):
-        rows += measured(name, scene, skipped)
-    result = {"machine": machine(), "versions": versions(), "intervals": options.intervals}
-    result |= {"summary": summarised(rows), "skipped": skipped, "rows": rows}
-    report(result)
+    path = options.out / "rows.jsonl"
+    lines = path.read_text().splitlines() if path.exists() else []
+    known = {key_of(row): row for row in map(json.loads, lines)}
+    with path.open("a") as file:
+        rows = list(measure(options, known, file, time.monotonic() + options.seconds))
+    result: Row = {"machine": machine(), "versions": versions(), "seed": options.seed}
+    if rows:
+        result["clamps"] = report(rows)
+        draw(rows, options.out / "bench_error_estimate.png")
+    if options.scenes:
+        from error_scenes import scenes
+
+        result["scenes"] = scenes(options.intervals)
     (options.out / "bench_error_estimate.json").write_text(json.dumps(result, indent=2) + "\n")
-    draw(rows, options.out / "bench_error_estimate.png")
     print(f"written: {options.out}")
 
 
-def cases(count: int, intervals: int | None) -> Iterator[tuple[str, Scene]]:
-    """Yield name and scene of each ribbon."""
-    every = [(p.stem, load_scene(p)) for p in sorted((ROOT / "configs").glob("*.yaml"))]
-    rng = np.random.default_rng(1)
-    for name, scene in every + [(f"clamps {i}", clamps(rng)) for i in range(count)]:
-        mesh = replace(scene.transcription, intervals=intervals or scene.transcription.intervals)
-        yield name, replace(scene, transcription=mesh)
+def measure(options: Any, known: dict[Key, Row], file: TextIO, end: float) -> Iterator[Row]:
+    """Yield the rows that are known, and measure the others while there is time."""
+    for tolerance in options.tolerances:
+        for law in options.laws:
+            prepared = None
+            for i, scene in cases(law, tolerance, options.seed, options.clamps):
+                key = law, tolerance, options.seed, i
+                if options.only and i not in options.only:
+                    continue
+                if key not in known and time.monotonic() < end:
+                    prepared = prepared or prepare(scene)
+                    names = dict(zip(("law", "tolerance", "seed", "clamp"), key, strict=True))
+                    known[key] = names | measured(prepared, scene)
+                    file.write(json.dumps(known[key]) + "\n")
+                    file.flush()
+                if key in known:
+                    yield known[key]
 
 
-def clamps(rng: np.random.Generator) -> Scene:
-    """Clamp a ribbon at both ends, the far one anywhere and turned at random."""
-    turn = matrix_of(rng.normal(size=4)).T.tolist()
-    distance, direction = rng.uniform(0.3, 0.95), rng.normal(size=3)
-    place = (distance * direction / np.linalg.norm(direction)).tolist()
-    return Scene(
-        name="clamps",
-        law=Variational(delta=0.01),
-        boundary=Boundary(
-            start=End(position=(0.0, 0.0, 0.0), directors="identity"),
-            end=End(position=tuple(place), directors=Directors(*map(tuple, turn))),
-        ),
-        guess="auto",
-        transcription=Collocation(scheme="gauss", degree=6, intervals=40),
-    )
-
-
-def measured(name: str, scene: Scene, skipped: dict[str, str]) -> list[Row]:
-    """Return estimated and true errors of one ribbon at each tolerance."""
-    rows, scheme = [], scene.transcription
-    for tolerance in TOLERANCES:
-        label = f"{name} at {tolerance:.0e}"
-        try:
-            found = solve(replace(scene, tolerance=tolerance))
-        except (ConvergenceError, ModelError) as error:  # the latter: no estimate
-            skipped[label] = f"skipped: {error}"
-            continue
-        if not (found.verified or found.status is Status.TOLERANCE_MISSED):
-            skipped[label] = f"not solved: {found.message}"
-            continue
-        finer = replace(scheme, degree=min(scheme.degree + 2, 10), intervals=40)
-        truth = prepare(replace(scene, tolerance=1e-12, transcription=finer)).polish(found)
-        sizes, true = sizes_of(found), true_errors(found, truth, EXACT.get(name, {}))
-        if not truth.verified or max(true[k] / sizes[k] for k in NAMES) > 0.1:
-            skipped[label] = f"no truth: {truth.message}"
-            continue
-        estimate, doubt = estimate_error(found), estimate_error(truth)
-        errors = {"estimate": estimate, "true": true, "truth_estimate": doubt}
-        relative = {key: {k: e[k] / sizes[k] for k in NAMES} for key, e in errors.items()}
-        row = {"case": name, "tolerance": tolerance, "elements": len(found.nodes) - 1}
-        rows.append(row | {"met": found.verified, **relative})
-    return rows
-
-
-def true_errors(found: Solution, truth: Solution, exact: dict[str, Any]) -> dict[str, float]:
-    """Absolute errors as in `estimate_error`; `exact` are loads in units Dw = L = 1."""
-    unit = found.units.of
-    given = {k: np.array(v) * unit(k[0]) for k, v in exact.items() if k in ("n0", "m0")}
-    errors = {
-        k: float(np.abs(getattr(found, k) - given.get(k, getattr(truth, k))).max())
-        for k in ("n0", "m0", "u0", "energy")
-    }
-    ours, theirs = (s.outputs(found.nodes) for s in (found, truth))
-    gaps = {k: np.abs(ours[k] - theirs[k]).max() / unit(k) for k in ("r", "d1", "d2", "d3")}
-    return errors | {"states": float(max(gaps.values()))}
-
-
-def sizes_of(solution: Solution) -> dict[str, float]:
-    """Sizes that errors are relative to, as in `relative_error`."""
-    unit = {k: solution.units.of(k[0]) for k in ("n0", "m0")}
-    loads = max(float(np.abs(getattr(solution, k)).max()) / unit[k] for k in unit)
-    sizes = {k: loads * unit[k] for k in unit} | {"energy": abs(solution.energy), "states": 1.0}
-    return sizes | {"u0": float(np.abs(solution.at_stages["u"]).max())}
-
-
-def summarised(rows: list[Row]) -> Row:
-    """Return shares of cases and of ratios that are as they should be."""
-    ratios = [r["estimate"][k] / r["true"][k] for r in rows for k in NAMES if comparable(r, k)]
-    near = [0.1 <= ratio <= 10 for ratio in ratios]
-    below = [max(row["true"].values()) <= row["tolerance"] for row in rows]
-    return {
-        "below tolerance": {"share": float(np.mean(below)), "of": len(below), "target": 0.98},
-        "within a factor 10": {"share": float(np.mean(near)), "of": len(near), "target": 0.8},
-        "tolerance not met, and said": sum(not row["met"] for row in rows),
-        "estimate over true, 0, 5, 50, 95, 100 %": np.quantile(ratios, QUANTILES).tolist(),
-    }
-
-
-def comparable(row: Row, name: str) -> bool:
-    """Whether a true error is more than rounding and than the error of the truth."""
-    return bool(row["true"][name] > max(ROUNDING, 3 * row["truth_estimate"][name]))
-
-
-def report(result: Row) -> None:
-    """Print the table: true errors and, behind them, estimate over true."""
-    print(f"{'true error, estimate / true':<34}" + "".join(f"{name:>17}" for name in NAMES))
-    for row in result["rows"]:
-        true, estimate = row["true"], row["estimate"]
-        ratios = [f"{estimate[k] / true[k]:.2g}" if comparable(row, k) else "" for k in NAMES]
-        cells = [f"{true[k]:9.1e} {ratio:<7}" for k, ratio in zip(NAMES, ratios, strict=True)]
-        words = "ABOVE" * (max(true.values()) > row["tolerance"]) + " (said)" * (not row["met"])
-        print(f"{row['case']:<22}{row['tolerance']:<6.0e} {row['elements']:4}", *cells, words)
-    for name, words in (*result["skipped"].items(), *result["summary"].items()):
-        print(f"{name}: {words}")
-
-
-def draw(rows: list[Row], path: Path) -> None:
-    """Draw estimate against true error, a colour for each tolerance."""
-    from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
-
-    figure = Figure(figsize=(6.4, 6), layout="constrained")
-    axes = figure.subplots()
-    FigureCanvasAgg(figure)
-    ends = np.array([1e-17, 1e-2])
-    axes.fill_between(ends, ends / 10, ends * 10, color="#dddddd", lw=0, label="within 10")
-    axes.loglog(ends, ends, color="#777777", lw=1)
-    for tolerance, colour in zip(TOLERANCES, COLOURS, strict=True):
-        some = [row for row in rows if row["tolerance"] == tolerance]
-        pairs = [(row["true"][k], row["estimate"][k]) for row in some for k in NAMES]
-        true, estimate = np.maximum(np.array(pairs).reshape(-1, 2), 2e-17).T
-        axes.plot(true, estimate, "o", ms=4, mew=0, alpha=0.7, color=colour, label=f"{tolerance:g}")
-    axes.set(xlim=ends, ylim=ends, xlabel="true relative error", ylabel="estimated relative error")
-    axes.legend(frameon=False, loc="upper left", title="tolerance")
-    axes.spines[["top", "right"]].set_visible(False)
-    figure.savefig(path, dpi=150)
+def key_of(row: Row) -> Key:
+    """Return what a row is of."""
+    return row["law"], row["tolerance"], row["seed"], row["clamp"]
 
 
 if __name__ == "__main__":

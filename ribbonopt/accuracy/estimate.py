@@ -3,11 +3,16 @@
 The dense output is put into the same problem collocated with one degree more (at the highest
 degree, and for shooting, on halved elements). Its defect is the local error; the Newton step
 carries it through the boundary conditions to every unknown. The improved solution minus the
-solution is the estimate.
+solution is the estimate, and four times that the bar.
+
+Two schemes agree, and are wrong, where the stages of both step over a layer of the law. So the law
+says where its layers are, and what is conserved witnesses: where either finds more than the schemes
+differ by, the local error is that, and the errors of the answer grow with it.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
@@ -18,8 +23,13 @@ from ribbonopt.solution.solution import Solution
 from ribbonopt.solution.trajectory import Trajectory
 from ribbonopt.solvers.condense import CondensedSystem
 
+from .layers import Layers, between, layers, overlooked
+
 ROUNDING = 1e-15
 LEAST = 1e-3  # size of an answer, Dw = L = 1, below which its error counts absolutely
+SAFETY = 4.0  # bar over estimate: what the next better scheme itself may miss
+DOUBTFUL = 3.0  # times the difference of the schemes, from which on errors are not known
+QUIET = 1e-12  # local errors that are rounding
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,16 +43,26 @@ class Analysis:
     local : (N,) array
         Local error of every element: what it adds to the states at its end, each state relative to
         its size along the ribbon.
+    inside : (N,) array
+        Error inside every element, relative, where that is not the business of its nodes: in stiff
+        elements and next to layers; zero in others.
     errors, sizes : mappings of str to float
         Absolute errors of the parts of the answer, and what they are relative to; Dw = L = 1.
+    doubt : float
+        By how much local errors exceed what the schemes differ by; 1 where nothing is overlooked.
+    layers : tuple of Layers
+        Singularities of the law near each phase.
     factors : CondensedSystem or None
         Factors of the better scheme, if they were to be kept.
     """
 
     better: Trajectory
     local: Array
+    inside: Array
     errors: Mapping[str, float]
     sizes: Mapping[str, float]
+    doubt: float
+    layers: tuple[Layers, ...]
     factors: CondensedSystem | None = None
 
 
@@ -66,28 +86,31 @@ def analyse(
 
 
 def estimate_error(solution: Solution) -> dict[str, float]:
-    """Estimated absolute errors of `n0`, `m0`, `u0`, `H0`, `energy` and `states`.
+    """Bars: bounds of the absolute errors of `n0`, `m0`, `u0`, `H0`, `energy`, `states` and `u`.
 
     Vectors by their largest component, in the units of the solution; states: positions, over the
-    unit of length, and directors anywhere along the ribbon. None of them is below rounding.
+    unit of length, and directors anywhere along the ribbon; u: strains anywhere along it, but where
+    they jump. None of them is below rounding; nan where no bar can be given, because the mesh steps
+    over a layer.
     """
     units = solution.units
-    quantity = {"n0": "n", "m0": "m", "u0": "u", "H0": "H", "energy": "m"}
-    errors = analyse(solution).errors
-    return {name: units.of(quantity.get(name, "")) * error for name, error in errors.items()}
+    quantity = {"n0": "n", "m0": "m", "u0": "u", "u": "u", "H0": "H", "energy": "m"}
+    found = analyse(solution)
+    bar = SAFETY if found.doubt <= DOUBTFUL else math.nan
+    return {name: bar * units.of(quantity.get(name, "")) * e for name, e in found.errors.items()}
 
 
 def relative_error(solution: Solution) -> tuple[float, str]:
-    """Largest estimated error over the size of what it is an error of, and the name of that.
+    """Largest bar over the size of what it is of, and the name of that.
 
-    Loads are measured by the larger of force times length and moment, strains by the largest
-    along the ribbon, states by the length. Next to a straight ribbon without stress errors count
-    absolutely: there is nothing that they could be relative to.
+    Loads are measured by the larger of force times length and moment, H by that and itself, strains
+    by the largest along the ribbon, states by the length. Next to a straight ribbon without stress
+    errors count absolutely: there is nothing that they could be relative to.
     """
     found = analyse(solution)
     relative = {name: found.errors[name] / max(size, LEAST) for name, size in found.sizes.items()}
     worst = max(relative, key=lambda name: relative[name])
-    return relative[worst], worst
+    return SAFETY * relative[worst], worst
 
 
 def _analysed(trajectory: Trajectory, near: CondensedSystem | None, keep: bool) -> Analysis:
@@ -103,20 +126,92 @@ def _analysed(trajectory: Trajectory, near: CondensedSystem | None, keep: bool) 
     better = Trajectory(trajectory.problem, finer.moved(step))
     size = np.maximum(np.abs(dense.at_nodes).max(axis=0), 1.0)
     local = np.abs(residuals.nodes / size).max(axis=1).reshape(-1, split).sum(axis=1)
-    errors = _errors(trajectory, better, split)
+    near_by = tuple(layers(trajectory, i) for i in range(len(trajectory.problem.phases)))
+    errors, sizes = _errors(trajectory, better, split), _sizes(trajectory)
+    witnessed = np.maximum(_witness(better, split), overlooked(trajectory, near_by))
+    local, doubt = _more(local, witnessed)
+    # Rounding of one element counts as its local error does.
+    rounding = 1 + len(local) * ROUNDING / float(local.sum())
+    errors = {name: error * doubt * rounding for name, error in errors.items()}
     # Between the nodes the output starts from the node before, with the error of that element.
-    errors["states"] = max(errors["states"], float(local.max()))
-    return Analysis(better, local, errors, _sizes(trajectory), factors if keep else None)
+    states, strains, inside = _between(trajectory, better, near_by)
+    errors["states"] = max(errors["states"], float(local.max()), states)
+    errors["u"] = max(errors["u"], strains)
+    kept = factors if keep else None
+    return Analysis(better, local, inside, errors, sizes, doubt, near_by, kept)
+
+
+def _more(local: Array, witnessed: Array) -> tuple[Array, float]:
+    """Local errors with what was overlooked, and by how much that makes errors larger."""
+    more = np.where(witnessed > QUIET, np.maximum(local, witnessed), local)
+    doubt = float(more.sum() / local.sum()) if more.max() > local.max() else 1.0
+    return more, doubt
+
+
+def _witness(better: Trajectory, split: int) -> Array:
+    """Local errors (N,) that what is conserved betrays: the better scheme keeps it better."""
+    nodes, found = better.at_nodes, np.zeros(1)
+    scale = max(1.0, float(np.abs(nodes["n"]).max()), float(np.abs(nodes["m"]).max()))
+    for name in better.problem.conserved:
+        steps = np.abs(np.diff(nodes[name])) / max(scale, float(np.abs(nodes[name]).max()))
+        found = np.maximum(found, steps.reshape(-1, split).sum(axis=1))
+    return found
 
 
 def _errors(trajectory: Trajectory, better: Trajectory, split: int) -> dict[str, float]:
     """Differences of the answers, none below rounding."""
     ours = trajectory.at_nodes
     theirs = {name: values[::split] for name, values in better.at_nodes.items()}
-    errors = {f"{name}0": _gap(theirs[name][0], ours[name][0]) for name in ("n", "m", "u", "H")}
+    errors = {f"{name}0": _gap(theirs[name][0], ours[name][0]) for name in ("n", "m", "u")}
+    # H is a difference: its rounding is that of its parts.
+    errors["H0"] = _gap(theirs["H"][0], ours["H"][0], float(np.abs(ours["n"][0]).max()))
     errors["energy"] = _gap(np.array(better.energy), np.array(trajectory.energy))
-    errors["states"] = max(_gap(theirs[k], ours[k]) for k in ("r", "d1", "d2", "d3"))
-    return errors
+    along = {name: ours[name] for name in ("r", "d1", "d2", "d3", "u")}
+    if len(trajectory.ends) > 2:
+        along = _shifted(trajectory, better.nodes[::split])
+    same = _same_side(ours, theirs)
+    strains = _gap(theirs["u"][same], along.pop("u")[same])
+    return errors | {"states": max(_gap(theirs[k], along[k]) for k in along), "u": strains}
+
+
+def _between(
+    trajectory: Trajectory, better: Trajectory, near_by: tuple[Layers, ...]
+) -> tuple[float, float, Array]:
+    """Errors of states and strains inside elements, and each element's (N,), relative."""
+    result = np.zeros(len(trajectory.nodes) - 1)
+    fractions, elements = between(trajectory, near_by)
+    if not len(fractions):
+        return 0.0, 0.0, result
+    ours, theirs = (t.outputs(fractions) for t in (trajectory, better))
+    gaps = {k: np.abs(theirs[k] - ours[k]).max(axis=1) for k in ("r", "d1", "d2", "d3", "u")}
+    strains = np.where(_same_side(ours, theirs), gaps.pop("u"), 0.0)
+    states = np.max(list(gaps.values()), axis=0)
+    size = max(float(np.abs(ours["u"]).max()), LEAST)
+    np.maximum.at(result, elements, np.maximum(states, strains / size))
+    return float(states.max()), float(strains.max()), result
+
+
+def _shifted(trajectory: Trajectory, nodes: Array) -> dict[str, Array]:
+    """Positions, directors and strains at other fractions (N + 1,), near the nodes.
+
+    Phases of two solutions are not as long; both are to be compared at the same arclength.
+    """
+    ours, length = trajectory.at_nodes, trajectory.length
+    shift = (length * (nodes - trajectory.nodes))[:, None]
+    darboux = np.einsum("ki,ikj->kj", ours["u"], np.stack([ours[f"d{i}"] for i in (1, 2, 3)]))
+    found = {"r": ours["r"] + shift * ours["d3"]}
+    found |= {d: ours[d] + shift * np.cross(darboux, ours[d]) for d in ("d1", "d2", "d3")}
+    slope = np.zeros_like(ours["u"])
+    slope[1:] = np.diff(ours["u"], axis=0) / (length * np.diff(trajectory.nodes))[:, None]
+    # Where phases meet strains may jump: there the next phase says how they change.
+    meet = np.searchsorted(trajectory.nodes, trajectory.ends[1:-1])
+    slope[meet] = slope[meet + 1]
+    return found | {"u": ours["u"] + shift * slope}
+
+
+def _same_side(ours: Mapping[str, Array], theirs: Mapping[str, Array]) -> Array:
+    """Places (k,) where two solutions are on the same side of a jump that strains may have."""
+    return np.asarray(ours["switching"] * theirs["switching"] > 0) | (ours["leap"] == 0)
 
 
 def _sizes(trajectory: Trajectory) -> dict[str, float]:
@@ -128,10 +223,13 @@ def _sizes(trajectory: Trajectory) -> dict[str, float]:
         "n0": loads,
         "m0": loads,
         "u0": strains,
+        "H0": max(loads, abs(float(start["H"][0]))),
         "energy": abs(trajectory.energy),
         "states": 1.0,
+        "u": strains,
     }
 
 
-def _gap(a: Array, b: Array) -> float:
-    return max(float(np.abs(a - b).max()), ROUNDING * max(1.0, float(np.abs(b).max())))
+def _gap(a: Array, b: Array, size: float = 1.0) -> float:
+    difference, whole = (float(np.abs(x).max(initial=0.0)) for x in (a - b, b))
+    return max(difference, ROUNDING * max(size, whole))

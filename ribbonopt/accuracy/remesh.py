@@ -8,6 +8,8 @@ the Legendre coefficients; the width that is wanted there follows, and widths gr
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 import numpy as np
 
 from ribbonopt.arrays import Array
@@ -19,6 +21,7 @@ GRADING = 1.0  # growth of the widths with the distance
 NEAREST, FARTHEST = 1.2, 1e4  # of the sizes rho of ellipses
 UNSEEN = 1.01  # rho where there is a singularity so near that no stage has met it
 _HALVES = 0.5 ** np.arange(12, 1, -1)
+_FAR = np.append(0.0, 0.5 ** np.arange(34, 1, -1))
 # Where in an element widths are looked at: close together at its ends and in its middle.
 PLACES = np.sort(
     np.concatenate([[0, 0.5, 1], _HALVES, 0.5 - _HALVES[:-1], 0.5 + _HALVES, 1 - _HALVES[:-1]])
@@ -50,11 +53,17 @@ def wanted_widths(widths: Array, local: Array, rho: Array, order: int, target: f
     return np.asarray(widths * np.clip(change, NARROWEST, WIDEST))
 
 
-def graded(widths: Array, wanted: Array) -> tuple[Array, Array]:
+def graded(
+    widths: Array,
+    wanted: Array,
+    around: Array | None = None,
+    limit: Callable[[Array], Array] | None = None,
+) -> tuple[Array, Array]:
     """Positions (k,) from 0 to 1, and how many elements (k,) are wanted before each.
 
     An element that should be narrower is so around its middle, or at the end of the phase if it is
-    the first or last; from there widths grow with the distance.
+    the first or last; from there widths grow with the distance. `limit` are the largest widths at
+    relative positions; it is looked at around the places `around` too.
     """
     nodes = np.append(0.0, np.cumsum(widths))
     positions = nodes[:-1, None] + widths[:, None] * PLACES
@@ -63,6 +72,11 @@ def graded(widths: Array, wanted: Array) -> tuple[Array, Array]:
     near = np.abs(positions - peak[:, None]) <= wanted[:, None]
     width = np.where(near, wanted[:, None], np.maximum(wanted, widths)[:, None]).ravel()
     s = positions.ravel()
+    if around is not None and limit is not None:
+        close = np.clip(around[:, None] + np.concatenate([-_FAR, _FAR]), 0.0, 1.0).ravel()
+        every = np.sort(np.concatenate([s / s[-1], close]))
+        width = np.minimum(np.interp(every, s / s[-1], width), s[-1] * limit(every))
+        s = s[-1] * every
     width = np.minimum.accumulate(width - GRADING * s) + GRADING * s
     width = np.minimum.accumulate((width + GRADING * s)[::-1])[::-1] - GRADING * s
     share = np.append(0.0, np.cumsum(np.diff(s) * (1 / width[1:] + 1 / width[:-1]) / 2))

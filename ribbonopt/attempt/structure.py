@@ -43,7 +43,7 @@ class Structure:
     problem: BoundaryValueProblem
     sheets: Kinds = ()
     _programs: dict[Elements, tuple[NLP, Solver]] = field(default_factory=dict)
-    _phased: dict[Kinds, Structure] = field(default_factory=dict)
+    _phased: dict[tuple[Kinds, bool], Structure] = field(default_factory=dict)
 
     @classmethod
     def of(cls, posed: Posed) -> Structure:
@@ -58,16 +58,19 @@ class Structure:
         ribbon = Ribbon.of(posed)
         return cls(posed, ribbon, minimum(ribbon))
 
-    def in_phases(self, kinds: Kinds) -> Structure:
-        """Return the same in phases of these kinds, built once; for none, this."""
+    def in_phases(self, kinds: Kinds, *, free: bool = False) -> Structure:
+        """Return the same in phases of these kinds, built once; for none, this.
+
+        `free` leaves out conditions that are to spare, see `ribbonopt.problem.switched`.
+        """
         if not kinds:
             return self
-        if kinds not in self._phased:
+        if (kinds, free) not in self._phased:
             from ribbonopt.problem.switched import switched  # most ribbons keep their sign
 
-            problem = switched(self.ribbon, kinds)
-            self._phased[kinds] = Structure(self.posed, self.ribbon, problem, kinds)
-        return self._phased[kinds]
+            problem = switched(self.ribbon, kinds, free=free)
+            self._phased[kinds, free] = Structure(self.posed, self.ribbon, problem, kinds)
+        return self._phased[kinds, free]
 
     def on(self, elements: Elements) -> tuple[NLP, Solver]:
         """Return program and solver on numbers of elements in each phase, built once."""
@@ -101,15 +104,18 @@ class Structure:
         """
         if posed is not self.posed and posed.structure != self.posed.structure:
             raise ModelError("this scene differs from the prepared one in more than its numbers")
-        mesh = mesh or self._mesh(switches)
+        mesh = mesh or self.mesh(switches)
         nlp, solver = self.on(mesh.elements)
         p = nlp.layout.parameters(posed.values, mesh.widths)
         parts = self.ribbon, self.problem, nlp, solver, self.sheets, switches
         return Attempt(posed, p, *parts, ledger or Ledger())
 
-    def _mesh(self, switches: Array | None) -> Mesh:
-        """Uniform elements; in phases, of about the width they would have without."""
-        count = self.posed.scene.transcription.intervals
+    def mesh(self, switches: Array | None, least: int = 0) -> Mesh:
+        """Uniform elements, `least` or more; in phases, of about the width they would have without.
+
+        `switches` are the fractions of the length where phases meet.
+        """
+        count = max(self.posed.scene.transcription.intervals, least)
         if switches is None or not len(switches):
             return Mesh.uniform(count)
         shares = np.diff(np.concatenate([[0.0], switches, [1.0]]))

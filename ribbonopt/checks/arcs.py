@@ -6,18 +6,22 @@ it stays near zero with |eta| > 1 however small delta is.
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
 
 from ribbonopt.arrays import Array
+from ribbonopt.guess import Guess
 from ribbonopt.problem import Ribbon
 from ribbonopt.solution.solution import Solution
 from ribbonopt.transcription.buffered import Mapped
 
 NEGLIGIBLE = 1e-7  # m2 over the largest |m| that has no sign
 BEYOND = 1.05  # |eta| of a mixture
+MARGIN = 1e-6  # of the largest moment: how far below zero a margin of the law may be
+EMPTY = 1e-5  # of the length of the ribbon: a phase that may not be there
 SHORTEST = 0.01  # of an arc of a mixture, and of the phase before one that begins at an end
 
 
@@ -42,6 +46,16 @@ def changed_phases(before: tuple[int, ...], after: tuple[int, ...]) -> str:
     return f"phases: {phase_words(after)}; at the point before: {phase_words(before)}"
 
 
+MIXTURE = Arcs((0,), np.empty(0))  # from end to end
+
+
+def is_mixture(guess: Guess) -> bool:
+    """Whether a guess has twist and no m2 from end to end."""
+    fields = guess.fields(np.linspace(0.0, 1.0, 9))
+    _, m2, m3 = np.abs(np.einsum("ki,kij->jk", fields.m, fields.frames))
+    return bool(m2.max() <= NEGLIGIBLE * m3.min())
+
+
 def sign_changes(solution: Solution) -> Arcs:
     """Return the arcs between sign changes of the law's switch, as far as the stages can tell.
 
@@ -62,23 +76,62 @@ def sign_changes(solution: Solution) -> Arcs:
     return Arcs(kinds, switches)
 
 
-def with_mixtures(sharp: Solution, blunt: Solution) -> Arcs:
-    """Return the arcs of a smooth law, mixtures among them.
+def leaps(solution: Solution) -> bool:
+    """Whether the law's strains would leap at a sign change: not where the ribbon is planar."""
+    return bool((solution.at_stages["leap"] > NEGLIGIBLE * _scale(solution)).any())
+
+
+def with_mixtures(sharp: Solution, blunt: Solution) -> Iterator[Arcs]:
+    """Yield arcs of a smooth law with mixtures among them, the likeliest first; none without.
 
     `sharp` and `blunt` are its solutions at a small delta and at three times that: a layer shrinks
-    from one to the other, a mixture does not.
+    from one to the other, a mixture does not. One that reaches an end of the ribbon stays one to
+    the end if m2 is zero there, as on the axis of a symmetric band. At a clamp it does by design
+    only, as a helix does that is a mixture all along: else a short phase of one sheet is between.
     """
-    found = _beyond(sharp)
     before = _beyond(blunt)
     mixtures = []
-    for a, b in found:
+    for a, b in _beyond(sharp):
         overlap = [(c, d) for c, d in before if c < b and d > a]
         width = sum(d - c for c, d in overlap)
         if b - a > max(SHORTEST, 0.6 * width):
-            mixtures.append((max(a, SHORTEST), min(b, 1 - SHORTEST)))
+            mixtures.append((a, b))
     if not mixtures:
-        return sign_changes(sharp)
-    return _interleaved(sign_changes(sharp), mixtures)
+        return
+    zero = np.abs(sharp.at_nodes["switching"][[0, -1]]) <= NEGLIGIBLE * _scale(sharp)
+    arcs = sign_changes(sharp)
+    apart, to_ends = (
+        _interleaved(arcs, [_reaching(mixture, *gaps) for mixture in mixtures])
+        for gaps in (np.where(zero, 0.0, SHORTEST), (0.0, 0.0))
+    )
+    if apart.kinds == to_ends.kinds:
+        yield apart
+    else:
+        yield from (to_ends, apart) if to_ends.kinds == (0,) else (apart, to_ends)
+
+
+def without_empty(solution: Solution) -> Arcs | None:
+    """Return the arcs of a solution without phases that seem to have no length, if any do.
+
+    Such a length is often a double root, and known to half the digits.
+    """
+    ends = solution.trajectory.ends
+    lengths = np.diff(ends)
+    if not (np.abs(lengths) <= EMPTY).any() or (lengths < -EMPTY).any():
+        return None
+    kinds: list[int] = []
+    switches: list[float] = []
+    for kind, start, length in zip(solution.sheets, ends, lengths, strict=False):
+        if length > EMPTY and (not kinds or kinds[-1] != kind):
+            switches += [float(start)] if kinds else []
+            kinds.append(kind)
+    return Arcs(tuple(kinds), np.array(switches))
+
+
+def _reaching(mixture: tuple[float, float], first: float, last: float) -> tuple[float, float]:
+    """Fractions of a mixture that stops at gaps from the ends of the ribbon where it is near."""
+    a, b = mixture
+    return first if a < SHORTEST else a, 1 - last if b > 1 - SHORTEST else b
 
 
 def _interleaved(arcs: Arcs, mixtures: list[tuple[float, float]]) -> Arcs:
@@ -110,15 +163,17 @@ def _scale(solution: Solution) -> float:
     return float(np.abs(solution.at_stages["m"]).max())
 
 
-def phase_problems(solution: Solution, ribbon: Ribbon) -> list[str]:
+def phase_problems(solution: Solution, ribbon: Ribbon, accuracy: float) -> list[str]:
     """Say where a solution in phases is not one of the law: wrong side of its switch, no mixture.
 
-    Margins of a law are compared in units Dw = L = 1.
+    Margins of a law are compared in units Dw = L = 1. `accuracy` is that of the equations, relative
+    to the largest load: what must be zero is so to that.
     """
     problems = []
     v, fraction, _, phase = solution.trajectory.stages
     nodes, theta = v[:, : len(ribbon.states)], solution.dense.theta
-    tolerance = 1e-6 * float(np.abs(solution.trajectory.at_stages["m"]).max())
+    scale, force = (float(np.abs(solution.trajectory.at_stages[v]).max()) for v in "mn")
+    loads = max(scale, force)
     s = solution.posed.scene.interval[0] + solution.posed.length * fraction
     start, end = solution.scene.interval
     ends = start + (end - start) * solution.trajectory.ends
@@ -126,15 +181,18 @@ def phase_problems(solution: Solution, ribbon: Ribbon) -> list[str]:
     for i, kind in enumerate(solution.sheets):
         rows = phase == i
         where = f"between s = {ends[i]:.4g} and {ends[i + 1]:.4g}"
-        names, margins = ribbon.kept(_margins)[kind]
+        names, count, margins = ribbon.kept(_margins)[kind]
         (values,) = margins(nodes[rows], constants, theta, s[rows])
         least = values.reshape(-1, len(names)).min(axis=0)
-        short = zip(names, least, strict=True)
-        problems += [name.format(where=where) for name, value in short if value < -tolerance]
+        allowed = np.where(np.arange(len(names)) < count, MARGIN * scale, accuracy * loads)
+        short = zip(names, least, allowed, strict=True)
+        problems += [name.format(where=where) for name, value, most in short if value < -most]
     return problems
 
 
-def _margins(ribbon: Ribbon) -> dict[int, tuple[tuple[str, ...], Mapped]]:
-    """Names of the margins of every kind of phase, and their values at stages."""
+def _margins(ribbon: Ribbon) -> dict[int, tuple[tuple[str, ...], int, Mapped]]:
+    """Names of the margins of every kind of phase, how many are none of zeros, and all values."""
     found = {kind: ribbon.margins_function(kind) for kind in (-1, 0, 1)}
-    return {kind: (names, Mapped(function)) for kind, (names, function) in found.items()}
+    return {
+        kind: (names, count, Mapped(function)) for kind, (names, count, function) in found.items()
+    }

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ribbonopt.arrays import Array
 
@@ -34,11 +35,30 @@ def writhe(r: Array) -> float:
     Every pair of segments contributes the signed area on the sphere of the directions from which
     they are seen to cross (Levitt 1983; Klenin and Langowski 2000, method 1a).
     """
-    return sum(map(_seen_areas, _pairs(r))) / (2 * np.pi)
+    return sum(float(_seen_areas(pairs).sum()) for pairs in _pairs(r)) / (2 * np.pi)
 
 
-def _seen_areas(segments: list[Array]) -> float:
-    """Sum of the signed areas of pairs of segments."""
+def writhe_and_crossings(r: Array) -> tuple[float, int]:
+    """Writhe of the closed polygon r (k, 3) but for segments that meet, and how often they do.
+
+    That is the writhe midway: where the line passes through itself it changes by 2.
+    """
+    reach = 2 * float(np.linalg.norm(np.roll(r, -1, axis=0) - r, axis=1).max())
+    area, places = 0.0, np.empty((3, 0))
+    for pairs in _pairs(r):
+        meet = _meet(pairs, MEETING * _length(r))
+        area += float(_seen_areas([points[:, ~meet] for points in pairs]).sum())
+        places = np.hstack([places, (pairs[0] + pairs[1])[:, meet] / 2])
+    count = 0
+    while places.size:
+        count += 1
+        away = np.linalg.norm(places - places[:, :1], axis=0) > reach
+        places = places[:, away]
+    return area / (2 * np.pi), count
+
+
+def _seen_areas(segments: list[Array]) -> Array:
+    """Signed areas (pairs,) of pairs of segments."""
     a, b, c, d = segments
     ac, ad, bc, bd = c - a, d - a, c - b, d - b
     normals = [_unit(_cross(u, v)) for u, v in ((ac, ad), (ad, bd), (bd, bc), (bc, ac))]
@@ -47,28 +67,31 @@ def _seen_areas(segments: list[Array]) -> float:
         sine = np.einsum("ij,ij->j", normals[k], normals[k - 1])
         area += np.arcsin(np.clip(sine, -1.0, 1.0))
     side = np.einsum("ij,ij->j", _cross(d - c, b - a), ac)
-    return float(np.sign(side) @ area)
+    return np.asarray(np.sign(side) * area)
 
 
 def crosses_itself(r: Array) -> bool:
     """Whether two segments of the closed polygon r (k, 3) meet, to 1e-6 of its length."""
-    length = float(np.linalg.norm(np.roll(r, -1, axis=0) - r, axis=1).sum())
-    return any(_meet(segments, MEETING * length) for segments in _pairs(r))
+    return any(_meet(pairs, MEETING * _length(r)).any() for pairs in _pairs(r))
 
 
-def _meet(segments: list[Array], distance_of_meeting: float) -> bool:
-    """Whether two segments of a pair are that near to one another."""
+def _length(r: Array) -> float:
+    return float(np.linalg.norm(np.roll(r, -1, axis=0) - r, axis=1).sum())
+
+
+def _meet(segments: list[Array], distance_of_meeting: float) -> NDArray[np.bool_]:
+    """Whether the two segments of each pair are that near to one another."""
     a, b, c, d = segments
     first, second, gap = b - a, d - c, c - a
     normal = _cross(first, second)
     size = np.einsum("ij,ij->j", normal, normal)
     skew = size > 0
-    first, second, gap, normal = (v[:, skew] for v in (first, second, gap, normal))
-    distance = np.abs(np.einsum("ij,ij->j", gap, normal)) / np.sqrt(size[skew])
+    size = np.where(skew, size, 1.0)
+    distance = np.abs(np.einsum("ij,ij->j", gap, normal)) / np.sqrt(size)
     # Where on each segment, from 0 to 1, the lines through them are nearest.
-    places = [np.einsum("ij,ij->j", _cross(gap, v), normal) / size[skew] for v in (second, first)]
+    places = [np.einsum("ij,ij->j", _cross(gap, v), normal) / size for v in (second, first)]
     inside = (np.abs(np.array(places) - 0.5) < 0.51).all(axis=0)
-    return bool((distance[inside] < distance_of_meeting).any())
+    return np.asarray(skew & inside & (distance < distance_of_meeting))
 
 
 def _pairs(r: Array) -> Iterator[list[Array]]:

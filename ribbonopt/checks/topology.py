@@ -17,7 +17,7 @@ from ribbonopt.scene import Loop
 from ribbonopt.solution.solution import Solution
 
 from .flip import TOLERANCE, Flip, find_flip, flip_at
-from .polygons import crosses_itself, half_twists, writhe
+from .polygons import half_twists, writhe, writhe_and_crossings
 
 POINTS = (100, 200, 400, 800)  # of the closed polygon, until its writhe is stable
 STABLE = 0.01  # change of the writhe against half the points
@@ -136,9 +136,12 @@ def loop_problems(solution: Solution, loop: Loop, allowed: float) -> list[str]:
 def _counted(band: ClosedBand, asked: int | None) -> tuple[int, float]:
     """Half twists of a band; those asked for where it is midway between them and others."""
     found, off = band.half_twists()
-    # Passing through itself, a centre line gains or loses four: the figure of eight has 2 or -2.
-    if asked is not None and (found - asked) % 4 == 0 and found != asked:
-        if crosses_itself(band.line(POINTS[1])):
+    if asked is not None and found != asked:
+        # Passing through itself a line gains or loses four: the figure of eight has 2 or -2.
+        rest, crossings = writhe_and_crossings(band.line(POINTS[1]))
+        middle = 2 * (band.twist + rest)
+        passed = (asked - middle) / 4 + crossings / 2
+        if abs(passed - round(passed)) < WHOLE and 0 <= round(passed) <= crossings:
             return asked, off
     return found, off
 

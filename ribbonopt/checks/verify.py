@@ -15,7 +15,7 @@ from ribbonopt.accuracy.estimate import LEAST, analyse
 from ribbonopt.arrays import Array
 from ribbonopt.problem import Ribbon
 from ribbonopt.solution.solution import Solution
-from ribbonopt.solution.verification import Verification, unverified
+from ribbonopt.solution.verification import NO_LENGTH, Verification, unverified
 from ribbonopt.transcription.buffered import Buffered
 
 TOLERANCE = 1e-8
@@ -25,7 +25,7 @@ JUMP = 1e-6  # of the largest moment, on either side of a jump of the law
 
 def verify(solution: Solution, ribbon: Ribbon) -> Verification:
     """Check a solution against its scene."""
-    if not (np.diff(solution.trajectory.ends) > 0).all():
+    if not (np.diff(solution.trajectory.ends) > NO_LENGTH).all():
         problem = "a phase between two sign changes of m2 has no length"
         return replace(unverified(), problems=(problem,))
     worst_name, worst = _worst_condition(solution, ribbon)
@@ -48,7 +48,7 @@ def verify(solution: Solution, ribbon: Ribbon) -> Verification:
     if solution.sheets:
         from .arcs import phase_problems  # few scenes have phases
 
-        problems += phase_problems(solution, ribbon)
+        problems += phase_problems(solution, ribbon, TOLERANCE + residual)
     if ribbon.law.bounds_eta and not solution.problem.recovered:
         eta = np.abs(nodes["eta"])
         if 0 in solution.sheets:

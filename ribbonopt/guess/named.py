@@ -56,7 +56,7 @@ def guess_of(posed: Posed, ribbon: Ribbon) -> Guess | None:
     if isinstance(guess, LoadGuess):
         return IntegratedLoads(ribbon, posed, guess)
     shape = shape_of(posed)
-    return None if shape is None else ShapeGuess(shape, _moments(posed, ribbon))
+    return None if shape is None else ShapeGuess(shape, moments_of(posed, ribbon))
 
 
 def shape_of(posed: Posed) -> Shape | None:
@@ -97,7 +97,7 @@ def loop_shape(posed: Posed, loop: Loop) -> TwistedCircle:
     return TwistedCircle(*place, 2 * np.pi * share, np.pi * loop.half_twists * share, length)
 
 
-def _moments(posed: Posed, ribbon: Ribbon) -> Callable[[Array], Array]:
+def moments_of(posed: Posed, ribbon: Ribbon) -> Callable[[Array], Array]:
     """Return the moments (k, 3) of the law at strains (k, 3), components that it has none of zero.
 
     Where the law has numbers that depend on s, those at the start.

@@ -93,8 +93,9 @@ class TwistedCircle(Shape):
 class Chord(Shape):
     """Straight line between two ends, frames by slerp, bowed as a strip that is shortened buckles.
 
-    `turns` are whole turns about d3 beyond the shortest rotation; `bow` is the amplitude of the
-    tangent's angle about d2, and zero at both ends.
+    `turns` are whole turns about d3 beyond the rotation from end to end: the shortest, or `winding`
+    (3,), its vector along the directors of the start. `bow` is the amplitude of the tangent's angle
+    about d2, and zero at both ends.
     """
 
     start: tuple[Array, Array]
@@ -102,14 +103,15 @@ class Chord(Shape):
     length: float
     bow: float = 0.0
     turns: float = 0.0
+    winding: Array | None = None
 
     def frames(self, fraction: Array) -> Array:
         f = fraction[:, None]
         (_, first), (_, last) = self.start, self.end
-        shortest = turn_vector(first.T @ last)
+        turn = turn_vector(first.T @ last) if self.winding is None else self.winding
         twist = turns_about(2 * np.pi * self.turns * f * np.eye(3)[2])
         bow = turns_about(self.bow * np.sin(2 * np.pi * f) * np.eye(3)[1])
-        return np.asarray(first @ turns_about(f * shortest) @ twist @ bow)
+        return np.asarray(first @ turns_about(f * turn) @ twist @ bow)
 
     def positions(self, fraction: Array) -> Array:
         (first, _), (last, _) = self.start, self.end
@@ -121,6 +123,8 @@ class Chord(Shape):
         (start, first), (end, last) = self.start, self.end
         gap = end - start - self.length * first[:, 2]
         close = 1e-9 * self.length
+        if self.winding is not None and self.winding.any():
+            return False
         return bool(np.abs(gap).max() < close and np.abs(first - last).max() < 1e-9)
 
 

@@ -54,6 +54,7 @@ def initial_unknowns(
         names = [problem.parameter_names.index(f"interval.{end}") for end in ("start", "end")]
         total = theta[names[1]] - theta[names[0]]
         constants = np.concatenate([constants, total * np.diff(ends)[:-1]])
+    constants = np.concatenate([constants, np.zeros(max(0, layout.nc - len(constants)))])
     return laid_out(blocks, v, constants[: layout.nc])
 
 

@@ -8,7 +8,7 @@ from __future__ import annotations
 import casadi as ca
 
 from .ends.conditions import CrossSection
-from .laws.law import ConstitutiveLaw
+from .laws.law import ConstitutiveLaw, Stress
 from .section import Section
 
 
@@ -35,6 +35,12 @@ def outputs(section: CrossSection, law: ConstitutiveLaw, u: ca.SX) -> dict[str, 
     result["orthonormality"] = _gram_error(rod)
     result |= dict(zip(map(own_name, law.states), ca.vertsplit(rod.own), strict=True))
     return result
+
+
+def singular(law: ConstitutiveLaw, stress: Stress) -> ca.SX:
+    """Where a law is singular at complex s, rows (re, im, size): `laws.law.Singular`."""
+    rows = [ca.horzcat(*where) for where in law.singular(stress)]
+    return ca.vertcat(ca.SX(0, 3), *rows)
 
 
 def own_name(state: str) -> str:

@@ -57,8 +57,8 @@ def _phases(s: Mapping[str, Any]) -> list[str]:
         lines.append(f"  half twists              {s['half_twists']}")
     if s["phases"]:
         at = ", ".join(f"{point:.6g}" for point in s["switch_points"])
-        arcs = phase_words(s["phases"])
-        lines.append(f"  phases                   {arcs}; switches at s = {at}")
+        where = f"; switches at s = {at}" if at else " all along"
+        lines.append(f"  phases                   {phase_words(s['phases'])}{where}")
     return lines
 
 
@@ -82,8 +82,16 @@ def _row(label: str, value: float | Sequence[float] | None, error: float | None)
     small = 0 < max(abs(v or 0.0) for v in values) < SMALL
     numbers = ", ".join(_number(v, error, small) for v in values)
     text = f"({numbers})" if isinstance(value, Sequence) else numbers
-    bar = "" if error is None else f"  +- {error:.0e}"
+    bar = "  +- not known" if error is None else f"  +- {_upwards(error)}"
     return f"  {label:<25}{text}{bar}"
+
+
+def _upwards(error: float) -> str:
+    """Write a bar with one digit, never smaller than it is."""
+    if not 0 < error < math.inf:
+        return f"{error:.0e}"
+    unit = 10.0 ** math.floor(math.log10(error))
+    return f"{math.ceil(error / unit * (1 - 1e-9)) * unit:.0e}"
 
 
 def _number(value: float | None, error: float | None, small: bool) -> str:

@@ -25,7 +25,7 @@ from ribbonopt.transcription import NLP
 
 from .search import Search
 from .skipped import skipped
-from .told import of_finer_mesh, of_starts
+from .told import judged, of_finer_mesh, of_starts, other_phases, regularized
 
 if TYPE_CHECKING:
     from ribbonopt.solvers import Solver
@@ -165,7 +165,11 @@ class Prepared:
             search.ledger.note(step, time.perf_counter() - started)
         led = done = own is not None and search.run(own, quick=quick)
         if not led and (own is None or fallback):
-            done = search.run_all(self.automatic.guesses(posed, search.ledger))
+            from .nothing import from_nothing  # IPOPT, which many scenes do without
+
+            guesses = partial(self.automatic.guesses, posed, search.ledger)
+            search = from_nothing(search, guesses, prepare)
+            done = search.settled
         if not led and own is not None and fallback:
             what = "the guess given" if guess else f"the guess ({words(posed.scene.guess)})"
             search.ledger.give_up(f"{what} led nowhere and was given up for the automatic start")
@@ -177,15 +181,17 @@ class Prepared:
         if best is None:
             raise _no_start()
         best = replace(best, steps=tuple(ledger.steps))
-        smooth = search.smooth_instead
-        if smooth is not None:
-            best = _regularized(best, smooth) or best
-        best = self.refined(best if done else search.judged(best))
+        found = regularized(best, search.smooth_instead, prepare)
+        best = found or self.refined(best if done else judged(best, search))
+        if (best.sheets != () and not best.verified) or best.status is Status.TOLERANCE_MISSED:
+            from .sharpening import without_phases  # after a failure only
+
+            best = without_phases(search, self, prepare) or best
         return replace(
             best,
             timings=ledger.timings(self.seconds, seconds),
             iterations=ledger.iterations,
-            given_up=(*ledger.given_up, *search.other_phases),
+            given_up=(*ledger.given_up, *other_phases(search)),
             fell_back=tuple(ledger.fell_back.values()),
             skipped=skipped(search.posed, self.problem, ledger, best.sheets),
         )
@@ -230,16 +236,6 @@ def prepare(scene: Scene) -> Prepared:
     examine(structure.ribbon, structure.problem, posed)
     structure.build()
     return Prepared(structure, time.perf_counter() - started)
-
-
-def _regularized(best: Solution, smooth: Solution) -> Solution | None:
-    """Return the equilibrium of the smooth law, labelled: none was found of the exact one."""
-    scene = replace(best.scene, law=smooth.scene.law, switching="off", guess="auto", starts=1)
-    found = prepare(scene).solve(guess=smooth, fallback=False)
-    if not found.verified:
-        return None
-    steps, status = (*best.steps, *found.steps), Status.REGULARIZED
-    return replace(found, status=status, message=status.value, steps=steps)
 
 
 def _no_start() -> ConvergenceError:

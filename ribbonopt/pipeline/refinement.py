@@ -13,10 +13,12 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from ribbonopt.accuracy.estimate import analyse, relative_error
+from ribbonopt.accuracy.estimate import SAFETY, analyse, relative_error
+from ribbonopt.accuracy.layers import Layers
 from ribbonopt.accuracy.remesh import (
     SIZES,
     UNSEEN,
+    WIDEST,
     analyticity,
     graded,
     redistributed,
@@ -35,9 +37,9 @@ if TYPE_CHECKING:
     from ribbonopt.scene import Scene
 
 ROUNDS = 20
-SAFE = 0.5  # share of the tolerance that the estimate, itself in error, must meet
 SLOW = 0.3  # share of the error before that a round should leave
-AIM = 0.2  # share of the tolerance that a new mesh aims at
+AIM = 0.5  # share of the tolerance that a new mesh aims at
+GROUND = 2e-14  # local error of an element that is rounding
 GROWTH = 2.0  # most that the number of elements grows in a round
 
 
@@ -69,17 +71,23 @@ def refine(
         With a status that says so where the tolerance could not be met.
     """
     first, steps, before = solution, list(solution.steps), np.inf
+    best, least, status = solution, np.inf, Status.TOLERANCE_MISSED
     for _ in range(ROUNDS):
         try:
             error, _ = relative_error(solution)
         except np.linalg.LinAlgError:
-            status = Status.SINGULAR
-            return replace(solution, status=status, message=status.value, steps=tuple(steps))
-        if error <= SAFE * tolerance:
+            lost = Status.SINGULAR
+            return replace(solution, status=lost, message=lost.value, steps=tuple(steps))
+        if error < least:
+            best, least = solution, error
+        if error <= tolerance:
             done = solution if solution is first else verified(solution, ribbon)
             return replace(done, steps=tuple(steps))
+        if _is_rounding(solution, tolerance):
+            status = Status.ROUNDED
+            break
         started = time.perf_counter()
-        mesh, short = _better_mesh(solution, aim * tolerance / error, error > SLOW * before)
+        mesh, short = _better_mesh(solution, aim * tolerance, error, error > SLOW * before)
         before = error
         attempt = attempt_on(mesh, solution.trajectory.ends[1:-1])
         if not attempt.run(solution, quick=True, check=False) or attempt.best is None:
@@ -94,8 +102,17 @@ def refine(
         )
         if short:
             break
+    if solution is not best and relative_error(solution)[0] > least:
+        solution = best
     solution = verified(replace(solution, steps=tuple(steps)), ribbon)
-    return _missed(solution, tolerance) if solution.verified else solution
+    return _missed(solution, tolerance, status) if solution.verified else solution
+
+
+def _is_rounding(solution: Solution, tolerance: float) -> bool:
+    """Whether every element is as exact as it can be: finer ones only add their rounding."""
+    found = analyse(solution)
+    inside = SAFETY * float(found.inside.max()) <= tolerance
+    return bool(found.local.max() <= GROUND and inside)
 
 
 def on_finer_mesh(missed: Solution, solve: Callable[[Scene], Solution]) -> Solution:
@@ -116,21 +133,29 @@ def on_finer_mesh(missed: Solution, solve: Callable[[Scene], Solution]) -> Solut
     return replace(found, iterations=iterations, timings=spent)
 
 
-def _better_mesh(solution: Solution, reduction: float, surprised: bool) -> tuple[Mesh, bool]:
-    """Return a mesh that reduces the error by a factor, and whether it is as fine as any may be.
+def _better_mesh(
+    solution: Solution, aim: float, error: float, surprised: bool
+) -> tuple[Mesh, bool]:
+    """Return a mesh that brings the error to `aim`, and whether it is as fine as any may be.
 
     `surprised` that the mesh before did not, it expects a layer that no stage has met so far.
     """
-    blocks, local = solution.dense.blocks, analyse(solution).local
+    blocks, found = solution.dense.blocks, analyse(solution)
+    local, known = found.local, found.layers
     widths, phases, short = blocks.widths(solution.dense.p), [], False
-    target = float(local.sum()) * reduction / len(local)
+    target = float(local.sum()) * min(1.0, aim / error) / len(local)
+    # Inside an element the collocation polynomial counts, whose order is lower.
+    inside = (SAFETY * found.inside / aim) ** (1 / (blocks.degree + 1))
     rho = analyticity(solution.dense.decay())
     if surprised:
         rho = np.where(local > target, UNSEEN, rho)
-    for part in blocks.layout.phase_slices:
+    lengths = np.diff(solution.trajectory.ends) * solution.trajectory.length
+    for part, near, length in zip(blocks.layout.phase_slices, known, lengths, strict=True):
         h = widths[part]
         wanted = wanted_widths(h, local[part], rho[part], blocks.order, target)
-        positions, share = graded(h, wanted)
+        wanted = np.minimum(wanted, h / np.maximum(inside[part], 1 / WIDEST))
+        limits = _limits(near, blocks.order, target / length) if len(near) else ()
+        positions, share = graded(h, wanted, *limits)
         count = max(int(np.ceil(share[-1])), len(h) // 2)
         size = size_for(min(count, int(GROWTH * len(h))))
         short = short or (size == SIZES[-1] and count > size)
@@ -138,7 +163,12 @@ def _better_mesh(solution: Solution, reduction: float, surprised: bool) -> tuple
     return Mesh(tuple(phases)), short
 
 
-def _missed(solution: Solution, tolerance: float) -> Solution:
+def _limits(near: Layers, order: int, target: float) -> tuple[Array, Callable[[Array], Array]]:
+    """Return where layers are, and the widths that resolve them."""
+    return near.places.real, lambda positions: near.widths(positions, order, target)
+
+
+def _missed(solution: Solution, tolerance: float, status: Status) -> Solution:
     """Return the solution, with what keeps its error from being small enough."""
     error, name = relative_error(solution)
     if error <= tolerance:
@@ -148,9 +178,9 @@ def _missed(solution: Solution, tolerance: float) -> Solution:
     a, b = solution.nodes[element], solution.nodes[element + 1]
     return replace(
         solution,
-        status=Status.TOLERANCE_MISSED,
+        status=status,
         message=(
-            f"{Status.TOLERANCE_MISSED.value}. The relative error of {name} is {error:.1e}, asked "
+            f"{status.value}. The relative error of {name} is {error:.1e}, asked "
             f"was {tolerance:.1e}, on {len(local)} intervals; most of it comes from s = {a:.4g} to "
             f"s = {b:.4g}"
         ),

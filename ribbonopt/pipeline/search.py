@@ -10,7 +10,7 @@ phase assumes.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -19,12 +19,21 @@ from ribbonopt.arrays import Array
 from ribbonopt.attempt.attempt import Attempt
 from ribbonopt.attempt.ledger import Ledger
 from ribbonopt.attempt.structure import Structure
-from ribbonopt.checks.arcs import Arcs, sign_changes, with_mixtures
+from ribbonopt.checks.arcs import (
+    MIXTURE,
+    Arcs,
+    is_mixture,
+    sign_changes,
+    with_mixtures,
+    without_empty,
+)
 from ribbonopt.guess import Guess
+from ribbonopt.guess.balanced import Balanced
+from ribbonopt.guess.flat import Flattened, nearly_flat
+from ribbonopt.mechanics.laws.smooth import sharpness
 from ribbonopt.problem import Posed
 from ribbonopt.scene import Scene
 from ribbonopt.solution.solution import Solution
-from ribbonopt.solvers import Status
 from ribbonopt.transcription import Mesh
 
 
@@ -41,13 +50,16 @@ class Search:
     ledger : Ledger
         Steps so far, with their cost.
     smooth : list of Solution
-        Equilibria of the smooth law met on the way, delta decreasing.
+        Equilibria of the smooth law met on the way.
+    tried : set of tuples of int
+        Kinds of phases that sharper ones of these showed, and that led nowhere.
     """
 
     posed: Posed
     structure: Structure
     ledger: Ledger = field(default_factory=Ledger)
     smooth: list[Solution] = field(default_factory=list)
+    tried: set[tuple[int, ...]] = field(default_factory=set)
     last: Attempt | None = None
 
     @cached_property
@@ -61,30 +73,59 @@ class Search:
         A guess that has phases itself is tried in these first.
         """
         if isinstance(guess, Solution) and guess.sheets and self.phases_help:
-            if self._run_phases(Arcs(guess.sheets, guess.trajectory.ends[1:-1]), guess):
+            if self.run_in(Arcs(guess.sheets, guess.trajectory.ends[1:-1]), guess):
+                return True
+        if self.needs_phases and not isinstance(guess, Solution) and is_mixture(guess):
+            if self.run_in(MIXTURE, Balanced(guess)):
                 return True
         if not self.plain.run(guess, quick=quick, check=not self.phases_help):
             return False
-        found = self.plain.best
+        found = self._flattened(self.plain.best)
         if found is not None and self._in_given_phases(found):
             return True
         return self.plain.check() and found is not None and not self.jumps(found)
 
+    def run_in(self, arcs: Arcs, source: Guess, least: int = 0) -> bool:
+        """Try a guess in phases, on `least` intervals or more; whether that succeeds."""
+        structure = self.structure.in_phases(arcs.kinds)
+        mesh = structure.mesh(arcs.switches, least)
+        attempt = structure.attempt(self.posed, self.ledger, mesh, arcs.switches)
+        done = self._kept(attempt).run(source, quick=True)
+        found = attempt.best
+        if found is None or not found.status.converged:
+            return False
+        fewer = without_empty(found)
+        if fewer is not None and self.run_in(fewer, found, least):
+            return True
+        self._kept(attempt)
+        return done
+
     def run_smooth(self, guess: Solution) -> bool:
-        """Try an equilibrium of the smooth law; they come with delta increasing."""
-        self.smooth.insert(0, guess)
+        """Try an equilibrium of the smooth law.
+
+        The first one is sharp; sharper ones may follow, then blunter ones.
+        """
+        sharpest = self.sharpest
+        self.smooth.append(guess)
         if not self.phases_help:
             return self.plain.run(guess, quick=True)
-        if len(self.smooth) == 1:
+        if sharpest is None:
             return self._in_given_phases(guess) or (
                 not self.jumps(guess) and self.run(guess, quick=True)
             )
-        if len(self.smooth) == 2:
-            blunt, sharp = self.smooth
-            arcs = with_mixtures(sharp, blunt)
-            if 0 in arcs.kinds:
-                return self._run_phases(arcs, sharp)
-        return self.run(guess, quick=True)
+        sharp, blunt = sorted((guess, sharpest), key=_bluntness)
+        if sharp is guess or len(self.smooth) == 2:
+            every = list(with_mixtures(sharp, blunt))
+            if sharp is guess and self.jumps(sharp):
+                every.append(sign_changes(sharp))
+            for arcs in every:
+                if arcs.kinds in self.tried:
+                    continue
+                if arcs.kinds != MIXTURE.kinds:
+                    self.tried.add(arcs.kinds)
+                if self.run_in(*self._freed(arcs, sharp)):
+                    return True
+        return sharp is not guess and self.run(guess, quick=True)
 
     def run_all(self, guesses: Iterable[Guess]) -> bool:
         """Try the guesses of an automatic start, equilibria of the smooth law among them."""
@@ -101,34 +142,29 @@ class Search:
         return first is not None and not self.needs_phases and self.run(first)
 
     @property
-    def smooth_instead(self) -> Solution | None:
-        """The smooth law's sharpest equilibrium where none of a law that needs phases was found."""
+    def settled(self) -> bool:
+        """Whether there is a solution of the law that is asked for."""
         best = self.best
-        if best is None or not (self.needs_phases and self.smooth):
-            return None
-        wrong = not best.verified or (self.jumps(best) and not best.sheets)
-        return self.smooth[-1] if wrong else None
-
-    def judged(self, best: Solution) -> Solution:
-        """Return a solution, as a wrong one where its strains jump without a phase that ends there.
-
-        Newton's method may report success on one (see the module), which is then not refined.
-        """
-        if not best.verified or best.sheets or not self.jumps(best):
-            return best
-        what = "m2 changes sign along it, and no phases that end there were found"
-        status = Status.WRONG_SOLUTION
-        return replace(best, status=status, message=f"{status.value}. {what}")
+        return best is not None and best.verified and not self.smooth_instead
 
     @property
-    def other_phases(self) -> tuple[str, ...]:
-        """What the scene says of its phases and the solution does not have."""
-        named, best = self.posed.scene.switching, self.best
-        if not isinstance(named, tuple) or best is None or not best.verified:
-            return ()
-        wanted, found = len(named) + 1, max(len(best.sheets), 1)
-        words = f"the sign changes that `switching` names led nowhere: {found} phases, not {wanted}"
-        return () if found == wanted else (words,)
+    def energy(self) -> float:
+        """Energy of the best solution (Dw = L = 1)."""
+        return np.inf if self.best is None else self.best.trajectory.energy
+
+    @property
+    def smooth_instead(self) -> list[Solution]:
+        """Equilibria of the smooth law, sharpest first, where none was found of one with phases."""
+        best = self.best
+        if best is None or not self.needs_phases:
+            return []
+        wrong = not best.verified or (self.jumps(best) and not best.sheets)
+        return sorted(self.smooth, key=_bluntness) if wrong else []
+
+    @property
+    def sharpest(self) -> Solution | None:
+        """The sharpest equilibrium of the smooth law that was met."""
+        return min(self.smooth, key=_bluntness, default=None)
 
     def changes_sign(self, solution: Solution) -> bool:
         """Whether m2 changes sign along a solution."""
@@ -168,19 +204,37 @@ class Search:
         if not self.phases_help:
             return False
         if isinstance(self.posed.scene.switching, tuple):
-            if self._run_phases(_given(source, self.posed.scene), source):
+            if self.run_in(_given(source, self.posed.scene), source):
                 return True
         arcs = sign_changes(source)
-        return len(arcs.kinds) > 1 and self._run_phases(arcs, source)
+        return len(arcs.kinds) > 1 and self.run_in(arcs, source)
 
-    def _run_phases(self, arcs: Arcs, source: Solution) -> bool:
-        structure = self.structure.in_phases(arcs.kinds)
-        attempt = structure.attempt(self.posed, self.ledger, switches=arcs.switches)
-        return self._kept(attempt).run(source, quick=True)
+    def _freed(self, arcs: Arcs, source: Guess) -> tuple[Arcs, Guess]:
+        """Return arcs and a guess: nearer, for a mixture from end to end, by leaving m2 free."""
+        if arcs.kinds != MIXTURE.kinds:
+            return arcs, source
+        attempt = self.structure.in_phases(arcs.kinds, free=True).attempt(self.posed, self.ledger)
+        attempt.run(source, quick=True, check=False)
+        found = attempt.best
+        return arcs, source if found is None or not found.status.converged else found
+
+    def _flattened(self, found: Solution | None) -> Solution | None:
+        """Return what lies in a plane but for a little within it, if there it is a solution."""
+        if found is None or not self.needs_phases or not nearly_flat(found):
+            return found
+        attempt = self.structure.attempt(self.posed, self.ledger)
+        if attempt.run(Flattened(found), quick=True) and attempt.best is not None:
+            if not self.jumps(attempt.best):
+                self.plain = self._kept(attempt)
+        return self.plain.best
 
     def _kept(self, attempt: Attempt) -> Attempt:
         self.last = attempt
         return attempt
+
+
+def _bluntness(solution: Solution) -> float:
+    return sharpness(solution.posed.scene.law, 1.0)
 
 
 def _given(source: Solution, scene: Scene) -> Arcs:

@@ -48,6 +48,9 @@ class Phase:
         Length of the phase, from constants and parameters.
     outputs : mapping of str to SX
         Expressions to sample on a solution.
+    singular : SX (k, 3)
+        Rows (a, b, size): where a + ib is zero at complex s, the equations are singular, by as
+        much as size says. Of use to meshes and error bars.
     """
 
     dynamics: ca.SX
@@ -56,6 +59,7 @@ class Phase:
     algebraic: ca.SX = field(default_factory=lambda: ca.SX(0, 1))
     path: ca.SX = field(default_factory=lambda: ca.SX(0, 1))
     cost: ca.SX | None = None
+    singular: ca.SX = field(default_factory=lambda: ca.SX(0, 3))
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,6 +89,8 @@ class BoundaryValueProblem:
         k, in dynamics, algebraic equations, inequalities, costs and outputs of the phases.
     known_at : tuple of SX symbols (nk,)
         k at each of the points, for conditions; empty if no condition contains it.
+    conserved : tuple of str
+        Outputs that are constant along the solution, and yet not by construction.
     """
 
     position: ca.SX
@@ -107,6 +113,7 @@ class BoundaryValueProblem:
     known: ca.SX = field(default_factory=lambda: ca.SX(0, 1))
     known_at: tuple[ca.SX, ...] = ()
     known_names: tuple[str, ...] = ()
+    conserved: tuple[str, ...] = ()
     _kept: dict[Callable[..., Any], Any] = field(default_factory=dict, init=False, repr=False)
 
     def __post_init__(self) -> None:
@@ -177,11 +184,21 @@ class BoundaryValueProblem:
     @cached_property
     def output_functions(self) -> tuple[tuple[ca.Function, dict[str, int]], ...]:
         """For each phase: function (v, c, theta, [s; k]) of its outputs in a column, and sizes."""
-        v, place = ca.vertcat(self.state, self.algebraic), ca.vertcat(self.position, self.known)
-        inputs = [v, self.constants, self.parameters, place]
         result = []
         for phase in self.phases:
             column = ca.densify(ca.vertcat(*phase.outputs.values()))
             sizes = {name: int(value.numel()) for name, value in phase.outputs.items()}
-            result.append((ca.Function("outputs", inputs, [column]), sizes))
+            result.append((ca.Function("outputs", self._along, [column]), sizes))
         return tuple(result)
+
+    @cached_property
+    def singular_functions(self) -> tuple[ca.Function, ...]:
+        """For each phase: function (v, c, theta, [s; k]) of its singularities, row after row."""
+        rows = (ca.densify(ca.vec(phase.singular.T)) for phase in self.phases)
+        return tuple(ca.Function("singular", self._along, [column]) for column in rows)
+
+    @property
+    def _along(self) -> list[ca.SX]:
+        """Inputs of functions of one place of a phase."""
+        v, place = ca.vertcat(self.state, self.algebraic), ca.vertcat(self.position, self.known)
+        return [v, self.constants, self.parameters, place]

@@ -9,7 +9,7 @@ import casadi as ca
 
 from ribbonopt.mechanics.ends.conditions import CrossSection
 from ribbonopt.mechanics.laws.law import ConstitutiveLaw, Stress
-from ribbonopt.mechanics.outputs import outputs
+from ribbonopt.mechanics.outputs import outputs, singular
 
 from .contract import BoundaryValueProblem, Phase
 from .ribbon import Ribbon
@@ -90,6 +90,7 @@ def equilibrium(
         outputs=outputs(unknowns.section, ribbon.law, u),
         algebraic=empty if equations is None else equations,
         path=empty if path is None else path,
+        singular=singular(ribbon.law, unknowns.stress),
     )
     points = ca.SX.sym("start", x.numel()), ca.SX.sym("end", x.numel())
     count = unknowns.x.numel()
@@ -115,4 +116,5 @@ def equilibrium(
         local=local,
         estimate=estimated,
         algebraic_start=empty if algebraic_start is None else algebraic_start,
+        conserved=ribbon.conserved,
     )

@@ -98,6 +98,11 @@ class Ribbon:
         return not ca.depends_on(strain, self.position)
 
     @property
+    def conserved(self) -> tuple[str, ...]:
+        """Outputs that stay constant: H of a uniform law with an energy, without loads."""
+        return ("H",) if self.law.variational and self.uniform and not self.loads else ()
+
+    @property
     def states(self) -> tuple[str, ...]:
         """Names of the states along s: those of the model, then those of the law."""
         return (*self.model.states, *self.law.states)
@@ -172,14 +177,19 @@ class Ribbon:
         inputs = [start, end, c, self.parameters]
         return tuple(verdicts), ca.Function("verdicts", inputs, [ca.vertcat(*verdicts.values())])
 
-    def margins_function(self, kind: int) -> tuple[tuple[str, ...], ca.Function]:
-        """Names, and function (x, c, theta, s), of the margins of a phase of a kind."""
+    def margins_function(self, kind: int) -> tuple[tuple[str, ...], int, ca.Function]:
+        """Names, how many are margins, and function (x, c, theta, s) along a phase of a kind.
+
+        Its values (k,) are the margins of the law, then minus the sizes of what must be zero.
+        """
         x, c = ca.SX.sym("x", len(self.states)), ca.SX.sym("c", len(self.constants))
         stress = self.section(x, c).rod.stress
         margins = self.law.margins(kind, stress, self.law.branch(kind).strain(stress))
-        column = ca.densify(ca.vertcat(*margins.values()))
+        zeros = self.law.zeros(kind, stress)
+        values = *margins.values(), *(-ca.fabs(value) for value in zeros.values())
         inputs = [x, c, self.parameters, self.position]
-        return tuple(margins), ca.Function("margins", inputs, [column])
+        function = ca.Function("margins", inputs, [ca.densify(ca.vertcat(*values))])
+        return (*margins, *zeros), len(margins), function
 
     def context(self, start: ca.SX, end: ca.SX, c: ca.SX) -> Context:
         """Both ends, for conditions."""

@@ -10,8 +10,9 @@ from __future__ import annotations
 from dataclasses import replace
 
 import casadi as ca
+import numpy as np
 
-from ribbonopt.mechanics.outputs import outputs
+from ribbonopt.mechanics.outputs import outputs, singular
 
 from .contract import BoundaryValueProblem, Phase
 from .equilibrium import Unknowns
@@ -20,8 +21,12 @@ from .ribbon import Ribbon
 Kinds = tuple[int, ...]
 
 
-def switched(ribbon: Ribbon, kinds: Kinds) -> BoundaryValueProblem:
-    """Return the problem of a ribbon whose phases have these kinds: +1, -1, or 0 (mixture)."""
+def switched(ribbon: Ribbon, kinds: Kinds, *, free: bool = False) -> BoundaryValueProblem:
+    """Return the problem of a ribbon whose phases have these kinds: +1, -1, or 0 (mixture).
+
+    A mixture from end to end fits the ends by design or by symmetry only: it has conditions to
+    spare. `free`, they are left out, which leads there from afar; else they are met with slack.
+    """
     unknowns = Unknowns.of(ribbon)
     start, end = ribbon.interval
     lengths = ca.SX.sym("length", len(kinds) - 1)
@@ -32,16 +37,23 @@ def switched(ribbon: Ribbon, kinds: Kinds) -> BoundaryValueProblem:
     points = tuple(ca.SX.sym(f"point{i}", unknowns.x.numel()) for i in range(len(kinds) + 1))
     conditions = ribbon.residuals(points[0], points[-1], unknowns.c)
     at = start
-    for i, kind in enumerate(kinds[1:], start=1):
+    for i in range(1, len(kinds)):
         at = at + each[i - 1]
         here = [unknowns.x, ribbon.position], [points[i], at]
-        for name, value in ribbon.law.entering(kind, kinds[i - 1], unknowns.stress).items():
+        for name, value in ribbon.law.entering(kinds, i, unknowns.stress).items():
             (conditions[f"switch {i}: {name}"],) = ca.substitute([value], *here)
+    slack = ca.SX(0, 1)
+    if len(kinds) == 1 and not free:
+        zeros = ribbon.law.zeros(kinds[0], unknowns.stress)
+        here = [unknowns.x, ribbon.position], [points[0], start]
+        found = ca.substitute(list(zeros.values()), *here)
+        asked = {f"start: {name}": value for name, value in zip(zeros, found, strict=True)}
+        conditions, slack = _with_slack(conditions | asked, len(asked))
     return BoundaryValueProblem(
         position=ribbon.position,
         state=unknowns.x,
         algebraic=ca.SX(0, 1),
-        constants=ca.vertcat(unknowns.c, lengths),
+        constants=ca.vertcat(unknowns.c, lengths, slack),
         parameters=ribbon.parameters,
         start=start,
         phases=phases,
@@ -51,14 +63,32 @@ def switched(ribbon: Ribbon, kinds: Kinds) -> BoundaryValueProblem:
         constant_names=(
             *ribbon.constants,
             *(f"length of phase {i + 1}" for i in range(len(kinds) - 1)),
+            *(f"slack {i + 1}" for i in range(slack.numel())),
         ),
         parameter_names=tuple(ribbon.theta),
+        conserved=ribbon.conserved,
     )
 
 
+def _with_slack(conditions: dict[str, ca.SX], count: int) -> tuple[dict[str, ca.SX], ca.SX]:
+    """Return conditions of which `count` are too many with as many unknowns, and these.
+
+    All are relaxed in as many generic directions, so that they are square, and regular where all
+    agree; verification tells whether each holds.
+    """
+    slack = ca.SX.sym("slack", count)
+    directions = np.sin(1.0 + 7 * np.arange(len(conditions) * count)).reshape(-1, count)
+    pairs = zip(conditions.items(), directions, strict=True)
+    return {name: value + ca.dot(row, slack) for (name, value), row in pairs}, slack
+
+
 def _phase(ribbon: Ribbon, unknowns: Unknowns, kind: int, length: ca.SX) -> Phase:
-    u = ribbon.law.branch(kind).strain(unknowns.stress)
+    law = ribbon.law.branch(kind)
+    u = law.strain(unknowns.stress)
     section = replace(unknowns.section, u=u)
     return Phase(
-        dynamics=ribbon.rates(section, u), length=length, outputs=outputs(section, ribbon.law, u)
+        dynamics=ribbon.rates(section, u),
+        length=length,
+        outputs=outputs(section, ribbon.law, u),
+        singular=singular(law, unknowns.stress),
     )

@@ -56,7 +56,10 @@ class Quaternion:
 
 @dataclass(frozen=True)
 class RotationVector:
-    """A whole frame: axis times angle of the rotation that takes the lab axes to the directors."""
+    """A whole frame: axis times angle of the rotation that takes the lab axes to the directors.
+
+    More than half a turn counts as in `turns`.
+    """
 
     rotation_vector: Triple
 
@@ -75,7 +78,11 @@ class Turn:
 
 @dataclass(frozen=True)
 class Turns:
-    """A whole frame: the lab axes after these rotations, one after another."""
+    """A whole frame: the lab axes after these rotations in order; more than half a turn counts.
+
+    Where one is by more than half a turn, the automatic start winds the ribbon so, whole turns
+    included, from the frame of its start. Equations and other guesses know of the frame alone.
+    """
 
     turns: tuple[Turn, ...]
 

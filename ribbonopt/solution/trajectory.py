@@ -107,10 +107,28 @@ class Trajectory:
         phase = np.append(np.repeat(np.arange(len(counts)), counts), len(counts) - 1)
         return self._named(self.dense.at_nodes, self.nodes, phase)
 
+    def singular_at_stages(self, phase: int) -> Array:
+        """Rows (k, q, 3) of (a, b, size) at the stages of a phase: see `Phase.singular`."""
+        count = self.problem.phases[phase].singular.shape[0]
+        if not count:
+            return np.empty((0, 0, 3))
+        v, fraction, _, phases = self.stages
+        rows = phases == phase
+        s = self._extent[0] + self.length * fraction[rows]
+        places = self._places(phase, fraction[rows], s)
+        function = self.problem.kept(_singular)[phase]
+        (found,) = function(v[rows], self.dense.constants, self.dense.theta, places)
+        return found.reshape(-1, count, 3)
+
+    @property
+    def length(self) -> float:
+        """Length of the ribbon."""
+        return float(self._extent[1:].sum())
+
     @cached_property
     def energy(self) -> float:
         """Strain energy, by the quadrature of the scheme."""
-        return float(self._extent[1:].sum() * self.stages[2] @ self.at_stages["energy"])
+        return float(self.length * self.stages[2] @ self.at_stages["energy"])
 
     @cached_property
     def _extent(self) -> Array:
@@ -135,7 +153,7 @@ class Trajectory:
     def _named(self, v: Array, fraction: Array, phase: Phases) -> dict[str, Array]:
         sizes = self.problem.output_functions[0][1]
         column = np.empty((len(v), sum(sizes.values())))
-        s = self._extent[0] + self._extent[1:].sum() * fraction
+        s = self._extent[0] + self.length * fraction
         numbers = self.dense.constants, self.dense.theta
         for i, function in enumerate(self.problem.kept(_outputs)):
             rows = phase == i
@@ -155,6 +173,11 @@ class Trajectory:
 def _extent(problem: BoundaryValueProblem) -> Buffered:
     """Start and lengths on numpy arrays."""
     return Buffered(problem.extent_function)
+
+
+def _singular(problem: BoundaryValueProblem) -> tuple[Mapped, ...]:
+    """Return the singularities of each phase, for any number of places."""
+    return tuple(Mapped(function) for function in problem.singular_functions)
 
 
 def _outputs(problem: BoundaryValueProblem) -> tuple[Mapped, ...]:

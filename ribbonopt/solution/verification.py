@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+NO_LENGTH = 1e-9  # of the ribbon: a phase that is shorter is not there
+
 
 @dataclass(frozen=True, eq=False)
 class Verification:

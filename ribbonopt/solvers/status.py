@@ -58,6 +58,10 @@ class Status(Enum):
         "on more intervals or a higher degree (transcription), or raise the tolerance; where the "
         "law is nearly Sadowsky's and m2 changes sign, law: sadowsky itself is easier"
     )
+    ROUNDED = (
+        "the equations are solved, but rounding leaves the answer an error larger than the "
+        "tolerance, and on finer meshes it grows: raise the tolerance"
+    )
     UNREACHABLE = "the ends are further apart than the ribbon is long: bring them together"
 
     @property
@@ -68,6 +72,7 @@ class Status(Enum):
             Status.WRONG_SOLUTION,
             Status.REGULARIZED,
             Status.TOLERANCE_MISSED,
+            Status.ROUNDED,
         )
 
     @property
@@ -78,6 +83,7 @@ class Status(Enum):
             Status.WRONG_SOLUTION: "wrong-solution",
             Status.REGULARIZED: "regularized",
             Status.TOLERANCE_MISSED: "tolerance-missed",
+            Status.ROUNDED: "tolerance-missed",
         }
         return words.get(self, "not-converged")
 

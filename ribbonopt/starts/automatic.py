@@ -28,7 +28,7 @@ from .energy import least_energy_of
 from .first_shape import compresses, follower_loads, loaded, shapes_for
 from .homotopy import HomotopyPath, follow, smooth_of
 from .loops import closed_posed, fundamental_scene
-from .unfold import Unfolded
+from .unfold import unfolded
 
 FIRST, LAST = 0.3, 0.01  # delta of the first solve, and of the last unless the scene's is smaller
 AGAIN = 2  # how often the energy is minimised again where the path is lost
@@ -83,12 +83,11 @@ class Automatic:
 
     def _unfolded(self, posed: Posed, ledger: Ledger) -> Iterator[Guess]:
         """Yield what unfolds from the fundamental piece: least energy would untwist the band."""
-        piece, loop = fundamental_scene(posed.scene), posed.scene.boundary.loop
-        assert self._piece is not None and piece is not None and loop is not None
-        count = loop.fundamental.pieces // loop.pieces
+        piece = fundamental_scene(posed.scene)
+        assert self._piece is not None and piece is not None
         for guess in self._piece.guesses(Posed.of(piece), ledger):
             if isinstance(guess, Solution):
-                yield Unfolded(guess, loop.half_twists, count, *posed.start)
+                yield unfolded(guess, posed)
 
     def _points(self, posed: Posed, shape: Shape, ledger: Ledger) -> list[Solution]:
         """Equilibria on the way down, the nearest to the scene's law last."""

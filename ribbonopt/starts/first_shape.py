@@ -15,6 +15,7 @@ from ribbonopt.guess.shapes import Chord, Shape
 from ribbonopt.mechanics.ends.conditions import Component, Frame
 from ribbonopt.mechanics.ends.frames import DIRECTORS
 from ribbonopt.mechanics.ends.placement import LoadAlong
+from ribbonopt.mechanics.ends.winding import winding
 from ribbonopt.problem import Posed, Ribbon
 
 from .loops import loop_of
@@ -34,7 +35,8 @@ def shapes_for(posed: Posed) -> Iterator[Shape]:
     chord = float(np.linalg.norm(end[0] - start[0]))
     # A strip that buckles: chord / length = 1 - bow^2 / 4.
     bow = 2 * np.sqrt(max(0.0, 1 - chord / length))
-    plain = Chord(start, end, length)
+    wound = winding(posed.scene.boundary, posed.scene.parameters)
+    plain = Chord(start, end, length, winding=wound)
     if chord > length * (1 - 1e-9) and (posed.loads or compresses(posed, plain)):
         bow = SMALL_BOW
     yield replace(plain, bow=bow)
@@ -42,6 +44,9 @@ def shapes_for(posed: Posed) -> Iterator[Shape]:
         return
     if bow:
         yield replace(plain, bow=-0.5 * bow)
+    if wound is not None:
+        plain = replace(plain, winding=None)  # rather than nothing
+        yield replace(plain, bow=bow)
     for turns in (1.0, -1.0):
         yield replace(plain, bow=0.5 * bow, turns=turns)
 

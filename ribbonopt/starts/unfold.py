@@ -11,8 +11,10 @@ from dataclasses import dataclass
 import numpy as np
 
 from ribbonopt.arrays import Array
+from ribbonopt.checks.arcs import Arcs, leaps, sign_changes
 from ribbonopt.mechanics.rotations import turns_about
 from ribbonopt.mechanics.section import RodFields
+from ribbonopt.problem import Posed
 from ribbonopt.solution.solution import Solution
 
 
@@ -69,6 +71,39 @@ class Unfolded:
             n @ placed.T,
             m @ placed.T,
         )
+
+    @property
+    def arcs(self) -> Arcs | None:
+        """Arcs of this part, from those of the piece; None where the law leaps nowhere."""
+        piece = self.piece
+        if piece.sheets:
+            own = Arcs(piece.sheets, piece.trajectory.ends[1:-1])
+        elif not leaps(piece):
+            return None
+        else:
+            own = sign_changes(piece)
+        kinds: list[int] = []
+        switches: list[float] = []
+        for j in range(self.count):
+            # A flip about d2 reverses m2, and so does half a turn of the band about its tangent.
+            sign = (-1) ** ((j + 1) // 2)
+            step = -1 if j % 2 else 1
+            here = np.concatenate([own.switches, [1.0]])
+            ends = here if step > 0 else np.append(1 - own.switches[::-1], 1.0)
+            for kind, end in zip(own.kinds[::step], ends, strict=True):
+                if kinds and kinds[-1] == sign * kind:
+                    switches.pop()
+                else:
+                    kinds.append(sign * kind)
+                switches.append((j + float(end)) / self.count)
+        return Arcs(tuple(kinds), np.array(switches[:-1]))
+
+
+def unfolded(piece: Solution, posed: Posed) -> Unfolded:
+    """Return what a scene asks for of a band, unfolded from its fundamental piece."""
+    loop = posed.scene.boundary.loop
+    assert loop is not None
+    return Unfolded(piece, loop.half_twists, loop.fundamental.pieces // loop.pieces, *posed.start)
 
 
 def _flip(axis: Array) -> Array:

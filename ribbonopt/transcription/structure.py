@@ -157,6 +157,10 @@ class Output(Protocol):
     def stages(self, phase: int) -> tuple[Array, Array, Array]:
         """Values v (k, nv), relative positions (k,) and weights (k,) of a quadrature."""
 
+    @property
+    def growth(self) -> Array:
+        """Exponents (N,) of elements: where large, less is known between nodes than at them."""
+
     def decay(self) -> Array:
         """Sizes (N, K) of the Legendre coefficients of x' in every element; (N, 0) if unknown."""
 

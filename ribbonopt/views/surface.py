@@ -20,6 +20,7 @@ from .pieces import Array, Piece
 
 ETA_BOUND = 1.0  # generatrices are drawn at most this oblique: the bound (4.1) of Sadowsky's ribbon
 WIDTH_SHARE = 1 / 20  # half-width by default, of the length drawn
+LEAST_SHARE = 1 / 200  # half-width by default at least, though generatrices cross
 REGULAR_SLOPE = 0.8  # half_width |eta'| by default at most this
 LEAP_SLOPE = 0.7  # half_width |eta'| where eta leaps
 LEAST_LEAP = 1e-3
@@ -67,7 +68,7 @@ class Surface:
     leaps : bool
         Whether eta leaps somewhere.
     crossing : bool
-        Whether generatrices cross within the half-width (never with the default).
+        Whether generatrices cross within the half-width.
     """
 
     half_width: float
@@ -95,8 +96,8 @@ def sweep(pieces: tuple[Piece, ...], half_width: float | None = None) -> Surface
     pieces
         In order of arclength.
     half_width
-        Default: a twentieth of the length, or less so that no generatrices cross and those that
-        fan out where eta leaps leave room between.
+        Default: a twentieth of the length, or less (to a two-hundredth) so that no generatrices
+        cross and those that fan out where eta leaps leave room between.
 
     Raises
     ------
@@ -116,6 +117,7 @@ def sweep(pieces: tuple[Piece, ...], half_width: float | None = None) -> Surface
         apart = np.diff(np.array(where)[leaps])
         usual = float(np.median(apart)) if len(apart) else np.inf
         w = min(WIDTH_SHARE * length, LEAP_SHARE * usual, REGULAR_SLOPE * regular)
+        w = max(w, LEAST_SHARE * length)  # eta may be steep where there is next to no strain
     sheets = tuple(
         Sheet(piece, _drawn_eta(piece, w, *ends), w)
         for piece, ends in zip(pieces, pairwise(leaps), strict=True)

@@ -7,11 +7,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from ribbonopt.checks.polygons import crosses_itself
 from ribbonopt.checks.topology import (
     ClosedBand,
     closure,
     count_half_twists,
-    crosses_itself,
     half_twists,
     loop_problems,
     writhe,

@@ -220,7 +220,7 @@ def test_jumps_in_place_of_a_mixture_are_refused(
     prepared = prepare(clamp(*draw(number), tolerance=None))
     smooth = solve(clamp(*draw(number), law=VARIATIONAL, tolerance=None))
     search = prepared.search()
-    assert not search._run_phases(Arcs(kinds, np.array(switches)), smooth)
+    assert not search.run_in(Arcs(kinds, np.array(switches)), smooth)
     assert search.last is not None
     best = search.last.best
     assert best is not None

@@ -15,6 +15,7 @@ from ribbonopt.output.results import load_solution, save_solution
 from ribbonopt.output.summary import summarize
 from ribbonopt.pipeline import prepared as path
 from ribbonopt.pipeline.prepared import prepare, solve
+from ribbonopt.pipeline.told import judged
 from ribbonopt.scene import load_scene, loads_scene
 from ribbonopt.solvers import Status
 from ribbonopt.starts import automatic
@@ -105,10 +106,10 @@ def test_strains_that_jump_without_a_phase_are_a_wrong_solution(configs: Path) -
     assert right.sheets
     search = prepared.search()
     plain = replace(right, sheets=())
-    judged = search.judged(plain)
-    assert judged.status is Status.WRONG_SOLUTION
-    assert "m2 changes sign" in judged.message
-    assert search.judged(right) is right
+    found = judged(plain, search)
+    assert found.status is Status.WRONG_SOLUTION
+    assert "m2 changes sign" in found.message
+    assert judged(right, search) is right
 
 
 def test_a_row_of_a_batch_says_that_a_neighbour_helped(monkeypatch: pytest.MonkeyPatch) -> None:

@@ -12,7 +12,7 @@ import casadi as ca
 
 from .implicit import ImplicitLaw, polynomial_form
 from .law import ConstitutiveLaw, RibbonLaw, Stress
-from .relations import Components, blended_strain, inverse
+from .relations import Components, bending, blended_strain, inverse, sheet_sum
 from .sadowsky import SwitchedLaw
 
 
@@ -21,6 +21,10 @@ class BlendedLaw(SwitchedLaw):
 
     variational = False
     closed_moment = False
+
+    @property
+    def nonlinear(self) -> ca.SX | float:
+        return self.weights[0]
 
     @property
     @abstractmethod
@@ -41,6 +45,10 @@ class BlendedLaw(SwitchedLaw):
 
     def complementary(self, m2: ca.SX, m3: ca.SX) -> None:
         return None
+
+    def layers(self, m2: ca.SX, m3: ca.SX) -> tuple[Components, ...]:
+        rho, epsilon = self.weights
+        return ((2 * rho * m2, (1 - rho + rho * epsilon) * m3),)
 
     def sheet(self, chi: int) -> ConstitutiveLaw:
         return BlendedSheetLaw(*self.weights, chi)
@@ -79,6 +87,10 @@ class BlendedSheetLaw(RibbonLaw):
     variational = False
     closed_moment = False
 
+    @property
+    def nonlinear(self) -> ca.SX | float:
+        return self.rho
+
     def strains(self, m2: ca.SX, m3: ca.SX) -> Components:
         return blended_strain(m2, m3, self.rho, self.epsilon, self.chi)
 
@@ -90,3 +102,8 @@ class BlendedSheetLaw(RibbonLaw):
 
     def complementary(self, m2: ca.SX, m3: ca.SX) -> None:
         return None
+
+    def layers(self, m2: ca.SX, m3: ca.SX) -> tuple[Components, ...]:
+        # Beyond the end of the phase: the strain u2 has a pole there.
+        s = sheet_sum(m2, m3, self.chi)
+        return ((bending(self.chi * m2, s, self.rho, self.epsilon), ca.SX(0)),)

@@ -42,6 +42,18 @@ class Switch(NamedTuple):
     leap: ca.SX
 
 
+class Singular(NamedTuple):
+    """Where strains are singular as functions of complex s: where `re` + i `im` is zero.
+
+    `re` and `im` have one dimension, whichever; `size` says by how much strains change there, as a
+    moment. Near the real axis that is a layer, which a mesh must resolve to be of use.
+    """
+
+    re: ca.SX
+    im: ca.SX
+    size: ca.SX
+
+
 @dataclass(frozen=True, eq=False)
 class Relaxed:
     """A convexified energy as a smooth program over controls along the ribbon.
@@ -142,6 +154,10 @@ class ConstitutiveLaw(ABC):
         """Return where to start its own states, from n and m."""
         return ca.SX(0, 1)
 
+    def singular(self, stress: Stress) -> tuple[Singular, ...]:
+        """Return where strains are singular functions of complex s; nowhere if nothing is known."""
+        return ()
+
     # Switching: of use to kinked laws, and to find phases for them on solutions of smooth ones.
 
     def switching(self, stress: Stress) -> Switch:
@@ -155,12 +171,19 @@ class ConstitutiveLaw(ABC):
         """
         return self
 
-    def entering(self, kind: int, before: int, stress: Stress) -> Mapping[str, ca.SX]:
-        """Conditions, by name, where a phase of a kind begins after one of kind `before`."""
+    def entering(self, kinds: tuple[int, ...], i: int, stress: Stress) -> Mapping[str, ca.SX]:
+        """Conditions, by name, where phase i > 0 of phases of these kinds begins.
+
+        As many in all as there are phases after the first: their lengths are unknown.
+        """
         return {}
 
     def margins(self, kind: int, stress: Stress, u: ca.SX) -> Mapping[str, ca.SX]:
         """Return what must not be negative along a phase, by what is wrong where it is."""
+        return {}
+
+    def zeros(self, kind: int, stress: Stress) -> Mapping[str, ca.SX]:
+        """Return what must be zero along a phase, by what is wrong where it is not."""
         return {}
 
 
@@ -188,6 +211,23 @@ class RibbonLaw(ConstitutiveLaw):
 
     def strain(self, stress: Stress) -> ca.SX:
         return ca.vertcat(0, *self.strains(stress.m[1], stress.m[2]))
+
+    def singular(self, stress: Stress) -> tuple[Singular, ...]:
+        """Where m2 = m3 = 0; see `layers` for what else there is."""
+        if self.linear_at_zero:
+            return ()
+        m2, m3 = stress.m[1], stress.m[2]
+        size = self.nonlinear * ca.fabs(m3)
+        return tuple(Singular(*pair, size) for pair in ((m2, m3), *self.layers(m2, m3)))
+
+    @property
+    def nonlinear(self) -> ca.SX | float:
+        """How far the law is from a linear one: the size of its layers over |m3|."""
+        return 1.0
+
+    def layers(self, m2: ca.SX, m3: ca.SX) -> tuple[tuple[ca.SX, ca.SX], ...]:
+        """Real and imaginary parts of what vanishes where the law is singular beside m = 0."""
+        return ()
 
     def moment(self, u: ca.SX) -> ca.SX:
         return ca.vertcat(*self.moments(u[1], u[2]))

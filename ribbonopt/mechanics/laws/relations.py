@@ -67,8 +67,12 @@ def blended_strain(
     else:
         mu, s = chi * m2, sheet_sum(m2, m3, chi)
     torsion = s + rho * (m3**2 / s)
-    bending = (1 - rho) * s + rho * (2 * mu + epsilon * s) + TINY
-    return m2 * s**2 / (bending * torsion), m3 * s / (2 * torsion)
+    return m2 * s**2 / (bending(mu, s, rho, epsilon) * torsion), m3 * s / (2 * torsion)
+
+
+def bending(mu: ca.SX, s: ca.SX, rho: ca.SX | float, epsilon: ca.SX) -> ca.SX:
+    """Return what divides the bending strain of eq. (C 1), with s = M + mu; zero at its pole."""
+    return (1 - rho) * s + rho * (2 * mu + epsilon * s) + TINY
 
 
 def inverse(strain: Callable[[ca.SX, ca.SX], Components], u2: ca.SX, u3: ca.SX) -> Components:

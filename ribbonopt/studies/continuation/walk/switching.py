@@ -43,7 +43,7 @@ def switched(equations: Equations[S], point: Point[S], sign: int) -> Point[S]:
                 sign=found.sign,
                 step=away,
                 kind=POINT,
-                note="",
+                note=trial.note,
             )
         away /= 2
     raise np.linalg.LinAlgError("no point was found on the branch that crosses")

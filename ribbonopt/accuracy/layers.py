@@ -1,0 +1,139 @@
+"""Layers that a law makes: singularities of its strains at complex s, near the ribbon.
+
+Where m2 changes sign the strains of a smoothed law change over a width of about delta |m3| / |m2'|,
+and wherever (m2, m3) passes near zero over about |m| / |m'|. Two schemes whose stages both step
+over such a layer agree, and are wrong. The law says where it is singular; a step of Newton's method
+from each pair of neighbouring stages, in the complex plane, says where on this solution that is.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ribbonopt.arrays import Array
+from ribbonopt.solution.trajectory import Trajectory
+
+REACH = 1.0  # widths of an element, beyond which nothing can be said from it
+SEEN = 1.6  # ellipse of an element from which on its stages show the decay towards a singularity
+BESIDE = 0.3  # steps between stages, by which the nearest pair may miss a singularity
+NEAR = 4.0  # ellipse of an element between whose nodes errors may be larger than at them
+WATCHED = 1.0  # exponent of an element, from which on it is looked at between its nodes
+THINNEST = 1e-12  # of a phase: distance to a singularity that counts as none
+
+Complex = NDArray[np.complex128]
+
+
+@dataclass(frozen=True, eq=False)
+class Layers:
+    """Singularities near one phase: relative positions (k,), and by how much strains change."""
+
+    places: Complex
+    sizes: Array
+
+    def __len__(self) -> int:
+        """Return how many there are."""
+        return len(self.places)
+
+    def overlooked(self, nodes: Array, order: int) -> Array:
+        """Local errors (n,) of elements whose stages cannot have seen the nearest singularity.
+
+        `nodes` (n + 1,) are relative positions; errors per length of the phase.
+        """
+        widths = np.diff(nodes)
+        x, rho = self._seen_from(nodes)
+        # Beside an element it acts over no more than its distance.
+        beside = (np.maximum(np.abs(x.real) - 1, 0) + np.abs(x.imag)) * widths / 2
+        over = np.where(np.abs(x.real) <= 1, widths, np.minimum(widths, beside))
+        missed = self.sizes[:, None] * over * rho ** -(order + 1.0)
+        return np.asarray(np.where(rho < SEEN, missed, 0.0).max(axis=0))
+
+    def close(self, nodes: Array) -> NDArray[np.bool_]:
+        """Elements (n,) in which strains change faster than the nodes show."""
+        return np.asarray(self._seen_from(nodes)[1].min(axis=0, initial=np.inf) < NEAR)
+
+    def _seen_from(self, nodes: Array) -> tuple[Complex, Array]:
+        """Places (k, n) in each element, -1 to 1 at its ends, and ellipses rho (k, n) there."""
+        half = np.diff(nodes) / 2
+        x = (self.places[:, None] - (nodes[:-1] + half)) / half
+        # The larger of both roots is outside the unit circle.
+        return x, np.abs(x + np.sqrt(x - 1) * np.sqrt(x + 1))
+
+    def widths(self, positions: Array, order: int, target: float) -> Array:
+        """Largest widths (k,) at relative positions, for a local error `target`."""
+        depth = np.maximum(np.abs(self.places.imag), THINNEST)
+        larger = (self.sizes * depth / target) ** (1 / (order + 1))
+        larger = np.maximum(larger, SEEN)
+        distance = np.maximum(np.abs(positions[:, None] - self.places), THINNEST)
+        return np.asarray((4 * distance / (larger - 1 / larger)).min(axis=1))
+
+
+def layers(trajectory: Trajectory, phase: int) -> Layers:
+    """Return the singularities near a phase of a solution."""
+    rows = trajectory.singular_at_stages(phase)
+    if not rows.size:
+        return Layers(np.empty(0, complex), np.empty(0))
+    a, b = trajectory.ends[phase : phase + 2]
+    _, fraction, _, phases = trajectory.stages
+    sigma = (fraction[phases == phase] - a) / (b - a)
+    nodes, step = trajectory.dense.nodes(phase), np.diff(sigma)[:, None]
+    widths, change = np.diff(nodes), np.diff(rows[:, :, :2], axis=0)
+    size, farthest = (rows[:-1, :, :2] ** 2).sum(axis=2), REACH * widths.max()
+    if not (size * step**2 <= farthest**2 * (change**2).sum(axis=2)).any():
+        return Layers(np.empty(0, complex), np.empty(0))
+    values, sizes = rows[:, :, 0] + 1j * rows[:, :, 1], np.maximum(rows[:-1, :, 2], rows[1:, :, 2])
+    with np.errstate(divide="ignore", invalid="ignore"):
+        ahead = -values[:-1] / np.diff(values, axis=0)  # in steps from one stage to the next
+        near = (ahead.real > -BESIDE) & (ahead.real < 1 + BESIDE)
+    # Those beyond an end are seen from there only.
+    near[0] |= ahead.real[0] < 0
+    near[-1] |= ahead.real[-1] > 1
+    at = np.clip(np.searchsorted(nodes, sigma[:-1], side="right") - 1, 0, len(widths) - 1)
+    near &= (np.abs(ahead) * step <= REACH * widths[at][:, None]) & (sizes > 0)
+    stage, which = np.nonzero(near)
+    return Layers(sigma[stage] + ahead[stage, which] * step[stage, 0], sizes[stage, which])
+
+
+def between(trajectory: Trajectory, found: tuple[Layers, ...]) -> tuple[Array, NDArray[np.intp]]:
+    """Return where to look at a solution between nodes: fractions (k,) and their elements (k,).
+
+    In stiff elements, and next to layers and in them.
+    """
+    dense, nodes, ends = trajectory.dense, trajectory.nodes, trajectory.ends
+    chosen, extra = dense.growth > WATCHED, [np.empty(0)]
+    if any(map(len, found)):
+        chosen = chosen | np.concatenate([n.close(dense.nodes(i)) for i, n in enumerate(found)])
+        extra += [
+            a + (b - a) * near.places.real
+            for a, b, near in zip(ends[:-1], ends[1:], found, strict=True)
+        ]
+    elements = np.flatnonzero(chosen)
+    if not len(elements):
+        return np.empty(0), elements
+    # The error of a collocation polynomial is largest at its stages.
+    inside = (1 + np.polynomial.legendre.leggauss(max(3, dense.blocks.degree))[0]) / 2
+    regular = (nodes[elements, None] + np.diff(nodes)[elements, None] * inside).ravel()
+    fractions = np.concatenate([regular, *extra])
+    fractions = fractions[(fractions > 0) & (fractions < 1)]
+    return fractions, np.clip(np.searchsorted(nodes, fractions) - 1, 0, len(nodes) - 2)
+
+
+def overlooked(trajectory: Trajectory, found: tuple[Layers, ...]) -> Array:
+    """Local errors (N,) of all elements that no stage can have seen; (1,) zero if there are none.
+
+    Shooting takes many steps in an element, none of which is known here.
+    """
+    blocks = trajectory.dense.blocks
+    if not blocks.layout.stages or not any(map(len, found)):
+        return np.zeros(1)
+    lengths = np.diff(trajectory.ends) * trajectory.length
+    return np.concatenate(
+        [
+            length * near.overlooked(trajectory.dense.nodes(i), blocks.order)
+            if len(near)
+            else np.zeros(blocks.layout.elements[i])
+            for i, (near, length) in enumerate(zip(found, lengths, strict=True))
+        ]
+    )

@@ -1,0 +1,108 @@
+"""From nothing: a band from its fundamental piece, else the automatic start; or what is better.
+
+Least energy untwists a band of several half twists, and where a law changes sheets a guess must
+know where: the piece, solved in the scene's own law, has one sign change of m2 at most, or is a
+mixture; its images have the rest.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+from ribbonopt.arrays import Array
+from ribbonopt.checks.winding import winds_as
+from ribbonopt.guess import Guess
+from ribbonopt.guess.flat import Flattened, nearly_flat
+from ribbonopt.mechanics.ends.winding import winding
+from ribbonopt.scene import Scene
+from ribbonopt.starts.helix import helix_between, wound_evenly
+from ribbonopt.starts.loops import fundamental_scene
+from ribbonopt.starts.unfold import Unfolded, unfolded
+
+from .search import Search
+from .sharpening import with_sharper
+
+if TYPE_CHECKING:
+    from .prepared import Prepared
+
+SAME = 1e-6  # relative, of energies
+MORE = 1.5  # times the energy of a helix that nearly fits
+LEAST = 4  # intervals on every piece of a guess that is nearly the solution
+
+
+def from_nothing(
+    search: Search,
+    guesses: Callable[..., Iterable[Guess]],
+    prepare: Callable[[Scene], Prepared],
+) -> Search:
+    """Return the search that led to a solution, or the one given.
+
+    Parameters
+    ----------
+    search
+        Nothing has led anywhere in it so far.
+    guesses
+        Gives those of the automatic start, from a `shape` if there is one.
+    prepare
+        Builds what solves another scene.
+    """
+    posed = search.posed
+    scene = fundamental_scene(posed.scene) if search.needs_phases else None
+    if scene is not None:
+        piece = prepare(replace(scene, tolerance=None)).solve_once()
+        search.ledger.steps.extend(piece.steps)
+        if piece.verified and _run_unfolded(search, unfolded(piece, posed)):
+            return search
+    start = guesses()
+    search.run_all(with_sharper(start, prepare) if search.needs_phases else start)
+    wound = winding(posed.scene.boundary, posed.scene.parameters)
+    return _less_energy(search, guesses) if wound is None else _as_wound(search, wound)
+
+
+def _less_energy(search: Search, guesses: Callable[..., Iterable[Guess]]) -> Search:
+    """Return the search, or one from a helix that joins the clamps if that has less energy."""
+    helix = helix_between(search.posed, search.structure.ribbon)
+    if helix is None:
+        return search
+    bound = helix.energy * (1 + SAME if helix.exact else MORE)
+    if search.settled and search.energy <= bound:
+        return search
+    words = "a helix joins the clamps" if helix.exact else "a helix nearly joins the clamps"
+    start = [helix.guess] if helix.exact else guesses(shape=helix.shape)
+    other = _another(search, start, words)
+    better = other.settled and not (search.settled and search.energy <= other.energy)
+    return other if better else search
+
+
+def _as_wound(search: Search, wound: Array) -> Search:
+    """Return the search, or one for the ribbon wound evenly, if only that winds as the ends say."""
+    best = search.best
+    if best is not None and search.settled and winds_as(best, wound):
+        return search
+    even = wound_evenly(search.posed, search.structure.ribbon, wound)
+    other = _another(search, [even], "wound evenly as the ends say")
+    if other.settled and other.best is not None and winds_as(other.best, wound):
+        return other
+    if best is not None and not winds_as(best, wound):
+        search.ledger.give_up("the whole turns of the ends: no equilibrium wound so was found")
+    return search
+
+
+def _another(search: Search, guesses: Iterable[Guess], words: str) -> Search:
+    """Return a search of the same scene from other guesses."""
+    other = Search(search.posed, search.structure, search.ledger)
+    other.ledger.note(words, 0.0)
+    other.run_all(guesses)
+    return other
+
+
+def _run_unfolded(search: Search, guess: Unfolded) -> bool:
+    """Try what unfolds from a piece; whether that succeeds."""
+    if nearly_flat(guess.piece) and search.run(Flattened(guess), quick=True):
+        return True
+    arcs = guess.arcs
+    if arcs is None:
+        return search.run(guess, quick=True)
+    return search.run_in(arcs, guess, LEAST * guess.count)

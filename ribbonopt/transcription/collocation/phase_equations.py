@@ -1,0 +1,63 @@
+"""The equations of one phase at states anywhere: algebraic variables, and how fast states part."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+
+from ribbonopt.arrays import Array
+from ribbonopt.transcription.functions import StageFunctions
+from ribbonopt.transcription.layout import Layout
+
+
+@dataclass(frozen=True, eq=False)
+class PhaseEquations:
+    """Equations of a phase at given constants and parameters (`numbers`)."""
+
+    functions: StageFunctions
+    layout: Layout
+    numbers: tuple[Array, Array]
+
+    def algebraic(self, x: Array, z: Array, places: Array) -> Array:
+        """Algebraic variables (k, nz) that solve their equations at states x (k, nx), from z."""
+        lay = self.layout
+        if not lay.nz or lay.nz != lay.ng:
+            return z
+        rows, columns = slice(lay.nx, lay.nx + lay.ng), slice(lay.nx, lay.nv)
+        for _ in range(3):  # from the accuracy of the polynomial to rounding
+            values, jacobian = self._linearized(np.hstack([x, z]), places)
+            z = z - _solved(jacobian[:, rows, columns], values[:, rows, None])[:, :, 0]
+        return z
+
+    def rates(self, v: Array, places: Array) -> Array:
+        """Rates (k,) at which neighbouring solutions part or meet at unknowns v (k, nv).
+
+        The spectral radius of the derivatives by the states, algebraic variables following.
+        """
+        lay = self.layout
+        _, jacobian = self._linearized(v, places)
+        slopes = jacobian[:, : lay.nx, : lay.nx]
+        if lay.nz and lay.nz == lay.ng:
+            held = slice(lay.nx, lay.nv)
+            follow = _solved(jacobian[:, held, held], jacobian[:, held, : lay.nx])
+            slopes = slopes - jacobian[:, : lay.nx, held] @ follow
+        # From the eighth power, since norms of matrices far from normal say nothing.
+        for _ in range(3):
+            slopes = slopes @ slopes
+        return np.asarray(np.abs(slopes).sum(axis=-1).max(axis=-1) ** 0.125)
+
+    def _linearized(self, v: Array, places: Array) -> tuple[Array, Array]:
+        """Equations (k, ne) and their derivatives (k, ne, nv + nc)."""
+        values, jacobian = self.functions.mapped_dense(v, *self.numbers, places)
+        columns = self.layout.nv + self.layout.nc
+        jacobian = jacobian.reshape(len(v), columns, -1).swapaxes(1, 2)
+        return values.reshape(len(v), -1), jacobian
+
+
+def _solved(matrices: Array, right: Array) -> Array:
+    """Solve for (k, n, m) with matrices (k, n, n); the least step where one is singular."""
+    try:
+        return np.asarray(np.linalg.solve(matrices, right))
+    except np.linalg.LinAlgError:  # a law without derivative, at the one point where m = 0
+        return np.asarray(np.linalg.pinv(matrices) @ right)
