@@ -17,6 +17,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ribbonopt.accuracy.estimate import estimate_error
+from ribbonopt.accuracy.recorded import recorded_errors
 from ribbonopt.mechanics.rotations import matrix_of
 from ribbonopt.pipeline.prepared import Prepared
 from ribbonopt.scene import (
@@ -122,6 +123,12 @@ def compared(found: Solution, truth: independent.Truth) -> dict[str, tuple[float
     """Return true error, bar and the truth's own error of every quantity."""
     try:
         bars = estimate_error(found)
+        bars |= {
+            text: bar
+            for text, bar in zip(
+                found.scene.record.values(), recorded_errors(found).values(), strict=True
+            )
+        }
     except np.linalg.LinAlgError:
         bars = {}
     path, coarse = truth.path, truth.coarse

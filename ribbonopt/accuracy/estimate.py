@@ -17,6 +17,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ribbonopt.arrays import Array
 from ribbonopt.solution.solution import Solution
@@ -26,9 +27,11 @@ from ribbonopt.solvers.condense import CondensedSystem
 from .layers import Layers, between, layers, overlooked
 
 ROUNDING = 1e-15
+UNIT = 3e-16  # local error by rounding alone
 LEAST = 1e-3  # size of an answer, Dw = L = 1, below which its error counts absolutely
 SAFETY = 4.0  # bar over estimate: what the next better scheme itself may miss
-DOUBTFUL = 3.0  # times the difference of the schemes, from which on errors are not known
+DOUBTFUL = 3.0  # times the difference of the schemes, from which on errors are not known,
+SMALL = 1e-4  # unless they are smaller than this all the same
 QUIET = 1e-12  # local errors that are rounding
 
 
@@ -48,8 +51,10 @@ class Analysis:
         elements and next to layers; zero in others.
     errors, sizes : mappings of str to float
         Absolute errors of the parts of the answer, and what they are relative to; Dw = L = 1.
-    doubt : float
-        By how much local errors exceed what the schemes differ by; 1 where nothing is overlooked.
+    more : float
+        By how much errors exceed what the schemes differ by: rounding, and what they overlook.
+    known : bool
+        Whether errors are known: not where schemes overlook so much that this is a mere guess.
     layers : tuple of Layers
         Singularities of the law near each phase.
     factors : CondensedSystem or None
@@ -61,7 +66,8 @@ class Analysis:
     inside: Array
     errors: Mapping[str, float]
     sizes: Mapping[str, float]
-    doubt: float
+    more: float
+    known: bool
     layers: tuple[Layers, ...]
     factors: CondensedSystem | None = None
 
@@ -96,7 +102,7 @@ def estimate_error(solution: Solution) -> dict[str, float]:
     units = solution.units
     quantity = {"n0": "n", "m0": "m", "u0": "u", "u": "u", "H0": "H", "energy": "m"}
     found = analyse(solution)
-    bar = SAFETY if found.doubt <= DOUBTFUL else math.nan
+    bar = SAFETY if found.known else math.nan
     return {name: bar * units.of(quantity.get(name, "")) * e for name, e in found.errors.items()}
 
 
@@ -108,9 +114,15 @@ def relative_error(solution: Solution) -> tuple[float, str]:
     errors count absolutely: there is nothing that they could be relative to.
     """
     found = analyse(solution)
-    relative = {name: found.errors[name] / max(size, LEAST) for name, size in found.sizes.items()}
+    error, worst = _worst(found.errors, found.sizes)
+    return SAFETY * error, worst
+
+
+def _worst(errors: Mapping[str, float], sizes: Mapping[str, float]) -> tuple[float, str]:
+    """Largest error over the size of what it is of, and the name of that."""
+    relative = {name: errors[name] / max(size, LEAST) for name, size in sizes.items()}
     worst = max(relative, key=lambda name: relative[name])
-    return SAFETY * relative[worst], worst
+    return relative[worst], worst
 
 
 def _analysed(trajectory: Trajectory, near: CondensedSystem | None, keep: bool) -> Analysis:
@@ -131,14 +143,15 @@ def _analysed(trajectory: Trajectory, near: CondensedSystem | None, keep: bool) 
     witnessed = np.maximum(_witness(better, split), overlooked(trajectory, near_by))
     local, doubt = _more(local, witnessed)
     # Rounding of one element counts as its local error does.
-    rounding = 1 + len(local) * ROUNDING / float(local.sum())
-    errors = {name: error * doubt * rounding for name, error in errors.items()}
+    more = doubt * (1 + len(local) * UNIT / float(local.sum()))
+    errors = {name: error * more for name, error in errors.items()}
     # Between the nodes the output starts from the node before, with the error of that element.
     states, strains, inside = _between(trajectory, better, near_by)
     errors["states"] = max(errors["states"], float(local.max()), states)
     errors["u"] = max(errors["u"], strains)
     kept = factors if keep else None
-    return Analysis(better, local, inside, errors, sizes, doubt, near_by, kept)
+    known = doubt <= DOUBTFUL or _worst(errors, sizes)[0] <= SMALL
+    return Analysis(better, local, inside, errors, sizes, more, known, near_by, kept)
 
 
 def _more(local: Array, witnessed: Array) -> tuple[Array, float]:
@@ -209,9 +222,10 @@ def _shifted(trajectory: Trajectory, nodes: Array) -> dict[str, Array]:
     return found | {"u": ours["u"] + shift * slope}
 
 
-def _same_side(ours: Mapping[str, Array], theirs: Mapping[str, Array]) -> Array:
+def _same_side(ours: Mapping[str, Array], theirs: Mapping[str, Array]) -> NDArray[np.bool_]:
     """Places (k,) where two solutions are on the same side of a jump that strains may have."""
-    return np.asarray(ours["switching"] * theirs["switching"] > 0) | (ours["leap"] == 0)
+    same: NDArray[np.bool_] = (ours["switching"] * theirs["switching"] > 0) | (ours["leap"] == 0)
+    return same
 
 
 def _sizes(trajectory: Trajectory) -> dict[str, float]:

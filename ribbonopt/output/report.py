@@ -33,6 +33,8 @@ def report(summary: Mapping[str, Any]) -> str:
         *(["  (force and moment recovered from the costates)"] * (s["loads_from"] == "costates")),
         _row("energy", s["energy"], errors["energy"]),
         _row("invariant H(0)", s["H0"], errors["H0"]),
+        *(_row(name, value, s["recorded_error"][name]) for name, value in s["recorded"].items()),
+        *_unknown_bars(s),
         *_phases(s),
         "",
         f"  drift along the ribbon   {_drifts(s['invariant_drift'])}",
@@ -60,6 +62,17 @@ def _phases(s: Mapping[str, Any]) -> list[str]:
         where = f"; switches at s = {at}" if at else " all along"
         lines.append(f"  phases                   {phase_words(s['phases'])}{where}")
     return lines
+
+
+def _unknown_bars(s: Mapping[str, Any]) -> list[str]:
+    """Return a line on bars that could be known and are not."""
+    unknown = [name for name, bar in s["error_estimate"].items() if bar is None]
+    if not unknown or s["loads_from"] == "costates" or not s["verified"]:
+        return []
+    return [
+        "  bars are not known where the mesh steps over a layer of the law, or the equations are",
+        "  singular: give a tolerance, or more intervals",
+    ]
 
 
 def _others(equilibria: Sequence[Mapping[str, Any]]) -> list[str]:

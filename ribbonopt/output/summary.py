@@ -18,6 +18,9 @@ from ribbonopt.problem import formulation_name
 from ribbonopt.solution.solution import Solution
 from ribbonopt.version import VERSION
 
+#: what the answer consists of, each with a bar
+ANSWERS = ("n0", "m0", "u0", "H0", "energy", "states", "u")
+
 
 def summarize(solution: Solution) -> dict[str, Any]:
     """Return the summary: lab-frame vectors at the start, in the units of the scene, seconds.
@@ -53,6 +56,7 @@ def summarize(solution: Solution) -> dict[str, Any]:
         "residual_between_nodes": checks.residual_between_nodes,
         "law_residual": checks.law_residual,
         "error_estimate": _error_estimate(solution),
+        **_recorded(solution),
         "switch_points": solution.switch_points.tolist(),
         "phases": list(solution.sheets),
         "half_twists": count_half_twists(solution),
@@ -84,15 +88,32 @@ def _equilibrium(solution: Solution) -> dict[str, Any]:
     }
 
 
+def _recorded(solution: Solution) -> dict[str, Any]:
+    """Return what the scene records, and the bars of that; not known as in `_error_estimate`."""
+    names = dict.fromkeys(solution.scene.record)
+    if not names or not solution.status.converged:
+        return {"recorded": names, "recorded_error": names}
+    from ribbonopt.accuracy.recorded import recorded, recorded_errors  # few scenes record
+
+    with np.errstate(all="ignore"):
+        values = recorded(solution)
+        try:
+            unknown = solution.problem.recovered or lacks_linearisation(solution)
+            errors = names if unknown else recorded_errors(solution)
+        except np.linalg.LinAlgError:
+            errors = names
+    return {"recorded": values, "recorded_error": errors}
+
+
 def _error_estimate(solution: Solution) -> dict[str, float | None]:
     """Estimated absolute errors; None without convergence or linearisation, and for minima."""
     unknown = not solution.status.converged or lacks_linearisation(solution)
     if unknown or solution.problem.recovered:
-        return dict.fromkeys(("n0", "m0", "u0", "H0", "energy", "states"))
+        return dict.fromkeys(ANSWERS)
     try:
         return dict(estimate_error(solution))
     except np.linalg.LinAlgError:  # singular equations: the solution is not the only one near
-        return dict.fromkeys(("n0", "m0", "u0", "H0", "energy", "states"))
+        return dict.fromkeys(ANSWERS)
 
 
 def versions() -> dict[str, str]:

@@ -183,7 +183,8 @@ class Prepared:
         best = replace(best, steps=tuple(ledger.steps))
         found = regularized(best, search.smooth_instead, prepare)
         best = found or self.refined(best if done else judged(best, search))
-        if (best.sheets != () and not best.verified) or best.status is Status.TOLERANCE_MISSED:
+        in_vain = bool(best.sheets) and not best.verified
+        if in_vain or best.status is Status.TOLERANCE_MISSED:
             from .sharpening import without_phases  # after a failure only
 
             best = without_phases(search, self, prepare) or best

@@ -109,7 +109,7 @@ def refine(
 
 
 def _is_rounding(solution: Solution, tolerance: float) -> bool:
-    """Whether every element is as exact as it can be: finer ones only add their rounding."""
+    """Whether every element is as exact as can be, so that finer ones only add rounding."""
     found = analyse(solution)
     inside = SAFETY * float(found.inside.max()) <= tolerance
     return bool(found.local.max() <= GROUND and inside)

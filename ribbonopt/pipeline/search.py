@@ -36,6 +36,8 @@ from ribbonopt.scene import Scene
 from ribbonopt.solution.solution import Solution
 from ribbonopt.transcription import Mesh
 
+LABELLED = 1e-3  # delta of the sharpest smooth law that is shown in place of another
+
 
 @dataclass(eq=False)
 class Search:
@@ -159,7 +161,8 @@ class Search:
         if best is None or not self.needs_phases:
             return []
         wrong = not best.verified or (self.jumps(best) and not best.sheets)
-        return sorted(self.smooth, key=_bluntness) if wrong else []
+        found = sorted(self.smooth, key=_bluntness) if wrong else []
+        return [smooth for smooth in found if _bluntness(smooth) >= LABELLED]
 
     @property
     def sharpest(self) -> Solution | None:
