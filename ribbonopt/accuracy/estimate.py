@@ -17,18 +17,16 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ribbonopt.arrays import Array
 from ribbonopt.solution.solution import Solution
 from ribbonopt.solution.trajectory import Trajectory
 from ribbonopt.solvers.condense import CondensedSystem
 
-from .layers import Layers, between, layers, overlooked
+from .gaps import LEAST, gaps_at_nodes, gaps_between
+from .layers import Layers, layers, overlooked
 
-ROUNDING = 1e-15
 UNIT = 3e-16  # local error by rounding alone
-LEAST = 1e-3  # size of an answer, Dw = L = 1, below which its error counts absolutely
 SAFETY = 4.0  # bar over estimate: what the next better scheme itself may miss
 DOUBTFUL = 3.0  # times the difference of the schemes, from which on errors are not known,
 SMALL = 1e-4  # unless they are smaller than this all the same
@@ -139,14 +137,14 @@ def _analysed(trajectory: Trajectory, near: CondensedSystem | None, keep: bool) 
     size = np.maximum(np.abs(dense.at_nodes).max(axis=0), 1.0)
     local = np.abs(residuals.nodes / size).max(axis=1).reshape(-1, split).sum(axis=1)
     near_by = tuple(layers(trajectory, i) for i in range(len(trajectory.problem.phases)))
-    errors, sizes = _errors(trajectory, better, split), _sizes(trajectory)
+    errors, sizes = gaps_at_nodes(trajectory, better, split), _sizes(trajectory)
     witnessed = np.maximum(_witness(better, split), overlooked(trajectory, near_by))
     local, doubt = _more(local, witnessed)
     # Rounding of one element counts as its local error does.
     more = doubt * (1 + len(local) * UNIT / float(local.sum()))
     errors = {name: error * more for name, error in errors.items()}
     # Between the nodes the output starts from the node before, with the error of that element.
-    states, strains, inside = _between(trajectory, better, near_by)
+    states, strains, inside = gaps_between(trajectory, better, near_by)
     errors["states"] = max(errors["states"], float(local.max()), states)
     errors["u"] = max(errors["u"], strains)
     kept = factors if keep else None
@@ -164,68 +162,13 @@ def _more(local: Array, witnessed: Array) -> tuple[Array, float]:
 def _witness(better: Trajectory, split: int) -> Array:
     """Local errors (N,) that what is conserved betrays: the better scheme keeps it better."""
     nodes, found = better.at_nodes, np.zeros(1)
-    scale = max(1.0, float(np.abs(nodes["n"]).max()), float(np.abs(nodes["m"]).max()))
+    force, moment, strain = (float(np.abs(nodes[name]).max()) for name in "nmu")
+    # By how much states change H = W_Leg + n3: strain times that of the moment, and the force.
+    scale = max(1.0, force + strain * (force + moment))
     for name in better.problem.conserved:
-        steps = np.abs(np.diff(nodes[name])) / max(scale, float(np.abs(nodes[name]).max()))
+        steps = np.abs(np.diff(nodes[name])) / scale
         found = np.maximum(found, steps.reshape(-1, split).sum(axis=1))
     return found
-
-
-def _errors(trajectory: Trajectory, better: Trajectory, split: int) -> dict[str, float]:
-    """Differences of the answers, none below rounding."""
-    ours = trajectory.at_nodes
-    theirs = {name: values[::split] for name, values in better.at_nodes.items()}
-    errors = {f"{name}0": _gap(theirs[name][0], ours[name][0]) for name in ("n", "m", "u")}
-    # H is a difference: its rounding is that of its parts.
-    errors["H0"] = _gap(theirs["H"][0], ours["H"][0], float(np.abs(ours["n"][0]).max()))
-    errors["energy"] = _gap(np.array(better.energy), np.array(trajectory.energy))
-    along = {name: ours[name] for name in ("r", "d1", "d2", "d3", "u")}
-    if len(trajectory.ends) > 2:
-        along = _shifted(trajectory, better.nodes[::split])
-    same = _same_side(ours, theirs)
-    strains = _gap(theirs["u"][same], along.pop("u")[same])
-    return errors | {"states": max(_gap(theirs[k], along[k]) for k in along), "u": strains}
-
-
-def _between(
-    trajectory: Trajectory, better: Trajectory, near_by: tuple[Layers, ...]
-) -> tuple[float, float, Array]:
-    """Errors of states and strains inside elements, and each element's (N,), relative."""
-    result = np.zeros(len(trajectory.nodes) - 1)
-    fractions, elements = between(trajectory, near_by)
-    if not len(fractions):
-        return 0.0, 0.0, result
-    ours, theirs = (t.outputs(fractions) for t in (trajectory, better))
-    gaps = {k: np.abs(theirs[k] - ours[k]).max(axis=1) for k in ("r", "d1", "d2", "d3", "u")}
-    strains = np.where(_same_side(ours, theirs), gaps.pop("u"), 0.0)
-    states = np.max(list(gaps.values()), axis=0)
-    size = max(float(np.abs(ours["u"]).max()), LEAST)
-    np.maximum.at(result, elements, np.maximum(states, strains / size))
-    return float(states.max()), float(strains.max()), result
-
-
-def _shifted(trajectory: Trajectory, nodes: Array) -> dict[str, Array]:
-    """Positions, directors and strains at other fractions (N + 1,), near the nodes.
-
-    Phases of two solutions are not as long; both are to be compared at the same arclength.
-    """
-    ours, length = trajectory.at_nodes, trajectory.length
-    shift = (length * (nodes - trajectory.nodes))[:, None]
-    darboux = np.einsum("ki,ikj->kj", ours["u"], np.stack([ours[f"d{i}"] for i in (1, 2, 3)]))
-    found = {"r": ours["r"] + shift * ours["d3"]}
-    found |= {d: ours[d] + shift * np.cross(darboux, ours[d]) for d in ("d1", "d2", "d3")}
-    slope = np.zeros_like(ours["u"])
-    slope[1:] = np.diff(ours["u"], axis=0) / (length * np.diff(trajectory.nodes))[:, None]
-    # Where phases meet strains may jump: there the next phase says how they change.
-    meet = np.searchsorted(trajectory.nodes, trajectory.ends[1:-1])
-    slope[meet] = slope[meet + 1]
-    return found | {"u": ours["u"] + shift * slope}
-
-
-def _same_side(ours: Mapping[str, Array], theirs: Mapping[str, Array]) -> NDArray[np.bool_]:
-    """Places (k,) where two solutions are on the same side of a jump that strains may have."""
-    same: NDArray[np.bool_] = (ours["switching"] * theirs["switching"] > 0) | (ours["leap"] == 0)
-    return same
 
 
 def _sizes(trajectory: Trajectory) -> dict[str, float]:
@@ -242,8 +185,3 @@ def _sizes(trajectory: Trajectory) -> dict[str, float]:
         "states": 1.0,
         "u": strains,
     }
-
-
-def _gap(a: Array, b: Array, size: float = 1.0) -> float:
-    difference, whole = (float(np.abs(x).max(initial=0.0)) for x in (a - b, b))
-    return max(difference, ROUNDING * max(size, whole))

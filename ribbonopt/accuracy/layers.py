@@ -17,7 +17,8 @@ from ribbonopt.arrays import Array
 from ribbonopt.solution.trajectory import Trajectory
 
 REACH = 1.0  # widths of an element, beyond which nothing can be said from it
-SEEN = 1.6  # ellipse of an element from which on its stages show the decay towards a singularity
+SEEN = 10.0  # decay of a solution over the stages of an element, by which they show a singularity
+SHARE = 0.1  # of a change of strains that a step over it may cost
 BESIDE = 0.3  # steps between stages, by which the nearest pair may miss a singularity
 NEAR = 4.0  # ellipse of an element between whose nodes errors may be larger than at them
 WATCHED = 1.0  # exponent of an element, from which on it is looked at between its nodes
@@ -37,7 +38,7 @@ class Layers:
         """Return how many there are."""
         return len(self.places)
 
-    def overlooked(self, nodes: Array, order: int) -> Array:
+    def overlooked(self, nodes: Array, degree: int, order: int) -> Array:
         """Local errors (n,) of elements whose stages cannot have seen the nearest singularity.
 
         `nodes` (n + 1,) are relative positions; errors per length of the phase.
@@ -48,7 +49,7 @@ class Layers:
         beside = (np.maximum(np.abs(x.real) - 1, 0) + np.abs(x.imag)) * widths / 2
         over = np.where(np.abs(x.real) <= 1, widths, np.minimum(widths, beside))
         missed = self.sizes[:, None] * over * rho ** -(order + 1.0)
-        return np.asarray(np.where(rho < SEEN, missed, 0.0).max(axis=0))
+        return np.asarray(np.where(rho < seen(degree), SHARE * missed, 0.0).max(axis=0))
 
     def close(self, nodes: Array) -> NDArray[np.bool_]:
         """Elements (n,) in which strains change faster than the nodes show."""
@@ -61,18 +62,27 @@ class Layers:
         # The larger of both roots is outside the unit circle.
         return x, np.abs(x + np.sqrt(x - 1) * np.sqrt(x + 1))
 
-    def widths(self, positions: Array, order: int, target: float) -> Array:
+    def widths(self, positions: Array, degree: int, order: int, target: float) -> Array:
         """Largest widths (k,) at relative positions, for a local error `target`."""
         depth = np.maximum(np.abs(self.places.imag), THINNEST)
         larger = (self.sizes * depth / target) ** (1 / (order + 1))
-        larger = np.maximum(larger, SEEN)
+        larger = np.maximum(larger, seen(degree))
         distance = np.maximum(np.abs(positions[:, None] - self.places), THINNEST)
         return np.asarray((4 * distance / (larger - 1 / larger)).min(axis=1))
 
 
+def seen(degree: int) -> float:
+    """Ellipse of an element from which on its stages show how a solution decays."""
+    return float(SEEN ** (1 / degree))
+
+
 def layers(trajectory: Trajectory, phase: int) -> Layers:
-    """Return the singularities near a phase of a solution."""
-    rows = trajectory.singular_at_stages(phase)
+    """Return the singularities near a phase of a solution.
+
+    None for shooting, which takes many steps in an element, none of which is known here.
+    """
+    stages = trajectory.dense.blocks.layout.stages
+    rows = trajectory.singular_at_stages(phase) if stages else np.empty(0)
     if not rows.size:
         return Layers(np.empty(0, complex), np.empty(0))
     a, b = trajectory.ends[phase : phase + 2]
@@ -86,14 +96,15 @@ def layers(trajectory: Trajectory, phase: int) -> Layers:
     values, sizes = rows[:, :, 0] + 1j * rows[:, :, 1], np.maximum(rows[:-1, :, 2], rows[1:, :, 2])
     with np.errstate(divide="ignore", invalid="ignore"):
         ahead = -values[:-1] / np.diff(values, axis=0)  # in steps from one stage to the next
+        offset = ahead * step
         near = (ahead.real > -BESIDE) & (ahead.real < 1 + BESIDE)
     # Those beyond an end are seen from there only.
     near[0] |= ahead.real[0] < 0
     near[-1] |= ahead.real[-1] > 1
     at = np.clip(np.searchsorted(nodes, sigma[:-1], side="right") - 1, 0, len(widths) - 1)
-    near &= (np.abs(ahead) * step <= REACH * widths[at][:, None]) & (sizes > 0)
+    near &= (np.abs(offset) <= REACH * widths[at][:, None]) & (sizes > 0) & (step > 0)
     stage, which = np.nonzero(near)
-    return Layers(sigma[stage] + ahead[stage, which] * step[stage, 0], sizes[stage, which])
+    return Layers(sigma[stage] + offset[stage, which], sizes[stage, which])
 
 
 def between(trajectory: Trajectory, found: tuple[Layers, ...]) -> tuple[Array, NDArray[np.intp]]:
@@ -121,17 +132,14 @@ def between(trajectory: Trajectory, found: tuple[Layers, ...]) -> tuple[Array, N
 
 
 def overlooked(trajectory: Trajectory, found: tuple[Layers, ...]) -> Array:
-    """Local errors (N,) of all elements that no stage can have seen; (1,) zero if there are none.
-
-    Shooting takes many steps in an element, none of which is known here.
-    """
+    """Local errors (N,) of elements that no stage can have seen; (1,) zero if there are none."""
     blocks = trajectory.dense.blocks
-    if not blocks.layout.stages or not any(map(len, found)):
+    if not any(map(len, found)):
         return np.zeros(1)
     lengths = np.diff(trajectory.ends) * trajectory.length
     return np.concatenate(
         [
-            length * near.overlooked(trajectory.dense.nodes(i), blocks.order)
+            length * near.overlooked(trajectory.dense.nodes(i), blocks.degree, blocks.order)
             if len(near)
             else np.zeros(blocks.layout.elements[i])
             for i, (near, length) in enumerate(zip(found, lengths, strict=True))

@@ -11,7 +11,8 @@ from ribbonopt.arrays import Array
 from ribbonopt.scene.stages import parse_record
 from ribbonopt.solution.solution import Solution
 
-from .estimate import ROUNDING, SAFETY, analyse
+from .estimate import SAFETY, analyse
+from .gaps import ROUNDING
 
 AROUND = np.array([0.0, -0.15, 0.15])  # of an element: errors vanish here and there
 

@@ -11,7 +11,8 @@ from dataclasses import replace
 
 import numpy as np
 
-from ribbonopt.accuracy.estimate import LEAST, analyse
+from ribbonopt.accuracy.estimate import analyse
+from ribbonopt.accuracy.gaps import LEAST
 from ribbonopt.arrays import Array
 from ribbonopt.problem import Ribbon
 from ribbonopt.solution.solution import Solution

@@ -154,7 +154,7 @@ def _better_mesh(
         h = widths[part]
         wanted = wanted_widths(h, local[part], rho[part], blocks.order, target)
         wanted = np.minimum(wanted, h / np.maximum(inside[part], 1 / WIDEST))
-        limits = _limits(near, blocks.order, target / length) if len(near) else ()
+        limits = _limits(near, blocks.degree, blocks.order, target / length) if len(near) else ()
         positions, share = graded(h, wanted, *limits)
         count = max(int(np.ceil(share[-1])), len(h) // 2)
         size = size_for(min(count, int(GROWTH * len(h))))
@@ -163,9 +163,11 @@ def _better_mesh(
     return Mesh(tuple(phases)), short
 
 
-def _limits(near: Layers, order: int, target: float) -> tuple[Array, Callable[[Array], Array]]:
+def _limits(
+    near: Layers, degree: int, order: int, target: float
+) -> tuple[Array, Callable[[Array], Array]]:
     """Return where layers are, and the widths that resolve them."""
-    return near.places.real, lambda positions: near.widths(positions, order, target)
+    return near.places.real, lambda positions: near.widths(positions, degree, order, target)
 
 
 def _missed(solution: Solution, tolerance: float, status: Status) -> Solution:

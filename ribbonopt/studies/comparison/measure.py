@@ -14,7 +14,8 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
-from ribbonopt.accuracy.estimate import ROUNDING, analyse
+from ribbonopt.accuracy.estimate import analyse
+from ribbonopt.accuracy.gaps import ROUNDING
 from ribbonopt.arrays import Array
 from ribbonopt.errors import ConvergenceError, RibbonoptError
 from ribbonopt.guess import Guess

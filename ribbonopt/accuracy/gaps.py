@@ -1,0 +1,78 @@
+"""Two solutions of the same equations beside each other: by how much each quantity differs."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ribbonopt.arrays import Array
+from ribbonopt.solution.trajectory import Trajectory
+
+from .layers import Layers, between
+
+ROUNDING = 1e-15
+LEAST = 1e-3  # size of an answer, Dw = L = 1, below which its error counts absolutely
+
+
+def gaps_at_nodes(trajectory: Trajectory, better: Trajectory, split: int) -> dict[str, float]:
+    """Differences of the answers, none below rounding; `better` has elements split in parts."""
+    ours = trajectory.at_nodes
+    theirs = {name: values[::split] for name, values in better.at_nodes.items()}
+    errors = {f"{name}0": _gap(theirs[name][0], ours[name][0]) for name in ("n", "m", "u")}
+    # H is a difference: its rounding is that of its parts.
+    errors["H0"] = _gap(theirs["H"][0], ours["H"][0], float(np.abs(ours["n"][0]).max()))
+    errors["energy"] = _gap(np.array(better.energy), np.array(trajectory.energy))
+    along = {name: ours[name] for name in ("r", "d1", "d2", "d3", "u")}
+    if len(trajectory.ends) > 2:
+        along = _shifted(trajectory, better.nodes[::split])
+    same = _same_side(ours, theirs)
+    strains = _gap(theirs["u"][same], along.pop("u")[same])
+    return errors | {"states": max(_gap(theirs[k], along[k]) for k in along), "u": strains}
+
+
+def gaps_between(
+    trajectory: Trajectory, better: Trajectory, near_by: tuple[Layers, ...]
+) -> tuple[float, float, Array]:
+    """Errors of states and strains inside elements, and each element's (N,), relative."""
+    result = np.zeros(len(trajectory.nodes) - 1)
+    fractions, elements = between(trajectory, near_by)
+    if not len(fractions):
+        return 0.0, 0.0, result
+    ours, theirs = (t.outputs(fractions) for t in (trajectory, better))
+    gaps = {k: np.abs(theirs[k] - ours[k]).max(axis=1) for k in ("r", "d1", "d2", "d3", "u")}
+    strains = np.where(_same_side(ours, theirs), gaps.pop("u"), 0.0)
+    states = np.max(list(gaps.values()), axis=0)
+    size = max(float(np.abs(ours["u"]).max()), LEAST)
+    np.maximum.at(result, elements, np.maximum(states, strains / size))
+    return float(states.max()), float(strains.max()), result
+
+
+def _shifted(trajectory: Trajectory, nodes: Array) -> dict[str, Array]:
+    """Positions, directors and strains at other fractions (N + 1,), near the nodes.
+
+    Phases of two solutions are not as long; both are to be compared at the same arclength.
+    """
+    ours, length = trajectory.at_nodes, trajectory.length
+    shift = (length * (nodes - trajectory.nodes))[:, None]
+    darboux = np.einsum("ki,ikj->kj", ours["u"], np.stack([ours[f"d{i}"] for i in (1, 2, 3)]))
+    found = {"r": ours["r"] + shift * ours["d3"]}
+    found |= {d: ours[d] + shift * np.cross(darboux, ours[d]) for d in ("d1", "d2", "d3")}
+    slope = np.zeros_like(ours["u"])
+    slope[1:] = np.diff(ours["u"], axis=0) / (length * np.diff(trajectory.nodes))[:, None]
+    # Where phases meet strains may jump: there the next phase says how they change.
+    meet = np.searchsorted(trajectory.nodes, trajectory.ends[1:-1])
+    slope[meet] = slope[meet + 1]
+    return found | {"u": ours["u"] + shift * slope}
+
+
+def _same_side(ours: Mapping[str, Array], theirs: Mapping[str, Array]) -> NDArray[np.bool_]:
+    """Places (k,) where two solutions are on the same side of a jump that strains may have."""
+    same: NDArray[np.bool_] = (ours["switching"] * theirs["switching"] > 0) | (ours["leap"] == 0)
+    return same
+
+
+def _gap(a: Array, b: Array, size: float = 1.0) -> float:
+    difference, whole = (float(np.abs(x).max(initial=0.0)) for x in (a - b, b))
+    return max(difference, ROUNDING * max(size, whole))
