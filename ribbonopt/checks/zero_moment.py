@@ -14,7 +14,8 @@ from ribbonopt.mechanics.laws.catalogue import capabilities
 from ribbonopt.mechanics.laws.law import ConstitutiveLaw
 from ribbonopt.solution.solution import Solution
 
-ZERO = 1e-9  # of the largest load: below it a moment counts as zero
+ZERO = 1e-13  # of the largest load: below it a moment counts as zero
+FADES = 1e-8  # the same beside an interval: a moment that small has not ended, it fades away
 LEAST = 1e-12  # the same where there is no load, in units Dw = L = 1
 SHORTEST = 1e-3  # of the length, that is an interval and no point (an inflection, a free end)
 
@@ -37,11 +38,13 @@ def share_without_moment(solution: Solution, law: ConstitutiveLaw) -> float:
     free = np.max([np.abs(values[f"m{i + 1}"]) for i in law.components], axis=0)
     largest = max(float(np.abs(values[name]).max()) for name in ("n", "m"))
     zero = free <= max(ZERO * largest, LEAST)
-    if not zero.any():
+    ends = np.flatnonzero(zero[1:] != zero[:-1])
+    beside = np.maximum(free[ends], free[ends + 1])
+    if not zero.any() or (len(ends) and beside.max() <= FADES * largest):
         return 0.0
     # One stage alone is a point.
-    beside = np.concatenate([[False], zero, [False]])
-    zero = zero & (beside[:-2] | beside[2:])
+    padded = np.concatenate([[False], zero, [False]])
+    zero = zero & (padded[:-2] | padded[2:])
     share = float(solution.trajectory.stages[2][zero].sum())
     return share if share > SHORTEST else 0.0
 

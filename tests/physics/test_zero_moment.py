@@ -20,8 +20,9 @@ from ribbonopt.mechanics.laws.catalogue import capabilities
 from ribbonopt.mechanics.loads.load import Load
 from ribbonopt.output.report import report
 from ribbonopt.output.summary import summarize
-from ribbonopt.pipeline.prepared import solve
+from ribbonopt.pipeline.prepared import prepare, solve
 from ribbonopt.scene import Loads, loads_scene
+from ribbonopt.scene.lens import with_value
 from ribbonopt.solution.solution import Solution
 from ribbonopt.studies.continuation.continuation import Continuation
 from ribbonopt.studies.continuation.files import BranchFolder
@@ -115,6 +116,41 @@ def test_a_part_of_the_ribbon_is_enough(law: str) -> None:
     assert unbent_share(found, capabilities(found.scene.law)) == pytest.approx(0.5, abs=0.06)
     assert set(summarize(found)["error_estimate"].values()) == {None}
     assert any("% of the ribbon" in text for text in warnings_of(found))
+
+
+def test_a_moment_that_fades_away_is_not_zero() -> None:
+    """A ribbon pulled straight: m2 falls as exp(-sqrt(T) s), below any rounding."""
+    scene = loads_scene("""
+    name: pulled
+    law: {type: variational, delta: 0.1}
+    parameters: {T: 30}
+    boundary:
+      start: {support: clamped, position: [0, 0, 0], directors: {turns: [{y: 60*deg}]}}
+      end: {support: free, force: [0, 0, T]}
+    transcription: {type: collocation, degree: 8, intervals: 40}
+    """)
+    prepared = prepare(scene)
+    found = prepared.solve()
+    for T in np.geomspace(40, 1500, 12):
+        found = prepared.solve(with_value(scene, "parameters.T", T), guess=found, fallback=False)
+    assert found.verified
+    m2 = np.abs(found.sample(np.linspace(0.02, 0.4, 5), "m2"))
+    np.testing.assert_allclose(np.diff(np.log(m2)), -np.sqrt(1500) * 0.095, rtol=0.03)
+    assert np.abs(found.sample(0.95, "m2")) < 1e-13 * 1500  # counts as zero elsewhere
+    assert not lacks_linearisation(found)
+    assert summarize(found)["error_estimate"]["n0"] is not None
+
+
+@pytest.mark.parametrize("law", HOMOGENEOUS)
+def test_a_straight_ribbon_of_any_direction(law: str) -> None:
+    turned = TIP.format(law=law, x=0).replace(
+        "identity", "{turns: [{x: 0.7}, {z: 1.9}, {y: -0.4}]}"
+    )
+    turned = turned.replace("force: {x: 0, y: P, z: 0}", "force: {d1: 0, d2: P, d3: 0}")
+    found = solve(loads_scene(turned + "guess: {force: [0, 1, 0], moment: [-1, 0, 0]}\n"))
+    assert found.verified
+    assert np.abs(found.at_stages["u"]).max() < 1e-12
+    assert lacks_linearisation(found)
 
 
 def followed(text: str) -> tuple[Continuation, list[Any]]:
