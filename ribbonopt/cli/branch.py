@@ -136,10 +136,18 @@ def _report(folder: BranchFolder, continuation: Continuation) -> str:
         lines += _notes(rows)
         for row in rows:
             if row["kind"] != "point":
-                lines.append(f"    {row['kind']} at {row['parameter']} = {row['value']:.10g}")
+                more = _how_on(row, continuation.stages[stage].switch)
+                lines.append(f"    {row['kind']} at {row['parameter']} = {row['value']:.10g}{more}")
         lines += [f"    {change}" for change in _changes(rows)]
     names = ", ".join(sorted(path.name for path in folder.folder.iterdir()))
     return "\n".join([*lines, f"  written: {folder.folder}: {names}"])
+
+
+def _how_on(row: Mapping[str, Any], switch: bool) -> str:
+    """Say how to reach the ribbons that leave a straight one where it buckles."""
+    if row["kind"] != "buckling point" or switch:
+        return ""
+    return " (`switch: true` follows the buckled ribbon)"
 
 
 def _extent(rows: list[dict[str, Any]]) -> str:
