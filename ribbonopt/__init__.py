@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from .studies.batch.batch import run_batch
     from .studies.batch.files import load_batch
     from .studies.batch.sweep import load_study
+    from .studies.buckling.buckling import buckling_loads
     from .studies.comparison.compare import compare
     from .studies.continuation.continuation import Continuation
     from .studies.continuation.files import load_branch
@@ -33,6 +34,7 @@ __all__ = [
     "Scene",
     "Solution",
     "__version__",
+    "buckling_loads",
     "compare",
     "dump_scene",
     "json_schema",
@@ -57,6 +59,7 @@ _HOMES = {
     "Continuation": "studies.continuation.continuation",
     "Scene": "scene",
     "Solution": "solution.solution",
+    "buckling_loads": "studies.buckling.buckling",
     "compare": "studies.comparison.compare",
     "dump_scene": "scene",
     "json_schema": "scene",

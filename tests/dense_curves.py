@@ -69,6 +69,12 @@ class Dense:
         value = row @ self.reduced(origin.solution, origin.unknowns) + arc
         return self._newton(origin.solution, guess, row, value)
 
+    def crossings(self, a: Point[Unit], b: Point[Unit]) -> list[Point[Unit]]:
+        return []
+
+    def departure(self, point: Point[Unit]) -> Array | None:
+        return None
+
     def restored(self, origin: Unit, unknowns: Array) -> Unit:
         return origin
 

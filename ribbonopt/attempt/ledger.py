@@ -16,12 +16,14 @@ class Ledger:
     """Steps in order, each with its cost, and reports of the solvers that worked on the scene.
 
     Steps on the way to a guess are notes: their iterations are their own. What a user asked for and
-    was not done is given up, in words.
+    was not done is given up, in words; what was tried first on the way and led nowhere is what the
+    search fell back from, by what was tried.
     """
 
     steps: list[Step] = field(default_factory=list)
     reports: list[SolveReport] = field(default_factory=list)
     given_up: list[str] = field(default_factory=list)
+    fell_back: dict[str, str] = field(default_factory=dict)
 
     def note(self, step: str, seconds: float, iterations: int | None = None) -> None:
         """Note a step that needed no solver of the scene itself."""
@@ -31,6 +33,10 @@ class Ledger:
     def give_up(self, what: str) -> None:
         """Say what was asked for and is not what led to the answer."""
         self.given_up.append(what)
+
+    def fall_back(self, tried: str, words: str) -> None:
+        """Say what was tried, led nowhere, and what was done instead; the last word counts."""
+        self.fell_back[tried] = words
 
     def enter(self, report: SolveReport, words: str) -> None:
         """Enter what a solver reports, one step for each solver that was tried."""

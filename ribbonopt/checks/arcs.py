@@ -33,6 +33,19 @@ class Arcs:
     switches: Array
 
 
+def phase_words(kinds: tuple[int, ...]) -> str:
+    """Return the kinds of phases in words."""
+    words = {1: "m2 > 0", -1: "m2 < 0", 0: "m2 = 0 (mixture)"}
+    return ", ".join(words[kind] for kind in kinds) or "one, without a sign change"
+
+
+def changed_phases(before: tuple[int, ...], after: tuple[int, ...]) -> str:
+    """Say which phases there are instead of those before; "" if the same."""
+    if before == after:
+        return ""
+    return f"phases: {phase_words(after)}; at the point before: {phase_words(before)}"
+
+
 MIXTURE = Arcs((0,), np.empty(0))  # from end to end
 
 

@@ -33,6 +33,7 @@ from ribbonopt.transcription.buffered import Buffered, Mapped
 from ribbonopt.transcription.functions import condition_functions, stage_functions
 
 from .chain import LinearisedChain
+from .zero_moment import unbent_share
 
 STAGES = 100  # in all; more only on fine meshes, which have four in each element
 LEAST_ELEMENTS, HIGHEST_DEGREE = 10, 8
@@ -93,6 +94,8 @@ def _judged(solution: Solution) -> SecondVariation | str:
         return f"the law {name} has no energy"
     if not law.smooth:
         return f"the energy of the law {name} has no second derivatives"
+    if unbent_share(solution, law):
+        return f"the energy of the law {name} has no second derivatives where m2 = m3 = 0"
     # Only laws with a kink have phases, and none of them comes so far.
     posed = solution.posed.under(formulation="energy", states="reduced")
     energy = _energy_of(solution, posed)

@@ -1,6 +1,7 @@
-"""Whether Sadowsky's model applies to a ribbon: L >> w >> h, and generatrices that turn slowly.
+"""What to doubt of an answer: its shape, and whether Sadowsky's model applies to the ribbon.
 
-Needs the sizes of the ribbon, so only scenes in SI are judged. Sadowsky's energy is the limit of
+L >> w >> h, and generatrices that turn slowly: that needs the sizes of the ribbon, so only scenes
+in SI are judged. Sadowsky's energy is the limit of
 Wunderlich's for |eta'| w << 1: per length they differ by the factor (1/x) ln((2 + x)/(2 - x)), with
 x = eta' w, and at |x| = 2 the generatrices meet on an edge.
 """
@@ -16,6 +17,9 @@ from ribbonopt.mechanics.laws.catalogue import is_developable
 from ribbonopt.scene import RibbonSizes
 from ribbonopt.solution.solution import Solution
 
+from .shape import contact_problems, planar_problems
+from .zero_moment import zero_moment_problems
+
 SLENDER = 10.0  # least ratio of length to width, and of width to thickness
 WIDEST = 1 / math.sqrt(3)  # w / L of a Moebius band in space (Schwartz 2023)
 NOTABLE, MEETING = 0.5, 2.0  # |eta'| w
@@ -24,13 +28,15 @@ FLAT = 1e-9  # of the largest moment, or of D w / L: below it m3 counts as zero
 
 
 def warnings_of(solution: Solution) -> list[str]:
-    """Return a sentence for each reason to doubt the model; none for scenes without sizes."""
-    ribbon = solution.scene.ribbon
-    if ribbon is None:
-        return []
-    result = [*_slenderness(ribbon), *_width_of_loop(solution, ribbon)]
-    if solution.status.converged:
-        result += _generatrices(solution, ribbon.width)
+    """Return a sentence for each reason to doubt the answer or, with sizes, the model."""
+    ribbon, converged = solution.scene.ribbon, solution.status.converged
+    result = []
+    if ribbon is not None:
+        result += [*_slenderness(ribbon), *_width_of_loop(solution, ribbon)]
+        result += _generatrices(solution, ribbon.width) if converged else []
+    if converged:
+        result += zero_moment_problems(solution)
+        result += [*planar_problems(solution), *contact_problems(solution)]
     return result
 
 

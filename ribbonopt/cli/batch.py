@@ -127,6 +127,7 @@ def _tell(options: argparse.Namespace, folder: BatchFolder) -> int:
         names = ", ".join(sorted(path.name for path in folder.folder.iterdir()))
         print(
             f"{folder.study.name}: {len(folder.rows)} ribbons: {study}\n"
+            f"{_noted(folder)}"
             f"  {seconds:.1f} s of solving\n"
             f"  written: {folder.folder}: {names}"
         )
@@ -139,6 +140,16 @@ def _tell(options: argparse.Namespace, folder: BatchFolder) -> int:
         file=sys.stderr,
     )
     return NOT_CONVERGED
+
+
+def _noted(folder: BatchFolder) -> str:
+    """Return a line on the ribbons that were not solved from where they were begun, if any."""
+    noted = [row for row in folder.rows if row.get("note")]
+    if not noted:
+        return ""
+    first = min(noted, key=lambda row: int(row["number"]))
+    count = f"{len(noted)} ribbon{'s' * (len(noted) > 1)}"
+    return f"  note: {count} fell back (column note); number {first['number']}: {first['note']}\n"
 
 
 class _Bar:

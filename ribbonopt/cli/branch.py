@@ -7,7 +7,7 @@ import gc
 import sys
 from collections.abc import Generator, Iterator, Mapping
 from contextlib import closing
-from itertools import pairwise
+from itertools import groupby, pairwise
 from typing import TYPE_CHECKING, Any
 
 from .common import (
@@ -133,23 +133,42 @@ def _report(folder: BranchFolder, continuation: Continuation) -> str:
         rows = [r for r in folder.rows if (r["stage"], r["branch"]) == (stage, branch)]
         where = f"stage {stage + 1}" + (f", branch {branch}" if branch else "")
         lines.append(f"  {where}: {_extent(rows)}: {ending.reason}")
+        lines += _notes(rows)
         for row in rows:
             if row["kind"] != "point":
-                lines.append(f"    {row['kind']} at {row['parameter']} = {row['value']:.10g}")
+                more = _how_on(row, continuation.stages[stage].switch)
+                lines.append(f"    {row['kind']} at {row['parameter']} = {row['value']:.10g}{more}")
         lines += [f"    {change}" for change in _changes(rows)]
     names = ", ".join(sorted(path.name for path in folder.folder.iterdir()))
     return "\n".join([*lines, f"  written: {folder.folder}: {names}"])
+
+
+def _how_on(row: Mapping[str, Any], switch: bool) -> str:
+    """Say how to reach the ribbons that leave a straight one where it buckles."""
+    if row["kind"] != "buckling point" or switch:
+        return ""
+    return " (`switch: true` follows the buckled ribbon)"
 
 
 def _extent(rows: list[dict[str, Any]]) -> str:
     if not rows:
         return "no points"
     first, last = rows[0], rows[-1]
-    errors = max(row["error"] for row in rows if row["error"] is not None)
+    errors = [row["error"] for row in rows if row["error"] is not None]
     return (
         f"{len(rows)} points, {first['parameter']} = {first['value']:.6g} to {last['value']:.6g}, "
-        f"relative error at most {errors:.0e}"
+        + (f"relative error at most {max(errors):.0e}" if errors else "errors not known")
     )
+
+
+def _notes(rows: list[dict[str, Any]]) -> Iterator[str]:
+    """Say what is to be told of points; once for those that follow one another."""
+    regular = [row for row in rows if row["kind"] == "point"]
+    for note, run in groupby(regular, key=lambda row: row.get("note")):
+        if note:
+            same = list(run)
+            values = dict.fromkeys(f"{row['value']:.6g}" for row in (same[0], same[-1]))
+            yield f"    note at {same[0]['parameter']} = {' to '.join(values)}: {note}"
 
 
 def _changes(rows: list[dict[str, Any]]) -> Iterator[str]:

@@ -45,27 +45,36 @@ def initial_unknowns(
     `p` holds theta and the relative widths of the elements; `switches` are the fractions of the
     length where phases meet, if there are several.
     """
-    layout, widths = blocks.layout, blocks.widths(p)
-    theta = layout.theta(p)
+    layout, theta = blocks.layout, blocks.layout.theta(p)
     ends = np.concatenate([[0.0], [] if switches is None else switches, [1.0]])
-    local = blocks.stage_positions(p)
-    parts = []
-    for i, s in enumerate(layout.phase_slices):
-        nodes = np.concatenate([[0.0], np.cumsum(widths[s])])[:-1]
-        positions = np.hstack([nodes[:, None], local[s]])
-        parts.append(ends[i] + (ends[i + 1] - ends[i]) * positions)
-    fractions = np.append(np.concatenate(parts).ravel(), 1.0)
-    fractions = np.minimum(fractions, 1.0)
+    fractions = places_of(blocks, p, ends)
     known = guess.unknowns_for(problem, theta, fractions) if isinstance(guess, Solved) else None
     v, constants = known or _from_fields(guess, ribbon, problem, theta, fractions)
-    body = v[:-1].reshape(layout.element_count, layout.stages + 1, -1)
-    nodes = np.vstack([body[:, 0, : layout.nx], v[-1:, : layout.nx]])
     if switches is not None and len(switches):
         names = [problem.parameter_names.index(f"interval.{end}") for end in ("start", "end")]
         total = theta[names[1]] - theta[names[0]]
         constants = np.concatenate([constants, total * np.diff(ends)[:-1]])
     constants = np.concatenate([constants, np.zeros(max(0, layout.nc - len(constants)))])
-    return layout.pack(nodes, body[:, 1:], constants[: layout.nc])
+    return laid_out(blocks, v, constants[: layout.nc])
+
+
+def places_of(blocks: Blocks, p: Array, ends: Array) -> Array:
+    """Fractions (k,) of the length of all nodes and stages, in order; phases meet at `ends`."""
+    widths, local, parts = blocks.widths(p), blocks.stage_positions(p), []
+    for i, s in enumerate(blocks.layout.phase_slices):
+        nodes = np.concatenate([[0.0], np.cumsum(widths[s])])[:-1]
+        positions = np.hstack([nodes[:, None], local[s]])
+        parts.append(ends[i] + (ends[i + 1] - ends[i]) * positions)
+    fractions = np.append(np.concatenate(parts).ravel(), 1.0)
+    return np.asarray(np.minimum(fractions, 1.0))
+
+
+def laid_out(blocks: Blocks, v: Array, constants: Array) -> Array:
+    """Unknowns w (nw,) with the values v (k, nv) at the places of `places_of`, and constants."""
+    layout = blocks.layout
+    body = v[:-1].reshape(layout.element_count, layout.stages + 1, -1)
+    nodes = np.vstack([body[:, 0, : layout.nx], v[-1:, : layout.nx]])
+    return layout.pack(nodes, body[:, 1:], constants)
 
 
 def _from_fields(

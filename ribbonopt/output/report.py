@@ -6,6 +6,8 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
+from ribbonopt.checks.arcs import phase_words
+
 SMALL = 1e-3  # largest component of what is written with powers of ten
 
 
@@ -16,7 +18,7 @@ def report(summary: Mapping[str, Any]) -> str:
     head = f"{s['name']}: {s['status'].replace('_', ' ')}"
     lines = [
         head + (", verified" if s["verified"] else f"\n  {s['message']}"),
-        *(f"  note: {what}" for what in s["given_up"]),
+        *(f"  note: {what}" for what in (*s["given_up"], *s["fell_back"])),
         f"  law {s['law']['type']}{f' ({law})' if law else ''}, {s['formulation']} formulation, "
         f"{s['states']} states",
         f"  {s['transcription']}, {s['scheme']} {s['degree']} on {s['intervals']} intervals, "
@@ -58,9 +60,7 @@ def _phases(s: Mapping[str, Any]) -> list[str]:
     if s["phases"]:
         at = ", ".join(f"{point:.6g}" for point in s["switch_points"])
         where = f"; switches at s = {at}" if at else " all along"
-        words = {1: "m2 > 0", -1: "m2 < 0", 0: "m2 = 0 (mixture)"}
-        arcs = ", ".join(words[kind] for kind in s["phases"])
-        lines.append(f"  phases                   {arcs}{where}")
+        lines.append(f"  phases                   {phase_words(s['phases'])}{where}")
     return lines
 
 

@@ -140,6 +140,7 @@ def load_solution(path: str | Path, scene: Scene | None = None) -> Solution:
         steps=tuple(summary["path"]),
         skipped=tuple(summary["skipped"]),
         given_up=tuple(summary.get("given_up", ())),
+        fell_back=tuple(summary.get("fell_back", ())),
         verification=Verification((), worst, between, law, drift),
         sheets=sheets,
     )

@@ -11,6 +11,8 @@ import numpy as np
 
 from ribbonopt.accuracy.estimate import estimate_error
 from ribbonopt.checks.topology import count_half_twists
+from ribbonopt.checks.validity import warnings_of
+from ribbonopt.checks.zero_moment import lacks_linearisation
 from ribbonopt.plain import finite
 from ribbonopt.problem import formulation_name
 from ribbonopt.solution.solution import Solution
@@ -65,23 +67,15 @@ def summarize(solution: Solution) -> dict[str, Any]:
         "equilibria": [_equilibrium(found) for found in (solution, *solution.others)],
         "path": [dict(step) for step in solution.steps],
         "given_up": list(solution.given_up),
+        "fell_back": list(solution.fell_back),
         "skipped": list(solution.skipped),
         "timings": dict(solution.timings),
         "versions": versions(),
         "units": solution.units.name,
-        "warnings": _warnings(solution),
+        "warnings": warnings_of(solution),
     }
     plain: dict[str, Any] = finite(summary)
     return plain
-
-
-def _warnings(solution: Solution) -> list[str]:
-    """Return reasons to doubt the model, which only sizes in SI can give."""
-    if solution.scene.ribbon is None:
-        return []
-    from ribbonopt.checks.validity import warnings_of
-
-    return warnings_of(solution)
 
 
 def _equilibrium(solution: Solution) -> dict[str, Any]:
@@ -104,15 +98,17 @@ def _recorded(solution: Solution) -> dict[str, Any]:
     with np.errstate(all="ignore"):
         values = recorded(solution)
         try:
-            errors = names if solution.problem.recovered else recorded_errors(solution)
+            unknown = solution.problem.recovered or lacks_linearisation(solution)
+            errors = names if unknown else recorded_errors(solution)
         except np.linalg.LinAlgError:
             errors = names
     return {"recorded": values, "recorded_error": errors}
 
 
 def _error_estimate(solution: Solution) -> dict[str, float | None]:
-    """Estimated absolute errors; None without convergence, and for minima (no square system)."""
-    if not solution.status.converged or solution.problem.recovered:
+    """Estimated absolute errors; None without convergence or linearisation, and for minima."""
+    unknown = not solution.status.converged or lacks_linearisation(solution)
+    if unknown or solution.problem.recovered:
         return dict.fromkeys(ANSWERS)
     try:
         return dict(estimate_error(solution))

@@ -55,6 +55,8 @@ def from_nothing(
         search.ledger.steps.extend(piece.steps)
         if piece.verified and _run_unfolded(search, unfolded(piece, posed)):
             return search
+        what = "the band's fundamental piece led to none of the whole"
+        search.ledger.fall_back("piece", f"{what}; it was started from the least energy of that")
     start = guesses()
     search.run_all(with_sharper(start, prepare) if search.needs_phases else start)
     wound = winding(posed.scene.boundary, posed.scene.parameters)

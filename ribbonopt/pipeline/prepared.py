@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING
 
 from ribbonopt.arrays import Array
 from ribbonopt.attempt.structure import Structure
+from ribbonopt.checks.zero_moment import unbent_share
 from ribbonopt.errors import ConvergenceError
 from ribbonopt.guess import Guess, guess_of, words
 from ribbonopt.problem import BoundaryValueProblem, Posed, Ribbon
@@ -24,6 +25,7 @@ from ribbonopt.transcription import NLP
 
 from .search import Search
 from .skipped import skipped
+from .told import judged, of_finer_mesh, of_starts, other_phases, regularized
 
 if TYPE_CHECKING:
     from ribbonopt.solvers import Solver
@@ -99,7 +101,7 @@ class Prepared:
         if found.status is Status.TOLERANCE_MISSED and guess is None:
             from ribbonopt.pipeline.refinement import on_finer_mesh  # after a failure only
 
-            found = on_finer_mesh(found, lambda s: prepare(s).solve_once())
+            found = of_finer_mesh(found, on_finer_mesh(found, lambda s: prepare(s).solve_once()))
         return found
 
     def solve_once(self) -> Solution:
@@ -110,8 +112,8 @@ class Prepared:
         """Solve a scene (default: the prepared one) from one guess that is thought to be near."""
         started = time.perf_counter()
         search = self.search(scene)
-        _ = search.run_smooth(guess) if isinstance(guess, Solution) else search.run(guess)
-        return self._with_costs(search, time.perf_counter() - started)
+        done = search.run_smooth(guess) if isinstance(guess, Solution) else search.run(guess)
+        return self._with_costs(search, time.perf_counter() - started, done)
 
     def search(self, scene: Scene | Posed | None = None) -> Search:
         """Return a search for solutions of a scene of this structure; nothing is solved yet."""
@@ -126,7 +128,7 @@ class Prepared:
         scene, if given, remembers what it took.
         """
         tolerance = solution.scene.tolerance
-        if tolerance is None or not solution.verified:
+        if tolerance is None or not solution.verified or unbent_share(solution, self.ribbon.law):
             return solution
         from ribbonopt.pipeline.refinement import AIM, refine  # for scenes with a tolerance
 
@@ -161,26 +163,26 @@ class Prepared:
         if own is not None:
             step = "guess: given" if guess else f"guess: {words(posed.scene.guess)}"
             search.ledger.note(step, time.perf_counter() - started)
-        led = own is not None and search.run(own, quick=quick)
+        led = done = own is not None and search.run(own, quick=quick)
         if not led and (own is None or fallback):
             from .nothing import from_nothing  # IPOPT, which many scenes do without
 
             guesses = partial(self.automatic.guesses, posed, search.ledger)
             search = from_nothing(search, guesses, prepare)
+            done = search.settled
         if not led and own is not None and fallback:
             what = "the guess given" if guess else f"the guess ({words(posed.scene.guess)})"
             search.ledger.give_up(f"{what} led nowhere and was given up for the automatic start")
-        return self._with_costs(search, time.perf_counter() - started)
+        return self._with_costs(search, time.perf_counter() - started, done)
 
-    def _with_costs(self, search: Search, seconds: float) -> Solution:
+    def _with_costs(self, search: Search, seconds: float, done: bool) -> Solution:
         """Return the best solution found, with what it has cost."""
         ledger, best = search.ledger, search.best
         if best is None:
             raise _no_start()
         best = replace(best, steps=tuple(ledger.steps))
-        smooth = search.smooth_instead
-        found = (_regularized(best, one) for one in smooth)  # on demand
-        best = next(filter(None, found), best) if smooth else self.refined(best)
+        found = regularized(best, search.smooth_instead, prepare)
+        best = found or self.refined(best if done else judged(best, search))
         in_vain = bool(best.sheets) and not best.verified
         if in_vain or best.status is Status.TOLERANCE_MISSED:
             from .sharpening import without_phases  # after a failure only
@@ -190,7 +192,8 @@ class Prepared:
             best,
             timings=ledger.timings(self.seconds, seconds),
             iterations=ledger.iterations,
-            given_up=tuple(ledger.given_up),
+            given_up=(*ledger.given_up, *other_phases(search)),
+            fell_back=tuple(ledger.fell_back.values()),
             skipped=skipped(search.posed, self.problem, ledger, best.sheets),
         )
 
@@ -221,7 +224,8 @@ def solve(scene: Scene) -> Solution:
         return solution
     from ribbonopt.starts.equilibria import equilibria  # few scenes ask for it
 
-    return equilibria(prepared.posed(), solution, prepared.automatic, prepared.polish)
+    found = equilibria(prepared.posed(), solution, prepared.automatic, prepared.polish)
+    return of_starts(solution, found)
 
 
 def prepare(scene: Scene) -> Prepared:
@@ -233,16 +237,6 @@ def prepare(scene: Scene) -> Prepared:
     examine(structure.ribbon, structure.problem, posed)
     structure.build()
     return Prepared(structure, time.perf_counter() - started)
-
-
-def _regularized(best: Solution, smooth: Solution) -> Solution | None:
-    """Return the equilibrium of the smooth law, labelled: none was found of the exact one."""
-    scene = replace(best.scene, law=smooth.scene.law, switching="off", guess="auto", starts=1)
-    found = prepare(scene).solve(guess=smooth, fallback=False)
-    if not found.verified:
-        return None
-    steps, status = (*best.steps, *found.steps), Status.REGULARIZED
-    return replace(found, status=status, message=status.value, steps=steps)
 
 
 def _no_start() -> ConvergenceError:

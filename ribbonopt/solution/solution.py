@@ -48,8 +48,9 @@ class Solution:
         Seconds by kind of work.
     steps : tuple of mappings
         The steps that led here, with their cost.
-    skipped, given_up : tuples of str
-        What this scene did not need; what it asked for and did not lead to this answer.
+    skipped, given_up, fell_back : tuples of str
+        What this scene did not need; what it asked for and did not lead to this answer; what was
+        tried before what did.
     verification : Verification
         What was checked afterwards.
     others : tuple of Solution
@@ -71,6 +72,7 @@ class Solution:
     steps: tuple[Mapping[str, Any], ...] = ()
     skipped: tuple[str, ...] = ()
     given_up: tuple[str, ...] = ()
+    fell_back: tuple[str, ...] = ()
     others: tuple[Solution, ...] = ()
     times: int = 1
     sheets: tuple[int, ...] = ()

@@ -49,9 +49,17 @@ class Automatic:
         if follower is not None:
             ledger.note("integrated from the loads of the end", 0.0)
             yield follower
+            what = "the ribbon integrated from the loads of its end led nowhere"
+            ledger.fall_back("loads", f"{what}; others of the automatic start did")
         if shape is None and self._piece is not None:
             yield from self._unfolded(posed, ledger)
-        for start in [shape] if shape else shapes_for(posed):
+            what = "the band unfolded from its fundamental piece led nowhere"
+            ledger.fall_back("piece", f"{what}; it was started from the least energy of the whole")
+        for number, start in enumerate([shape] if shape else shapes_for(posed)):
+            if number:
+                what = "shape that fits the ends" if number == 1 else "shapes that fit the ends"
+                first = f"the first {'' if number == 1 else f'{number} '}{what} led nowhere"
+                ledger.fall_back("shape", f"{first}; the automatic start went on from another")
             points = self._points(posed, start, ledger)
             # A law that is not smooth may refuse the last point and take an earlier one.
             yield from reversed(points[-1:] if in_family(posed.scene.law) else points)
@@ -110,6 +118,8 @@ class Automatic:
                 break
             # The branch has an end here: the energy's minimum goes on elsewhere.
             start = followed.points[-1]
+            what = f"the path of the automatic start was lost at{_delta(start.scene.law)[1:]}"
+            ledger.fall_back("path", f"{what}; it went on from the least energy there")
             law = sharpened(law, max(last, 0.6 * sharpness(start.scene.law, last)))
         return points
 

@@ -32,7 +32,8 @@ Log = bool | Collection[str]
 
 COLOURS = (BENDING, TWIST, "#009e73", "#cc79a7", "#56b4e9", "#e69f00")  # one for each branch
 STABLE, UNSTABLE, UNKNOWN = "stable", "unstable", "stability unknown"
-FOLD, BRANCH, FIRST, LAST = "fold", "branch point", "first point", "last point"
+FOLD, BRANCH, BUCKLING = "fold", "branch point", "buckling point"
+FIRST, LAST = "first point", "last point"
 STYLES: dict[str, dict[str, Any]] = {
     STABLE: {"ls": "-", "lw": 2.0},
     UNSTABLE: {"ls": (0, (3.5, 1.8)), "lw": 1.6},
@@ -41,7 +42,9 @@ STYLES: dict[str, dict[str, Any]] = {
     LAST: {"ls": "", "marker": "x", "ms": 5.5, "color": FAINT, "mew": 1.2, "zorder": 4},
     FOLD: {"ls": "", "marker": "s", "ms": 6.5, "mfc": INK, "mec": "w", "mew": 0.8, "zorder": 5},
     BRANCH: {"ls": "", "marker": "o", "ms": 7.5, "mfc": "w", "mec": INK, "mew": 1.4, "zorder": 6},
+    BUCKLING: {"ls": "", "marker": "D", "ms": 6.5, "mfc": "w", "mec": INK, "mew": 1.4, "zorder": 6},
 }
+SPECIAL = (FOLD, BRANCH, BUCKLING)
 DOT = {"marker": "o", "ms": 3.5, "zorder": 4.5}  # a point alone
 LABELS = {"number": "point", "negative": "negative directions", "error": "estimated error"}
 
@@ -121,7 +124,7 @@ def _draw(axes: Axes, rows: Rows, pair: ColumnPair, parameter: str) -> Array:
             colour = COLOURS[branch % len(COLOURS)]
             axes.plot(*_points(stretch, pair), color=colour, label="_" if plain else state, **style)
     last = {row["branch"]: i for i, row in enumerate(drawn)}.values()
-    marked = {name: [row for row in drawn if row["kind"] == name] for name in (FOLD, BRANCH)}
+    marked = {name: [row for row in drawn if row["kind"] == name] for name in SPECIAL}
     marked |= {FIRST: drawn[:1], LAST: [drawn[i] for i in last if i]}
     for name, chosen in marked.items():
         chosen = [row for row in chosen if parameter in ("", row["parameter"])]

@@ -14,7 +14,7 @@ ColumnPair = tuple[str, str]
 
 WIDE = 50.0  # largest over smallest value, from which axes are logarithmic
 NOISE = 1e-9  # relative differences below this are rounding
-COSTS = ("start", "iterations", "path", "seconds", "message")
+COSTS = ("start", "iterations", "path", "seconds", "note", "message")
 
 
 def columns(rows: Rows, inputs: Sequence[str] = ()) -> list[str]:

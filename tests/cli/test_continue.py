@@ -265,3 +265,23 @@ def test_messages_do_not_stand_beside_the_bar(tmp_path: Path) -> None:
     assert said.status == 130
     last = said.err.replace("\r\n", "\n").rstrip().replace("\n", "\r").split("\r")[-1]
     assert last.startswith("ribbonopt: interrupted; ")
+
+
+def test_a_buckling_point_is_told_with_the_way_on(run: Run, tmp_path: Path) -> None:
+    scene = tmp_path / "lateral.yaml"
+    scene.write_text(
+        """\
+name: lateral
+law: {type: sadowsky}
+parameters: {P: 1}
+boundary:
+  start: {support: clamped, position: [0, 0, 0], directors: identity}
+  end: {support: free, force: {x: 0, y: P, z: 0}}
+continuation: {parameter: parameters.P, from: 5, to: 8, largest: 1}
+"""
+    )
+    status, out, _ = run("continue", scene, "--out", tmp_path / "branch")
+    assert status == 0
+    assert "errors not known" in out
+    assert out.count("m2 = m3 = 0 along the ribbon") == 1
+    assert "buckling point at parameters.P = 6.729347255 (`switch: true` follows" in out

@@ -17,7 +17,13 @@ from ribbonopt.errors import ModelError
 from ribbonopt.pipeline.prepared import prepare
 from ribbonopt.scene import load_scene
 from ribbonopt.studies.continuation.continuation import Continuation
-from ribbonopt.studies.continuation.walk.points import BRANCH_POINT, FOLD, POINT, Point
+from ribbonopt.studies.continuation.walk.points import (
+    BRANCH_POINT,
+    BUCKLING,
+    FOLD,
+    POINT,
+    Point,
+)
 
 Array = np.ndarray
 DEGREE = np.pi / 180
@@ -131,11 +137,18 @@ def test_columns_buckle_again_and_again(configs: Path) -> None:
 
 
 @each_column
-def test_a_straight_ribbon_of_sadowsky_is_told_it_has_no_branch_points(
-    configs: Path, name: str
+def test_a_straight_ribbon_of_sadowsky_has_no_branch_points_and_buckles_as_a_rod(
+    columns: dict[str, Run], configs: Path, name: str
 ) -> None:
-    with pytest.raises(ModelError, match=r"(?s)sadowsky.*kirchhoff"):
-        list(Continuation(load_scene(configs / f"{name}.yaml", [SADOWSKY])))
+    run, rod = Run(configs / f"{name}.yaml", SADOWSKY), columns[name]
+    assert run.special(BRANCH_POINT) == []
+    (point,) = run.special(BUCKLING)
+    assert point.row["value"] == pytest.approx(EULER[name], rel=1e-9)
+    for row in run.rows(1):
+        K = np.sqrt(row["value"] / EULER[name]) * np.pi / 2
+        m = brentq(lambda m, K=K: ellipk(m) - K, 0, 0.9, xtol=1e-15)
+        assert abs(row["deflection"]) == pytest.approx(np.sqrt(m) / K, rel=1e-7)
+    assert sorted(run.branches) == sorted(rod.branches)
 
 
 # The strip that snaps.

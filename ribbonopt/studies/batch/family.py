@@ -67,7 +67,9 @@ def solve_beside(
     found, start = prepared.solve(scene), "own"
     if nearest is not None and not found.verified:
         other = nearest.solve_at_any_cost(scene)
-        found, start = (other, name) if other.verified else (found, start)
+        if other.verified:
+            told = f"its own start led nowhere ({found.status.failure}): it was solved from {name}"
+            found, start = replace(other, fell_back=(*other.fell_back, told)), name
     family = Family((Neighbour(prepared, found),), number) if found.verified else None
     return found, start, family
 

@@ -139,7 +139,7 @@ class BatchFolder:
 def sorted_columns(names: list[str], inputs: Sequence[str]) -> list[str]:
     """Return columns: number, scene, inputs, what came out, and what it cost last."""
     first = ["number", "scene", *inputs, "status", "verified", "energy"]
-    last = ["start", "iterations", "path", "message", "seconds"]
+    last = ["start", "iterations", "path", "note", "message", "seconds"]
     middle = [name for name in sorted(names) if name not in (*first, *last)]
     return [name for name in (*first, *middle, *last) if name in names]
 

@@ -21,7 +21,7 @@ PAIR = re.compile(r"\\u(d[89ab][0-9a-f]{2})\\u(d[c-f][0-9a-f]{2})")
 #: of every row; a ribbon that failed has some of them only
 COLUMNS = (
     *("number", "scene", "status", "verified", *ANSWERS, "error"),
-    *("start", "iterations", "path", "message", "seconds"),
+    *("start", "iterations", "path", "note", "message", "seconds"),
 )
 
 

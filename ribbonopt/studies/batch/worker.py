@@ -97,6 +97,7 @@ def _outcome(found: Solution, start: str) -> Row:
         if found.scene.starts > 1:
             row["equilibria"] = 1 + len(found.others)
     steps = [step["step"] for step in found.steps]
+    row["note"] = "; ".join((*found.given_up, *found.fell_back))
     return row | {"start": start, "iterations": found.iterations, "path": "; ".join(steps)}
 
 

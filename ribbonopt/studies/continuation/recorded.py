@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 
 from ribbonopt.accuracy.estimate import relative_error
+from ribbonopt.checks.zero_moment import lacks_linearisation, unknown_of
 from ribbonopt.errors import ModelError
 from ribbonopt.plain import Row, finite
 from ribbonopt.scene import ContinuationStage, Scene
@@ -25,7 +26,7 @@ NUMBERS = (
     *("value", "error", *ANSWERS),
     *("number", "stage", "branch", "negative", "intervals", "iterations"),
 )
-WORDS = ("parameter", "kind", "switches")
+WORDS = ("parameter", "kind", "switches", "note")
 
 
 class Recorder:
@@ -86,6 +87,8 @@ class Recorder:
         row["switches"] = solution.switch_points.tolist()
         row["intervals"] = solution.dense.blocks.layout.element_count
         row["iterations"] = solution.iterations
+        told = (*unknown_of(solution), *solution.given_up, *solution.fell_back)
+        row["note"] = "; ".join(filter(None, [point.note, *told]))
         return row
 
 
@@ -106,8 +109,8 @@ class StageRecords:
 
 
 def error_of(solution: Solution) -> float | None:
-    """Relative error of the answer; None for minima and singular equations."""
-    if solution.problem.recovered:
+    """Relative error of the answer; None for minima, singular equations and those without slope."""
+    if solution.problem.recovered or lacks_linearisation(solution):
         return None
     try:
         return relative_error(solution)[0]

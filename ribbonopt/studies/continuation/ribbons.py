@@ -7,23 +7,30 @@ changes of m2 do. So a layout is a mesh and its phases.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import cached_property
 
 import numpy as np
 
 from ribbonopt.accuracy.estimate import relative_error
 from ribbonopt.arrays import Array
 from ribbonopt.attempt.attempt import Attempt, verified
+from ribbonopt.checks.arcs import changed_phases
+from ribbonopt.checks.zero_moment import unbent_share
 from ribbonopt.pipeline.prepared import Prepared
 from ribbonopt.solution.solution import Solution
-from ribbonopt.solvers import SolveReport
+from ribbonopt.solvers import SolveReport, Status
 from ribbonopt.solvers.extended import ExtendedSystem, Local, local
 from ribbonopt.solvers.newton import NewtonSolver
+from ribbonopt.studies.buckling.twin import has_twin, twin_of, twin_scene
 from ribbonopt.studies.spare import SPARE
 
+from .buckled import StageBuckling
 from .curve import Curve
 from .walk.metric import Metric
-from .walk.points import Point
+from .walk.points import BUCKLING, POINT, Point
 from .walk.protocol import Trial
+
+NEXT_TO_CROSSING = "next to where branches cross: the error is above the tolerance"
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,13 +58,28 @@ class RibbonEquations:
     def linearise(self, solution: Solution, unknowns: Array, ahead: Array) -> Local:
         """Linearise at a solution with a row along the branch."""
         row = row_of(solution, self.metric.dual(ahead))
-        return local(self.curve.line(solution), row, solution.dense.w, float(unknowns[-1]))
+        there, unbent = (solution.dense.w, float(unknowns[-1])), self._unbent(solution)
+        try:
+            found = local(self.curve.line(solution), row, *there)
+        except np.linalg.LinAlgError:
+            if not (unbent and self._rod):
+                raise
+            line = self._rod.curve.line(self._rod.restored(solution, unknowns))
+            found = local(line, row, *there)
+        # Its determinant would be that of the law's guard.
+        return replace(found, sign=0.0) if unbent else found
 
     def correct_at(self, origin: Solution, guess: Array) -> Trial[Solution]:
         """Correct at a position (natural continuation)."""
         attempt = self._beside(origin, float(guess[-1]))
         attempt.run_from(guess[:-1], quick=True, check=False)
-        return _trial(attempt, guess[-1:])
+        trial = _trial(attempt, guess[-1:])
+        if trial.converged or not (self._unbent(origin) and self._rod):
+            return trial
+        straight = self._rod.correct_at(origin, guess)
+        found = attempt.restored(straight.unknowns[:-1])
+        same = straight.converged and self._unbent(found)
+        return replace(straight, solution=found) if same else trial
 
     def correct_along(
         self,
@@ -79,6 +101,33 @@ class RibbonEquations:
         attempt.take(_without_last(report), check=False)
         return _trial(attempt, report.w[-1:])
 
+    def crossings(self, a: Point[Solution], b: Point[Solution]) -> list[Point[Solution]]:
+        """Return the buckling points between two points where m2 = m3 = 0 along the ribbon."""
+        if not (self._unbent(a.solution) and self._unbent(b.solution)):
+            return []
+        return self.buckling.between(self, a, b)
+
+    def departure(self, point: Point[Solution]) -> Array | None:
+        """Return the infinitesimal deflection at a buckling point, None at others."""
+        if point.kind != BUCKLING:
+            return None
+        attempt = self._beside(point.solution, point.position)
+        direction = self.buckling.direction(attempt, point)
+        return np.asarray(direction / self.metric.length(reduced(point.solution, direction)))
+
+    @cached_property
+    def buckling(self) -> StageBuckling:
+        """Buckling loads of straight states, found when they are first asked for."""
+        return StageBuckling(self.prepared, self.curve)
+
+    @cached_property
+    def _rod(self) -> RibbonEquations | None:
+        """The same with a linear law, where straight states have a linearisation."""
+        if not has_twin(self.prepared.ribbon.law, self.curve.name):
+            return None
+        curve = Curve(twin_scene(self.curve.scene), self.curve.stage)
+        return RibbonEquations(twin_of(curve.scene_at(curve.start)), curve, self.metric)
+
     def restored(self, origin: Solution, unknowns: Array) -> Solution:
         """Return a solution of known unknowns on the mesh and in the phases of another."""
         return self._beside(origin, float(unknowns[-1])).restored(unknowns[:-1])
@@ -93,11 +142,18 @@ class RibbonEquations:
         tolerance = found.scene.tolerance
         if not found.sheets and self._needs_phases(found):
             found = self.prepared.solve(found.posed, guess=found, fallback=False)
+        elif self._unbent(found):  # no error can be told of it
+            found = verified(found, self.prepared.ribbon)
         elif tolerance is not None and relative_error(found)[0] > tolerance:
             found = self.prepared.refined(found, SPARE)
         else:
             found = verified(found, self.prepared.ribbon)
-        done = _checked(trial, found)
+        note = changed_phases(origin.solution.sheets, found.sheets)
+        if origin.kind != POINT and found.status in (Status.ROUNDED, Status.TOLERANCE_MISSED):
+            # Where branches cross rounding is magnified: the row says how exact it is.
+            found = replace(found, status=Status.CONVERGED, message=Status.CONVERGED.value)
+            note = "; ".join(filter(None, [note, NEXT_TO_CROSSING]))
+        done = replace(_checked(trial, found), note=note)
         if not done.converged and self.prepared.ribbon.law.kinked:
             # Phases may have changed on the way.
             return self._anew(origin.solution, float(trial.unknowns[-1])) or done
@@ -111,7 +167,11 @@ class RibbonEquations:
         """Solve at a position with all that a single scene may need, from a solution near by."""
         found = self.prepared.solve(self.curve.posed_at(position), guess=solution, fallback=False)
         unknowns = np.append(found.dense.w, position)
-        return Trial(found, unknowns, True, found.message) if found.verified else None
+        note = changed_phases(solution.sheets, found.sheets)
+        return Trial(found, unknowns, True, found.message, note) if found.verified else None
+
+    def _unbent(self, solution: Solution) -> bool:
+        return unbent_share(solution, self.prepared.ribbon.law) > 0
 
     def _beside(self, solution: Solution, position: float) -> Attempt:
         """Return the means to solve at a position, on the mesh and in the phases of a solution."""

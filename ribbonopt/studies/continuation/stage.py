@@ -11,13 +11,10 @@ from ribbonopt.errors import ConvergenceError, ModelError
 from ribbonopt.pipeline.prepared import Prepared
 from ribbonopt.problem import BoundaryValueProblem
 from ribbonopt.solution.solution import Solution
-from ribbonopt.solvers import Status
 
 from .curve import Curve
 from .recorded import Recorder, StageRecords
 from .ribbons import RibbonEquations, metric_at
-
-STRAIGHT = 1e-9  # largest moment of a straight ribbon, in units Dw = L = 1
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,16 +46,12 @@ class RibbonStage:
 
         Raises
         ------
-        ModelError
-            If branch points are asked of a law without a derivative there.
         ConvergenceError
             If no solution is found.
         """
         curve = self.curve
         scene = curve.scene_at(curve.start)
         found = self.prepared.solve(scene, guess=self.before, fallback=self.before is None)
-        if curve.special and found.status is not Status.NO_START:
-            _refuse_straight(found, self.prepared)
         if not found.verified:
             raise ConvergenceError(
                 f"no solution to begin with, at {curve.name} = {curve.stage.from_:g}: "
@@ -79,16 +72,4 @@ def refuse_idle(curve: Curve, problem: BoundaryValueProblem) -> None:
             f"continuation.parameter: {curve.name} changes nothing in this scene; "
             "continue a number that its equations contain",
             "continuation.parameter",
-        )
-
-
-def _refuse_straight(found: Solution, prepared: Prepared) -> None:
-    """Raise a ModelError where branch points are asked of a law without a derivative."""
-    moments = np.abs(found.trajectory.at_stages["m"]).max()
-    if prepared.ribbon.law.kinked and moments < STRAIGHT:
-        raise ModelError(
-            f"law: {found.scene.law.type} has no derivative at m = 0, so that a straight ribbon of "
-            "it has no branch points to be found; use law: kirchhoff, whose buckling loads they "
-            "are, or 'special: false' in the continuation",
-            "law",
         )

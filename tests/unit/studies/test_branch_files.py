@@ -69,7 +69,7 @@ HEAD = [
     *("number", "stage", "branch", "parameter", "value", "kind", "negative", "error", "energy"),
     *("H0", "n0x", "n0y", "n0z", "m0x", "m0y", "m0z", "u1", "u2", "u3"),
 ]
-TAIL = ["switches", "intervals", "iterations"]
+TAIL = ["switches", "intervals", "iterations", "note"]
 
 each_scene = pytest.mark.parametrize("name", SCENES)
 
@@ -246,10 +246,10 @@ def read(cell: str) -> Any:
 
 
 class Empty:
-    """An empty cell: nothing, or no numbers."""
+    """An empty cell: nothing, no numbers, or no words."""
 
     def __eq__(self, other: object) -> bool:
-        return other is None or other == []
+        return other is None or other in ([], "")
 
 
 class OneOrMany(list[float]):

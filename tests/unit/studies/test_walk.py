@@ -279,3 +279,22 @@ def test_going_on_is_as_if_there_had_been_no_break(
         assert point.unknowns.tobytes() == other.unknowns.tobytes()
         assert point.tangent.tobytes() == other.tangent.tobytes()
         assert (point.number, point.kind, point.step) == (other.number, other.kind, other.step)
+
+
+# what is told
+
+
+def test_a_point_of_another_curve_is_told() -> None:
+    # x = 0 and x = 1, of which the first ends at l = 1.
+    lines = Dense(
+        lambda z: np.array([z[0] * (z[0] - 1)]),
+        lambda z: np.array([[2 * z[0] - 1, 0.0]]),
+        UNIT,
+        admissible=lambda z: bool(z[0] > 0.5 or z[1] <= 1),
+        other=lambda position: np.array([1.0, position]),
+    )
+    found = run([stage(lines, Straight(0, (2,), 0.3), [0, 0])])
+    told = [(point.row["z"].tolist(), point.note) for point in found.points]
+    first = next(i for i, (z, _) in enumerate(told) if z[0] == 1)
+    assert "another equilibrium" in told[first][1]
+    assert not any(note for i, (_, note) in enumerate(told) if i != first)

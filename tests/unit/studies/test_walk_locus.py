@@ -92,6 +92,12 @@ class FoldLocus:
         start = self.line.reduced(origin.unknowns)
         return self._solved(guess, lambda z: row @ (self.line.reduced(z) - start) - arc)
 
+    def crossings(self, a: Point[None], b: Point[None]) -> list[Point[None]]:
+        return []
+
+    def departure(self, point: Point[None]) -> None:
+        return None
+
     def restored(self, origin: None, unknowns: Array) -> None:
         return None
 

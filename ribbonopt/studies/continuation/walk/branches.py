@@ -8,7 +8,7 @@ from typing import Generic, Protocol
 
 import numpy as np
 
-from .points import BRANCH_POINT, FOLD, POINT, Point, S
+from .points import CROSSINGS, FOLD, POINT, Point, S
 from .protocol import Records
 from .walk import Ending, Walk
 
@@ -71,7 +71,8 @@ class Branch(Generic[S]):
         known = history.points(*key, POINT)
         self.last = known[-1] if known else None
         self.count = len(known)
-        self.branch_points = history.points(*key, BRANCH_POINT)
+        crossings = [point for kind in CROSSINGS for point in history.points(*key, kind)]
+        self.branch_points = sorted(crossings, key=lambda point: point.number)
         folds = history.points(*key, FOLD)
         walk.turned += [walk.range.value(point.position) for point in folds]
         for point in (*known, *self.branch_points, *folds):
@@ -101,7 +102,7 @@ class Branch(Generic[S]):
             point = self._entered(point)
             if point.kind == POINT:
                 self.last, self.count = point, self.count + 1
-            elif point.kind == BRANCH_POINT:
+            elif point.kind in CROSSINGS:
                 self.branch_points.append(point)
             yield point
             if point.kind == POINT and self._finished(point):

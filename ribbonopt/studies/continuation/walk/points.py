@@ -8,7 +8,8 @@ from typing import Any, Generic, TypeVar
 
 from ribbonopt.arrays import Array
 
-POINT, FOLD, BRANCH_POINT = "point", "fold", "branch point"
+POINT, FOLD, BRANCH_POINT, BUCKLING = "point", "fold", "branch point", "buckling point"
+CROSSINGS = (BRANCH_POINT, BUCKLING)  # where other branches cross; the latter without a derivative
 
 S = TypeVar("S")  # what a solution is, is the business of the equations
 
@@ -32,9 +33,11 @@ class Point(Generic[S]):
     number, stage, branch : int
         Place in the whole continuation; branch 0 is the first.
     kind : str
-        POINT, FOLD or BRANCH_POINT.
+        POINT, FOLD, BRANCH_POINT or BUCKLING.
     row : mapping
         What is recorded, by name.
+    note : str
+        What is to be told of it: how it is other than the continuation of the point before.
     """
 
     solution: S
@@ -47,6 +50,7 @@ class Point(Generic[S]):
     branch: int = 0
     kind: str = POINT
     row: Mapping[str, Any] = field(default_factory=dict)
+    note: str = ""
 
     @property
     def position(self) -> float:

@@ -34,12 +34,15 @@ class Trial(Generic[S]):
         Whether it can be a point of the curve.
     message : str
         How it went, in words.
+    note : str
+        What is to be told of it as a point of the curve, "" for nothing.
     """
 
     solution: S
     unknowns: Array
     converged: bool
     message: str
+    note: str = ""
 
 
 class Linearised(Protocol):
@@ -53,7 +56,8 @@ class Linearised(Protocol):
     def sign(self) -> float:
         """Sign of the bordered determinant, which vanishes at branch points, not at folds.
 
-        Comparable within one layout, for rows that point the same way along the curve.
+        Comparable within one layout, for rows that point the same way along the curve; 0 where the
+        equations have no derivative, so that it tells nothing.
         """
 
     @property
@@ -107,6 +111,12 @@ class Equations(Protocol[S]):
         enough
             Last relative step of Newton's method that will do.
         """
+
+    def crossings(self, a: Point[S], b: Point[S]) -> list[Point[S]]:
+        """Return where other branches cross between two points, if no determinant can tell it."""
+
+    def departure(self, point: Point[S]) -> Array | None:
+        """Direction (n + k,) of a branch that crosses there, None for the null direction."""
 
     def restored(self, origin: S, unknowns: Array) -> S:
         """Return a solution of known unknowns in the layout of another."""

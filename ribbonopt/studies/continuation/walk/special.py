@@ -113,6 +113,7 @@ class _Between(Generic[S]):
             unknowns=probe.unknowns,
             tangent=probe.tangent,
             kind=kind,
+            note="",
         )
 
 

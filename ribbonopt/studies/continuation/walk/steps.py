@@ -20,6 +20,8 @@ from .tangents import near
 
 NATURAL = 0.1  # least share of the position in the tangent for natural continuation
 AIM = 0.02  # wanted distance of a prediction from the curve, in arclength
+FARTHEST = 5.0  # times that: a point that is further off is none of this curve
+JUMPED = "not where the branch was going: it may have changed to another equilibrium"
 GROWTH, SHRINK = 2.0, 0.25  # of a step, after success and failure
 LONGEST = 0.5  # arclength of a step where the position turns
 COSINE = 0.7  # least one of the angle between tangents one step apart
@@ -116,7 +118,9 @@ class Stepper(Generic[S]):
         if not trial.converged:
             self.trouble = trial.message
             again = equations.elsewhere(point, float(trial.unknowns[-1]))
-            return None if again is None else Stride(self._arrived(point, again), [])
+            if again is None:
+                return None
+            return Stride(self._arrived(point, again, self._told(point, prediction, again)), [])
         metric, solution = equations.metric, trial.solution
         error = metric.length(equations.reduced(solution, trial.unknowns - prediction.unknowns))
         ahead = equations.reduced(solution, trial.unknowns - point.unknowns)
@@ -124,7 +128,7 @@ class Stepper(Generic[S]):
         cosine = metric.product(
             equations.reduced(solution, tangent), equations.reduced(solution, point.tangent)
         )
-        if cosine < COSINE or error > 5 * AIM:
+        if cosine < COSINE or error > FARTHEST * AIM:
             self.trouble = "the branch bends too sharply"
             if prediction.arc * self._size > self.range.smallest:
                 return None
@@ -136,13 +140,27 @@ class Stepper(Generic[S]):
             sign=found.sign,
             step=abs(prediction.arc) * _growth(error),
         )
-        special = special_points(equations, point, following) if self.range.special else []
+        special = []
+        if self.range.special:
+            special = special_points(equations, point, following)
+            special += equations.crossings(point, following)
         final = equations.finished(point, trial)
         self.trouble = final.message
-        return Stride(self._arrived(following, final), special) if final.converged else None
+        if not final.converged:
+            return None
+        told = self._told(point, prediction, final)
+        return Stride(self._arrived(following, final, told), special)
 
-    def _arrived(self, before: Point[S], trial: Trial[S]) -> Point[S]:
+    def _told(self, point: Point[S], prediction: Prediction, final: Trial[S]) -> str:
+        """Return the note of a trial; with a word on it where it is not what was predicted."""
+        expected = self.equations.reduced(point.solution, prediction.unknowns)
+        found = self.equations.reduced(final.solution, final.unknowns)
+        off = self.equations.metric.length(found - expected)
+        return "; ".join(filter(None, [final.note, JUMPED if off > FARTHEST * AIM else ""]))
+
+    def _arrived(self, before: Point[S], trial: Trial[S], note: str) -> Point[S]:
         """Return a point for a trial, maybe in another layout, or of other numbers, than before."""
+        before = replace(before, note=note)
         if trial.unknowns is before.unknowns:
             return replace(before, solution=trial.solution)
         ahead = self.equations.reduced(before.solution, before.tangent)

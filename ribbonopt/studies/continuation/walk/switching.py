@@ -13,20 +13,27 @@ from .protocol import Equations
 from .tangents import near
 
 AWAY, LEAST_AWAY = 0.05, 1e-4  # arclength of the first step onto a branch that crosses
+BACK = 0.3  # of that: most that accuracy may move its end by
 BESIDE = (0.0, 1e-12, 1e-10, 1e-8)  # arclength from a point where equations are nearly singular
 
 
 def switched(equations: Equations[S], point: Point[S], sign: int) -> Point[S]:
     """Return the first point on the branch that crosses at a branch point; LinAlgError for none."""
-    direction = sign * null_direction(equations, point)
+    known = equations.departure(point)
+    direction = sign * (null_direction(equations, point) if known is None else known)
     away = AWAY
     while away > LEAST_AWAY:
         guess = point.unknowns + away * direction
         trial = equations.correct_along(point, direction, away, guess)
         if trial.converged:
-            trial = equations.verified(trial)
-        if trial.converged:
-            ahead = equations.reduced(trial.solution, trial.unknowns - point.unknowns)
+            there = equations.reduced(trial.solution, trial.unknowns)
+            ahead = there - equations.reduced(point.solution, point.unknowns)
+            trial = equations.finished(point, trial)
+            moved = equations.reduced(trial.solution, trial.unknowns) - there
+            # Back on the branch itself is no crossing.
+            if not trial.converged or equations.metric.length(moved) > BACK * away:
+                away /= 2
+                continue
             found, tangent = near(equations, trial.solution, trial.unknowns, ahead)
             return replace(
                 point,
@@ -36,6 +43,7 @@ def switched(equations: Equations[S], point: Point[S], sign: int) -> Point[S]:
                 sign=found.sign,
                 step=away,
                 kind=POINT,
+                note=trial.note,
             )
         away /= 2
     raise np.linalg.LinAlgError("no point was found on the branch that crosses")

@@ -10,7 +10,7 @@ import numpy as np
 
 from ribbonopt.arrays import Array
 
-from .points import BRANCH_POINT, Point, S
+from .points import FOLD, Point, S
 from .protocol import Equations, Range
 from .steps import DIGITS, Stepper
 from .tangents import near
@@ -54,7 +54,7 @@ class Walk(Generic[S]):
                 return
             for found in step.special:
                 yield found
-                if found.kind != BRANCH_POINT:
+                if found.kind == FOLD:
                     self.turned.append(self.range.value(found.position))
             point = step.following
             yield point

@@ -1,0 +1,69 @@
+"""Straight states of laws that are homogeneous of degree one: m2 = m3 = 0 along the ribbon.
+
+Such a law has no derivative there (all laws but linear ones: `linear_at_zero`), so that the state
+is an equilibrium without a linearisation: no error estimate, no tangent but that along which it
+stays straight, no negative directions and no branch points. What the guard of the law would give
+is the stiffness of the guard. Buckling loads are another matter: `ribbonopt.studies.buckling`.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ribbonopt.mechanics.laws.catalogue import capabilities
+from ribbonopt.mechanics.laws.law import ConstitutiveLaw
+from ribbonopt.solution.solution import Solution
+
+ZERO = 1e-13  # of the largest load: below it a moment counts as zero
+FADES = 1e-8  # the same beside an interval: a moment that small has not ended, it fades away
+LEAST = 1e-12  # the same where there is no load, in units Dw = L = 1
+SHORTEST = 1e-3  # of the length, that is an interval and no point (an inflection, a free end)
+
+WORDS = (
+    "m2 = m3 = 0 along {where}, where the law {law} has no linearisation: errors, stability and "
+    "branch points are not known there"
+)
+
+
+def unbent_share(solution: Solution, law: ConstitutiveLaw) -> float:
+    """Share of the length along which a law without a linearisation at zero has no moment."""
+    if law.linear_at_zero or law.natural or not solution.status.converged:
+        return 0.0
+    return share_without_moment(solution, law)
+
+
+def share_without_moment(solution: Solution, law: ConstitutiveLaw) -> float:
+    """Share of the length along which the moments of a law's free strains vanish."""
+    values = solution.trajectory.at_stages
+    free = np.max([np.abs(values[f"m{i + 1}"]) for i in law.components], axis=0)
+    largest = max(float(np.abs(values[name]).max()) for name in ("n", "m"))
+    zero = free <= max(ZERO * largest, LEAST)
+    ends = np.flatnonzero(zero[1:] != zero[:-1])
+    beside = np.maximum(free[ends], free[ends + 1])
+    if not zero.any() or (len(ends) and beside.max() <= FADES * largest):
+        return 0.0
+    # One stage alone is a point.
+    padded = np.concatenate([[False], zero, [False]])
+    zero = zero & (padded[:-2] | padded[2:])
+    share = float(solution.trajectory.stages[2][zero].sum())
+    return share if share > SHORTEST else 0.0
+
+
+def lacks_linearisation(solution: Solution) -> bool:
+    """Whether nothing can be said of a solution that rests on its linearised equations."""
+    return unbent_share(solution, capabilities(solution.scene.law)) > 0
+
+
+def unknown_of(solution: Solution) -> list[str]:
+    """Say what is not known of such a state; nothing of all others."""
+    share = unbent_share(solution, capabilities(solution.scene.law))
+    if not share:
+        return []
+    where = "the ribbon" if share > 1 - SHORTEST else f"{share:.0%} of the ribbon"
+    return [WORDS.format(where=where, law=solution.scene.law.type)]
+
+
+def zero_moment_problems(solution: Solution) -> list[str]:
+    """Say the same with what finds out more."""
+    more = "`continue` finds the loads that buckle it; `switch: true` follows the buckled ribbon"
+    return [f"{words} ({more})" for words in unknown_of(solution)]

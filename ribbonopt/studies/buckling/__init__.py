@@ -1,0 +1,1 @@
+"""Buckling loads of ribbons that are straight and without bending or twisting moment."""

@@ -1,0 +1,250 @@
+"""Buckling loads of straight ribbons whose law has no linearisation at m2 = m3 = 0.
+
+    for found in buckling_loads(scene, "parameters.P", 1, 8):
+        print(found.value, found.error)
+        solve with guess=found.guess(0.05)
+
+Lateral buckling of a strip by a force along its width, or by its own weight, is such a state: it
+bears n and m1, but neither m2 nor m3, until it buckles. See `infinitesimal` for the equations.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, replace
+from functools import cached_property
+
+import numpy as np
+
+from ribbonopt.arrays import Array
+from ribbonopt.checks.zero_moment import SHORTEST, share_without_moment, unbent_share
+from ribbonopt.errors import ModelError, SceneError
+from ribbonopt.mechanics.section import RodFields
+from ribbonopt.pipeline.prepared import Prepared, prepare
+from ribbonopt.problem import Posed, Ribbon, formulate
+from ribbonopt.scene import Scene
+from ribbonopt.scene.lens import value_at, with_value
+from ribbonopt.solution.solution import Solution
+
+from .infinitesimal import Deflected
+from .mode import Mode
+from .modes import Search
+from .rod import RodBuckling, pure_stiffnesses
+from .twin import has_twin, twin_of, twin_scene
+
+AFFINE = 1e-10  # of the straight state's numbers: how far from affine in the load they may be
+NEARER = 1e-3  # of the distance of two loads that an affine line is drawn through, the next time
+SETTLED = 1e-11  # change of the load, relative to the range, that ends this
+TURNS = 8
+SMALL = 1e-6  # amplitude of a deflection that is linear
+
+
+@dataclass(frozen=True, eq=False)
+class Buckling:
+    """A buckling load, and the shape that the ribbon begins to take.
+
+    Attributes
+    ----------
+    value : float
+        Of the parameter, in the units of the scene.
+    error : float
+        Estimated error of it.
+    posed : Posed
+        The scene at this load, in the states with the fewest unknowns.
+    ribbon, mode : Ribbon, Mode
+        Its mechanics, and the infinitesimal deflection.
+    """
+
+    value: float
+    error: float
+    posed: Posed
+    ribbon: Ribbon
+    mode: Mode
+
+    def guess(self, amplitude: float) -> Deflection:
+        """Return the ribbon deflected by an amplitude, relative to its length, as a guess.
+
+        Where the centre line stays where it is the amplitude is an angle.
+        """
+        return Deflection(self, amplitude)
+
+    def numbers(self, fraction: Array) -> tuple[Array, Array, Array]:
+        """States x and their deflection xi (k, nx) at fractions (k,), and gamma (nc,)."""
+        nx, nc = len(self.ribbon.states), len(self.ribbon.constants)
+        v = self.mode.trajectory.approximate(fraction)
+        return v[:, :nx], v[:, nx : 2 * nx], self.mode.trajectory.dense.constants[:nc]
+
+    @cached_property
+    def size(self) -> float:
+        """Largest displacement of the mode as it was found, or turn where there is none."""
+        fraction = np.linspace(0.0, 1.0, 201)
+        at, beside = (self.fields(fraction, a) for a in (0.0, SMALL))
+        moved = float(np.abs(beside.r - at.r).max()) / (SMALL * self.posed.length)
+        turned = float(np.abs(beside.frames - at.frames).max()) / SMALL
+        return moved if moved > SMALL * turned else turned
+
+    def fields(self, fraction: Array, factor: float) -> RodFields:
+        """Fields at fractions (k,) of the length, the mode as it was found times a factor."""
+        x, xi, gamma = self.numbers(fraction)
+        start, _ = self.posed.scene.interval
+        s = start + self.posed.length * fraction
+        c = self._straight + factor * gamma
+        function = self.ribbon.section_function.map(len(fraction))
+        columns = (np.repeat(v[:, None], len(fraction), axis=1) for v in (c, self.posed.values))
+        c_columns, theta = columns
+        found = function((x + factor * xi).T, c_columns, theta, s[None])
+        r, d1, d2, d3, n, m = (np.array(part).T for part in found[:6])
+        return RodFields(r, np.stack([d1, d2, d3], axis=2), n, m)
+
+    @cached_property
+    def _straight(self) -> Array:
+        """Constants (nc,) of the straight state."""
+        nx, nc, nt = len(self.ribbon.states), len(self.ribbon.constants), len(self.ribbon.theta)
+        theta, load = self.mode.trajectory.dense.theta, self.mode.load
+        a, b = theta[: nx + nc + nt], theta[nx + nc + nt : 2 * (nx + nc + nt)]
+        found: Array = (a + load * (b - a))[nx : nx + nc]
+        return found
+
+
+@dataclass(frozen=True, eq=False)
+class Deflection:
+    """A buckling mode of some amplitude: a guess for the buckled ribbon."""
+
+    buckling: Buckling
+    amplitude: float
+
+    def fields(self, fraction: Array) -> RodFields:
+        """Fields at fractions (k,) of the length, units Dw = L = 1."""
+        return self.buckling.fields(fraction, self.amplitude / self.buckling.size)
+
+
+def buckling_loads(scene: Scene, parameter: str, start: float, end: float) -> tuple[Buckling, ...]:
+    """Return the buckling loads of a straight ribbon as a number of its scene moves.
+
+    Those that are found: each load of a linear rod in the place of the ribbon is followed to the
+    ribbon's law.
+
+    Parameters
+    ----------
+    scene
+        The scene; its law is homogeneous of degree one, and the ribbon straight without m2 and m3.
+    parameter
+        What moves, as in a `continuation`, such as `parameters.P`.
+    start, end
+        Its range, in the units of the scene.
+
+    Returns
+    -------
+    tuple of Buckling
+        By increasing distance from the start.
+
+    Raises
+    ------
+    ModelError
+        If the ribbon at the start is not such a state, or its law has states of its own.
+    """
+    first = replace(with_value(scene, parameter, start), continuation=None)
+    prepared = prepare(first)
+    return buckling_from(prepared, prepared.solve(), parameter, start, end)
+
+
+def buckling_from(
+    prepared: Prepared, straight: Solution, parameter: str, start: float, end: float
+) -> tuple[Buckling, ...]:
+    """Return what `buckling_loads` does, from a straight solution at any load."""
+    if unbent_share(straight, prepared.ribbon.law) < 1 - SHORTEST or not straight.verified:
+        raise ModelError(
+            f"{parameter}: buckling loads are sought where a ribbon is straight with m2 = m3 = 0 "
+            f"all along and its law (found {straight.scene.law.type}) has no linearisation there; "
+            "else `continue` finds them as branch points"
+        )
+    if prepared.ribbon.law.states:
+        raise ModelError(
+            f"law {straight.scene.law.type}: has states of its own, of which the equations of an "
+            "infinitesimal deflection know nothing",
+            "law",
+        )
+    states = _States(prepared, straight, parameter)
+    # A ribbon is softer than the rod that has its stiffnesses, at most by two.
+    low, high = min(start, end), max(start, end)
+    reach = min(low, 2 * low), max(high, 2 * high)
+    found = states.between(*reach) or (states.between(low, high) if reach != (low, high) else None)
+    inside = [one for one in found or () if low <= one.value <= high]
+    return tuple(sorted(inside, key=lambda one: abs(one.value - start)))
+
+
+@dataclass(frozen=True, eq=False)
+class _States:
+    """Straight states of a scene at any value of a parameter."""
+
+    prepared: Prepared
+    straight: Solution
+    parameter: str
+
+    def between(self, low: float, high: float) -> list[Buckling] | None:
+        """Buckling loads whose rod buckles between two values; None where there is no state."""
+        try:
+            a, b = self.at(low), self.at(high)
+        except SceneError:
+            return None
+        if a is None or b is None:
+            return None
+        stiffnesses = pure_stiffnesses(self.ribbon, self.least(low).values)
+        rod = RodBuckling(Deflected(self.ribbon), stiffnesses, a, b)
+        search, result = Search(rod), []
+        for load, start in rod.loads():
+            mode = search.mode(load, start)
+            found = None if mode is None else self.settled(search, mode, low, high)
+            result += [] if found is None else [found]
+        return result
+
+    def settled(self, search: Search, mode: Mode, low: float, high: float) -> Buckling | None:
+        """Return a load where the straight state is what it is taken for, affine or not."""
+        whole = abs(high - low)
+        for _ in range(TURNS):
+            value = low + mode.load * (high - low)
+            exact, taken = self.at(value), search.at(mode.load)
+            if exact is None:
+                return None
+            off = float(np.abs(exact - taken).max()) / max(1.0, float(np.abs(exact).max()))
+            if off <= AFFINE:
+                error = mode.error * abs(high - low) + SETTLED * whole
+                return Buckling(value, error, self.least(value), self.ribbon, mode)
+            low, high = (value + sign * NEARER * (high - low) for sign in (-1, 1))
+            a, b = self.at(low), self.at(high)
+            if a is None or b is None:
+                return None
+            search = Search(replace(search.rod, a=a, b=b))
+            again = search.moved(mode, taken)
+            if again is None:
+                return None
+            mode = again
+        return None
+
+    def least(self, value: float) -> Posed:
+        """Return the scene at a value, in the states with the fewest unknowns."""
+        posed = Posed.of(with_value(self.straight.scene, self.parameter, value))
+        states = "planar" if posed.scene.states == "planar" else "reduced"
+        return posed.under(formulation="inverted", states=states)
+
+    def at(self, value: float) -> Array | None:
+        """Start, constants and parameters (nx + nc + nt,) of the straight state, or None."""
+        scene = with_value(self.straight.scene, self.parameter, value)
+        found = self.prepared.solve(scene, guess=self.straight, fallback=False)
+        if not found.verified and self._rod is not None:
+            found = self._rod.solve(twin_scene(scene), guess=self.straight, fallback=False)
+        if not found.verified or share_without_moment(found, self.ribbon.law) < 1 - SHORTEST:
+            return None
+        least = self.least(value)
+        ends = found.fields(np.array([0.0, 1.0]))
+        x, c = self.ribbon.model.pack(ends, least.start[0])
+        return np.concatenate([x[0], c, least.values])
+
+    @cached_property
+    def _rod(self) -> Prepared | None:
+        law, scene = self.prepared.ribbon.law, self.straight.scene
+        return twin_of(scene) if has_twin(law, self.parameter) else None
+
+    @cached_property
+    def ribbon(self) -> Ribbon:
+        """Mechanics with the fewest unknowns."""
+        return formulate(self.least(value_at(self.straight.scene, self.parameter)))[0]

@@ -1,0 +1,33 @@
+"""The linear twin of a ribbon: straight where the ribbon is straight, and differentiable there.
+
+Where m2 = m3 = 0 all laws say the same, u = 0; Newton's method, for which a law with a kink is
+singular there, finds the state with any linear one.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+
+from ribbonopt.attempt.structure import Structure
+from ribbonopt.mechanics.laws.law import ConstitutiveLaw
+from ribbonopt.pipeline.prepared import Prepared
+from ribbonopt.problem import Posed
+from ribbonopt.scene import Kirchhoff, Scene
+
+#: stiffnesses at which hardly a load that a scene names buckles a rod
+STIFF = Kirchhoff(B2=1.737, B3=2.391)
+
+
+def has_twin(law: ConstitutiveLaw, parameter: str) -> bool:
+    """Whether a rod has the same unknowns, and the parameter that moves."""
+    return not parameter.startswith("law.") and law.components == (1, 2) and not law.states
+
+
+def twin_scene(scene: Scene) -> Scene:
+    """Return a scene with a linear law."""
+    return replace(scene, law=STIFF, switching="auto")
+
+
+def twin_of(scene: Scene) -> Prepared:
+    """Return the structure of a scene with a linear law."""
+    return Prepared(Structure.of(Posed.of(twin_scene(scene))), 0.0)
