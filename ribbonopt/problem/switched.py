@@ -66,6 +66,7 @@ def switched(ribbon: Ribbon, kinds: Kinds, *, free: bool = False) -> BoundaryVal
             *(f"slack {i + 1}" for i in range(slack.numel())),
         ),
         parameter_names=tuple(ribbon.theta),
+        slack=slack.numel(),
     )
 
 

@@ -52,7 +52,9 @@ class RibbonEquations:
     def linearise(self, solution: Solution, unknowns: Array, ahead: Array) -> Local:
         """Linearise at a solution with a row along the branch."""
         row = row_of(solution, self.metric.dual(ahead))
-        return local(self.curve.line(solution), row, solution.dense.w, float(unknowns[-1]))
+        found = local(self.curve.line(solution), row, solution.dense.w, float(unknowns[-1]))
+        # Conditions with slack keep a ribbon in its phases: none of their zeros is a branch point.
+        return replace(found, sign=1.0) if solution.problem.slack else found
 
     def correct_at(self, origin: Solution, guess: Array) -> Trial[Solution]:
         """Correct at a position (natural continuation)."""
@@ -131,7 +133,7 @@ def reduced(solution: Solution, extended: Array) -> Array:
     """
     layout = solution.dense.blocks.layout
     nodes, _, c = layout.unpack(extended[:-1])
-    rod = layout.nc - len(layout.elements) + 1
+    rod = layout.nc - len(layout.elements) + 1 - solution.problem.slack
     return np.concatenate([nodes[0], nodes[-1], c[:rod], extended[-1:]])
 
 
