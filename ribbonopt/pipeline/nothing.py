@@ -17,6 +17,7 @@ from ribbonopt.guess.flat import Flattened, nearly_flat
 from ribbonopt.mechanics.ends.winding import winding
 from ribbonopt.scene import Scene
 from ribbonopt.solution.solution import Solution
+from ribbonopt.starts.first_shape import shapes_for
 from ribbonopt.starts.helix import helix_between, wound_evenly
 from ribbonopt.starts.loops import fundamental_scene
 from ribbonopt.starts.unfold import Unfolded, unfolded
@@ -53,7 +54,7 @@ def from_nothing(
             return search
     search.run_all(guesses())
     wound = winding(posed.scene.boundary, posed.scene.parameters)
-    return _less_energy(search, guesses) if wound is None else _as_wound(search, wound)
+    return _less_energy(search, guesses) if wound is None else _as_wound(search, wound, guesses)
 
 
 def _less_energy(search: Search, guesses: Callable[..., Iterable[Guess]]) -> Search:
@@ -71,7 +72,7 @@ def _less_energy(search: Search, guesses: Callable[..., Iterable[Guess]]) -> Sea
     return other if better else search
 
 
-def _as_wound(search: Search, wound: Array) -> Search:
+def _as_wound(search: Search, wound: Array, guesses: Callable[..., Iterable[Guess]]) -> Search:
     """Return the search, or one for the ribbon wound evenly, if only that winds as the ends say."""
     best = search.best
     if best is not None and search.settled and winds_as(best, wound):
@@ -80,7 +81,13 @@ def _as_wound(search: Search, wound: Array) -> Search:
     other = _another(search, [even], "wound evenly as the ends say")
     if other.settled and other.best is not None and winds_as(other.best, wound):
         return other
-    if best is not None and not winds_as(best, wound):
+    if best is None or not (search.settled or search.smooth):
+        for shape in shapes_for(search.posed, wound=False):  # rather than nothing
+            search = _another(search, guesses(shape=shape), "not wound as the ends say")
+            if search.settled:
+                break
+    best = search.best
+    if best is not None and not winds_as(search.smooth_instead or best, wound):
         search.ledger.give_up("the whole turns of the ends: no equilibrium wound so was found")
     return search
 
