@@ -11,6 +11,7 @@ from collections.abc import Callable, Iterable
 from dataclasses import replace
 
 from ribbonopt.arrays import Array
+from ribbonopt.attempt.structure import Structure
 from ribbonopt.checks.winding import winds_as
 from ribbonopt.guess import Guess
 from ribbonopt.guess.flat import Flattened, nearly_flat
@@ -19,11 +20,13 @@ from ribbonopt.scene import Scene
 from ribbonopt.solution.solution import Solution
 from ribbonopt.starts.first_shape import shapes_for
 from ribbonopt.starts.helix import helix_between, wound_evenly
+from ribbonopt.starts.homotopy import follow, smooth_of
 from ribbonopt.starts.loops import fundamental_scene
 from ribbonopt.starts.unfold import Unfolded, unfolded
 
 from .search import Search
 
+SHARPER = (3e-3, 1e-3)  # delta
 SAME = 1e-6  # relative, of energies
 MORE = 1.5  # times the energy of a helix that nearly fits
 LEAST = 4  # intervals on every piece of a guess that is nearly the solution
@@ -53,8 +56,27 @@ def from_nothing(
         if piece.verified and _run_unfolded(search, unfolded(piece, posed)):
             return search
     search.run_all(guesses())
+    if not search.settled and search.needs_phases and search.smooth:
+        _sharpened(search)
     wound = winding(posed.scene.boundary, posed.scene.parameters)
     return _less_energy(search, guesses) if wound is None else _as_wound(search, wound, guesses)
+
+
+def _sharpened(search: Search) -> bool:
+    """Follow the smooth law further down, where layers and mixtures are easier told apart."""
+    posed, blunt = search.posed, search.smooth[-1]
+    law = blunt.posed.scene.law
+    structure = Structure.of(smooth_of(posed, law))
+    for delta in SHARPER:
+        path = follow(structure, posed, law, blunt, delta)
+        search.ledger.note(f"newton in {path.steps} steps, delta = {delta:g}", 0.0, path.iterations)
+        if not path.complete:
+            return False
+        sharp = path.points[-1]
+        if search.run_pair(sharp, blunt):
+            return True
+        blunt, law = sharp, sharp.posed.scene.law
+    return False
 
 
 def _less_energy(search: Search, guesses: Callable[..., Iterable[Guess]]) -> Search:

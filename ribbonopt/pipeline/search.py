@@ -107,10 +107,15 @@ class Search:
             )
         if len(self.smooth) == 2:
             blunt, sharp = self.smooth
-            for arcs in with_mixtures(sharp, blunt):
-                if self.run_in(*self._freed(arcs, sharp)):
-                    return True
+            if any(self.run_in(*self._freed(arcs, sharp)) for arcs in with_mixtures(sharp, blunt)):
+                return True
         return self.run(guess, quick=True)
+
+    def run_pair(self, sharp: Solution, blunt: Solution) -> bool:
+        """Try the arcs that two equilibria of the smooth law show, one three times as sharp."""
+        return self._in_given_phases(sharp) or any(
+            self.run_in(*self._freed(arcs, sharp)) for arcs in with_mixtures(sharp, blunt)
+        )
 
     def run_all(self, guesses: Iterable[Guess]) -> bool:
         """Try the guesses of an automatic start, equilibria of the smooth law among them."""

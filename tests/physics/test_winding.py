@@ -13,6 +13,8 @@ from ribbonopt.mechanics.ends.winding import winding
 from ribbonopt.pipeline.prepared import solve
 from ribbonopt.scene import Boundary, End, RotationVector, Turn, Turns, loads_scene
 from ribbonopt.solution.solution import Solution
+from ribbonopt.studies.continuation.continuation import Continuation
+from ribbonopt.studies.continuation.walk.points import BRANCH_POINT
 
 Array = np.ndarray
 ROD, SADOWSKY = "{type: kirchhoff, B2: 1, B3: 2}", "{type: sadowsky}"
@@ -76,6 +78,15 @@ def test_clamps_nearer_than_the_length_are_wound_as_they_say(
     found = solve(loads_scene(HELD.format(law=law, z=z, frame=frame)))
     assert found.verified, found.message
     assert turned(found) == pytest.approx(turns, abs=1e-3)
+
+
+@pytest.mark.slow
+def test_a_pulled_rod_buckles_where_it_should() -> None:
+    # Known buckling loads of B2 = 1, B3 = 2 under a tension of 200, in turns.
+    more = "parameters: {turns: 0.3}\ncontinuation: {parameter: parameters.turns, to: 3}\n"
+    scene = loads_scene(PULLED.format(law=ROD, turns="turns") + more)
+    found = [p.position for p in Continuation(scene) if p.kind == BRANCH_POINT]
+    np.testing.assert_allclose(found, [2.33104, 2.53415, 2.80458], atol=6e-6)
 
 
 def test_ways_to_write_the_same_turns_agree() -> None:
