@@ -55,9 +55,8 @@ def from_nothing(
         search.ledger.steps.extend(piece.steps)
         if piece.verified and _run_unfolded(search, unfolded(piece, posed)):
             return search
+    search.sharpen = _sharpened
     search.run_all(guesses())
-    if not search.settled and search.needs_phases and search.smooth:
-        _sharpened(search)
     wound = winding(posed.scene.boundary, posed.scene.parameters)
     return _less_energy(search, guesses) if wound is None else _as_wound(search, wound, guesses)
 

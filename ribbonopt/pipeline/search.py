@@ -9,7 +9,7 @@ phase assumes.
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from dataclasses import dataclass, field
 from functools import cached_property
 
@@ -50,6 +50,10 @@ class Search:
         Steps so far, with their cost.
     smooth : list of Solution
         Equilibria of the smooth law met on the way, delta decreasing.
+    last : Attempt or None
+        What was tried last.
+    sharpen : callable or None
+        Tries smaller delta where the first two do not show the arcs.
     """
 
     posed: Posed
@@ -57,6 +61,7 @@ class Search:
     ledger: Ledger = field(default_factory=Ledger)
     smooth: list[Solution] = field(default_factory=list)
     last: Attempt | None = None
+    sharpen: Callable[[Search], bool] | None = None
 
     @cached_property
     def plain(self) -> Attempt:
@@ -108,6 +113,8 @@ class Search:
         if len(self.smooth) == 2:
             blunt, sharp = self.smooth
             if any(self.run_in(*self._freed(arcs, sharp)) for arcs in with_mixtures(sharp, blunt)):
+                return True
+            if self.needs_phases and self.sharpen is not None and self.sharpen(self):
                 return True
         return self.run(guess, quick=True)
 
