@@ -46,10 +46,12 @@ def test_from_nothing_no_more_energy_than_other_helices(i: int) -> None:
     test_from_the_exact_strains_the_helix_itself(i)
 
 
+@pytest.mark.parametrize(("u2", "u3"), [(1.5, 2.5), (2.0, 2.6)])
 @pytest.mark.parametrize("off", [1e-6, 1e-3, 1e-2])
-def test_short_phases_of_one_sheet_where_the_clamp_is_off_a_mixture(off: float) -> None:
+def test_short_phases_of_one_sheet_where_the_clamp_is_off_a_mixture(
+    u2: float, u3: float, off: float
+) -> None:
     # Their lengths are of the order of what the clamp is off; the energy changes as little.
-    u2, u3 = 1.391873764409978, 4.736324010883329
     r, frame = end_of(u2, u3)
     turned = Rotation.from_rotvec(off * np.array([-0.3, 0.6, 0.5])).as_matrix() @ frame
     found = solve(clamped_at(r + off * np.array([0.1, -0.2, -0.15]), turned))
@@ -58,9 +60,9 @@ def test_short_phases_of_one_sheet_where_the_clamp_is_off_a_mixture(off: float) 
     assert middle == 0
     assert first * last != 0
     a, b = found.switch_points
-    assert 0 < a < 3 * off
-    assert 0 < 1 - b < 3 * off
-    assert found.energy == pytest.approx(energy_of(u2, u3), rel=3 * off)
+    assert 0 < a < 5 * off
+    assert 0 < 1 - b < 5 * off
+    assert found.energy == pytest.approx(energy_of(u2, u3), rel=off)
 
 
 @pytest.mark.parametrize(("u2", "u3"), [(3.1, 0.565), (-3.97, -1.26), (4.3, 2.9), (-5.0, 0.4)])
