@@ -14,6 +14,8 @@ import numpy as np
 
 from ribbonopt.arrays import Array
 from ribbonopt.guess import Guess
+from ribbonopt.guess.balanced import Balanced
+from ribbonopt.guess.named import ShapeGuess
 from ribbonopt.problem import Ribbon
 from ribbonopt.solution.solution import Solution
 from ribbonopt.transcription.buffered import Mapped
@@ -50,10 +52,12 @@ MIXTURE = Arcs((0,), np.empty(0))  # from end to end
 
 
 def is_mixture(guess: Guess) -> bool:
-    """Whether a guess has twist and no m2 from end to end."""
+    """Whether a guess is a shape with twist and no m2 from end to end."""
+    if not isinstance(guess, ShapeGuess | Balanced):
+        return False
     fields = guess.fields(np.linspace(0.0, 1.0, 9))
     _, m2, m3 = np.abs(np.einsum("ki,kij->jk", fields.m, fields.frames))
-    return bool(m2.max() <= NEGLIGIBLE * m3.min())
+    return bool(m2.max() <= NEGLIGIBLE * m3.min() and m3.min() > 0)
 
 
 def sign_changes(solution: Solution) -> Arcs:

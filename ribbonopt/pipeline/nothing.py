@@ -17,12 +17,13 @@ from ribbonopt.guess import Guess
 from ribbonopt.guess.flat import Flattened, nearly_flat
 from ribbonopt.mechanics.ends.winding import winding
 from ribbonopt.scene import Scene
+from ribbonopt.starts.first_shape import shapes_for
 from ribbonopt.starts.helix import helix_between, wound_evenly
 from ribbonopt.starts.loops import fundamental_scene
 from ribbonopt.starts.unfold import Unfolded, unfolded
 
 from .search import Search
-from .sharpening import with_sharper
+from .sharpening import sharpening
 
 if TYPE_CHECKING:
     from .prepared import Prepared
@@ -57,10 +58,11 @@ def from_nothing(
             return search
         what = "the band's fundamental piece led to none of the whole"
         search.ledger.fall_back("piece", f"{what}; it was started from the least energy of that")
-    start = guesses()
-    search.run_all(with_sharper(start, prepare) if search.needs_phases else start)
+    if search.needs_phases:
+        guesses = sharpening(guesses, prepare)
+    search.run_all(guesses())
     wound = winding(posed.scene.boundary, posed.scene.parameters)
-    return _less_energy(search, guesses) if wound is None else _as_wound(search, wound)
+    return _less_energy(search, guesses) if wound is None else _as_wound(search, wound, guesses)
 
 
 def _less_energy(search: Search, guesses: Callable[..., Iterable[Guess]]) -> Search:
@@ -78,7 +80,7 @@ def _less_energy(search: Search, guesses: Callable[..., Iterable[Guess]]) -> Sea
     return other if better else search
 
 
-def _as_wound(search: Search, wound: Array) -> Search:
+def _as_wound(search: Search, wound: Array, guesses: Callable[..., Iterable[Guess]]) -> Search:
     """Return the search, or one for the ribbon wound evenly, if only that winds as the ends say."""
     best = search.best
     if best is not None and search.settled and winds_as(best, wound):
@@ -87,6 +89,13 @@ def _as_wound(search: Search, wound: Array) -> Search:
     other = _another(search, [even], "wound evenly as the ends say")
     if other.settled and other.best is not None and winds_as(other.best, wound):
         return other
+    if best is None or not (search.settled or search.smooth):
+        for shape in shapes_for(search.posed, wound=False):  # rather than nothing
+            search = _another(search, guesses(shape=shape), "not wound as the ends say")
+            if search.settled:
+                break
+    best = search.best
+    best = next(iter(search.smooth_instead), best)
     if best is not None and not winds_as(best, wound):
         search.ledger.give_up("the whole turns of the ends: no equilibrium wound so was found")
     return search

@@ -164,15 +164,15 @@ class Prepared:
             step = "guess: given" if guess else f"guess: {words(posed.scene.guess)}"
             search.ledger.note(step, time.perf_counter() - started)
         led = done = own is not None and search.run(own, quick=quick)
+        if not led and own is not None and fallback:
+            what = "the guess given" if guess else f"the guess ({words(posed.scene.guess)})"
+            search.ledger.give_up(f"{what} led nowhere and was given up for the automatic start")
         if not led and (own is None or fallback):
             from .nothing import from_nothing  # IPOPT, which many scenes do without
 
             guesses = partial(self.automatic.guesses, posed, search.ledger)
             search = from_nothing(search, guesses, prepare)
             done = search.settled
-        if not led and own is not None and fallback:
-            what = "the guess given" if guess else f"the guess ({words(posed.scene.guess)})"
-            search.ledger.give_up(f"{what} led nowhere and was given up for the automatic start")
         return self._with_costs(search, time.perf_counter() - started, done)
 
     def _with_costs(self, search: Search, seconds: float, done: bool) -> Solution:

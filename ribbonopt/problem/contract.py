@@ -85,6 +85,8 @@ class BoundaryValueProblem:
     costate, recovered : SX symbols (nx,), mapping of str to SX
         Costates at the start, and parameters whose values follow from them once a problem with a
         cost is solved; until then they enter outputs only.
+    slack : int
+        How many constants, the last, relax conditions that are too many: zero where these agree.
     known : SX column symbol (nk,)
         k, in dynamics, algebraic equations, inequalities, costs and outputs of the phases.
     known_at : tuple of SX symbols (nk,)
@@ -110,6 +112,7 @@ class BoundaryValueProblem:
     algebraic_start: ca.SX = field(default_factory=lambda: ca.SX(0, 1))
     costate: ca.SX = field(default_factory=lambda: ca.SX(0, 1))
     recovered: Mapping[str, ca.SX] = field(default_factory=dict)
+    slack: int = 0
     known: ca.SX = field(default_factory=lambda: ca.SX(0, 1))
     known_at: tuple[ca.SX, ...] = ()
     known_names: tuple[str, ...] = ()

@@ -67,6 +67,7 @@ def switched(ribbon: Ribbon, kinds: Kinds, *, free: bool = False) -> BoundaryVal
         ),
         parameter_names=tuple(ribbon.theta),
         conserved=ribbon.conserved,
+        slack=slack.numel(),
     )
 
 

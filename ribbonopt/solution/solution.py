@@ -184,7 +184,7 @@ class Solution:
     ) -> tuple[Array, Array] | None:
         """Unknowns v (k, nv) and constants of another problem of the same kind, at fractions.
 
-        None where they cannot be taken as they are; the lengths of phases are not among them.
+        None where they cannot be taken as they are; lengths of phases and slack are not among them.
         """
         mine, own = self.problem, self.dense
         same = mine is problem or (
@@ -198,8 +198,8 @@ class Solution:
         ]
         if not same or points[0] != points[1]:
             return None
-        lengths = len(mine.phases) - 1
-        return self.trajectory.approximate(fraction), own.constants[: len(own.constants) - lengths]
+        rod = len(own.constants) - (len(mine.phases) - 1) - mine.slack
+        return self.trajectory.approximate(fraction), own.constants[:rod]
 
     def fields(self, fraction: Array) -> RodFields:
         """Fields at fractions (k,) of the length, units Dw = L = 1: a solution is a guess."""

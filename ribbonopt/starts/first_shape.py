@@ -23,8 +23,11 @@ from .loops import loop_of
 SMALL_BOW = 0.3  # radians, for a strip that nothing shortens but a load
 
 
-def shapes_for(posed: Posed) -> Iterator[Shape]:
-    """Yield shapes that fit the ends of a scene, the likeliest first."""
+def shapes_for(posed: Posed, *, wound: bool = True) -> Iterator[Shape]:
+    """Yield shapes that fit the ends of a scene, the likeliest first.
+
+    `wound` as often as the ends say, where they say it; else as if they did not.
+    """
     loop = loop_of(posed.scene)
     if loop is not None:
         yield loop_shape(posed, loop)
@@ -35,8 +38,8 @@ def shapes_for(posed: Posed) -> Iterator[Shape]:
     chord = float(np.linalg.norm(end[0] - start[0]))
     # A strip that buckles: chord / length = 1 - bow^2 / 4.
     bow = 2 * np.sqrt(max(0.0, 1 - chord / length))
-    wound = winding(posed.scene.boundary, posed.scene.parameters)
-    plain = Chord(start, end, length, winding=wound)
+    turn = winding(posed.scene.boundary, posed.scene.parameters) if wound else None
+    plain = Chord(start, end, length, winding=turn)
     if chord > length * (1 - 1e-9) and (posed.loads or compresses(posed, plain)):
         bow = SMALL_BOW
     yield replace(plain, bow=bow)
@@ -44,9 +47,8 @@ def shapes_for(posed: Posed) -> Iterator[Shape]:
         return
     if bow:
         yield replace(plain, bow=-0.5 * bow)
-    if wound is not None:
-        plain = replace(plain, winding=None)  # rather than nothing
-        yield replace(plain, bow=bow)
+    if turn is not None:
+        return  # other turns are not what the scene says
     for turns in (1.0, -1.0):
         yield replace(plain, bow=0.5 * bow, turns=turns)
 

@@ -66,6 +66,7 @@ def test_a_guess_that_was_given_up_is_in_the_headline(tmp_path: Path) -> None:
     assert found.verified
     assert found.given_up == (
         "the guess (helix) led nowhere and was given up for the automatic start",
+        "the whole turns of the ends: no equilibrium wound so was found",
     )
     summary = summarize(found)
     assert summary["given_up"] == list(found.given_up)

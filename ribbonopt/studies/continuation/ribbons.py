@@ -66,6 +66,9 @@ class RibbonEquations:
                 raise
             line = self._rod.curve.line(self._rod.restored(solution, unknowns))
             found = local(line, row, *there)
+        if solution.problem.slack:
+            # Conditions with slack keep a ribbon in its phases: their zeros are no branch points.
+            return replace(found, sign=1.0)
         # Its determinant would be that of the law's guard.
         return replace(found, sign=0.0) if unbent else found
 
@@ -190,7 +193,7 @@ def reduced(solution: Solution, extended: Array) -> Array:
     """
     layout = solution.dense.blocks.layout
     nodes, _, c = layout.unpack(extended[:-1])
-    rod = layout.nc - len(layout.elements) + 1
+    rod = layout.nc - len(layout.elements) + 1 - solution.problem.slack
     return np.concatenate([nodes[0], nodes[-1], c[:rod], extended[-1:]])
 
 
