@@ -72,6 +72,11 @@ class Search:
     def run_smooth(self, guess: Solution) -> bool:
         """Try an equilibrium of the smooth law; they come with delta increasing."""
         self.smooth.insert(0, guess)
+        if guess.mesh.graded:
+            # A layer that a uniform mesh of so few intervals would not see.
+            count = self.posed.scene.transcription.intervals
+            mesh = guess.mesh.resampled(count)
+            self.plain = self._kept(self.structure.attempt(self.posed, self.ledger, mesh))
         if not self.phases_help:
             return self.plain.run(guess, quick=True)
         if len(self.smooth) == 1:

@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 
 from ribbonopt.attempt.ledger import Ledger
@@ -89,16 +89,15 @@ class Automatic:
         last = sharpness(own, LAST)
         if isinstance(shape, Chord) and shape.straight and not _bends(posed, shape):
             # At this delta the law is linear: it can be bent from a straight ribbon.
-            rod = sharpened(law, ROD)
-            followed = self._follow(posed, rod, guess, last, ledger)
-            if not followed.points and not loaded(posed):
+            points = self._from_straight(posed, shape, last, ledger)
+            if not points and not loaded(posed):
                 raise ConvergenceError(
                     "the ribbon is straight and without stress: it cannot bend in its own plane, "
                     "so that the loads of its ends there are not determined; shorten or turn it, "
                     "if only a little",
                     "indeterminate",
                 )
-            return list(followed.points)
+            return points
         points: list[Solution] = []
         start: Guess = guess
         for _ in range(1 + AGAIN):
@@ -112,7 +111,17 @@ class Automatic:
             # The branch has an end here: the energy's minimum goes on elsewhere.
             start = followed.points[-1]
             law = sharpened(law, max(last, 0.6 * sharpness(start.scene.law, last)))
+        if not points and isinstance(shape, Chord) and shape.straight:
+            # Far from where the energy began: its loads are brought on from none.
+            return self._from_straight(posed, replace(shape, bow=0.0), last, ledger)
         return points
+
+    def _from_straight(
+        self, posed: Posed, chord: Chord, last: float, ledger: Ledger
+    ) -> list[Solution]:
+        """Equilibria from a straight ribbon as its loads grow, under the law that is linear."""
+        rod = sharpened(first_law(posed.scene.law, FIRST), ROD)
+        return list(self._follow(posed, rod, ShapeGuess(chord), last, ledger).points)
 
     def _least(self, posed: Posed, law: Law, start: Guess, ledger: Ledger) -> Solution:
         """Least energy from a guess; worth nothing unless converged."""

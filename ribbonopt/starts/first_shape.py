@@ -19,6 +19,7 @@ from ribbonopt.problem import Posed, Ribbon
 
 from .loops import loop_of
 
+ACROSS = 1e-12  # cosine of a right angle
 SMALL_BOW = 0.3  # radians, for a strip that nothing shortens but a load
 
 
@@ -54,8 +55,12 @@ def loaded(posed: Posed) -> bool:
 
 
 def compresses(posed: Posed, chord: Chord) -> bool:
-    """Whether a dead force pushes the ends together: a straight strip may buckle under it."""
-    return bool(dead_force_of(posed) @ (chord.end[0] - chord.start[0]) < 0)
+    """Whether a dead force pushes the ends together: a straight strip may buckle under it.
+
+    A force across the strip, to rounding, does not.
+    """
+    force, along = dead_force_of(posed), chord.end[0] - chord.start[0]
+    return bool(force @ along < -ACROSS * np.linalg.norm(force) * np.linalg.norm(along))
 
 
 def dead_force_of(posed: Posed) -> Array:

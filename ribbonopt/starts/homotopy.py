@@ -19,10 +19,17 @@ from ribbonopt.problem import Posed
 from ribbonopt.scene import Collocation, Law, Newton
 from ribbonopt.solution.solution import Solution
 from ribbonopt.solvers import NewtonSolver, Status
+from ribbonopt.transcription import Mesh
+
+from .grading import graded_mesh
 
 MESH = Collocation(scheme="gauss", degree=3, intervals=30)
 SOLVER = Newton(tolerance=1e-8, max_iterations=30)
 NEAR = 0.05  # residual of the conditions, over 1 + size of the loads, that Newton may close at once
+HEAVY = 30.0  # size of loads, Dw = L = 1, beyond which they are brought on by factors
+FIRST_LOADS = 2.0  # size of loads that are brought on evenly before they grow by factors
+MOST_GROWTH, LEAST_GROWTH = 1.2, 0.02  # of the logarithm of a load in a step
+SURE = 12  # iterations after which a step has surely not left its branch
 LEAST_STEP = 1 / 64
 MOST_STEPS = 40
 FACTOR, LEAST_FACTOR = 0.33, 0.95  # delta from one step to the next, first and where to give up
@@ -64,6 +71,8 @@ class _Tracking:
         self.structure, self.posed, self.law = structure, posed, law
         self.steps = self.iterations = 0
         self.points: list[Solution] = []
+        self.mesh: Mesh | None = None
+        self.loads = 1.0  # share of the loads along the ribbon
         self.attempt = self._attempt(law)
         assert isinstance(self.attempt.solver, NewtonSolver)  # as SOLVER says
         self.newton = self.attempt.solver
@@ -76,6 +85,9 @@ class _Tracking:
         off = float(np.abs(residuals).max()) / (1 + float(np.abs(constants).max(initial=0.0)))
         if off < NEAR and self._step(self.law, None):
             return self._keep()
+        size = max(float(np.abs(residuals).max()), self._along())
+        if size > HEAVY:
+            return self._bring_heavy(size)
         share, step = 0.0, 0.25
         if not self._step(self.law, residuals):
             return False
@@ -88,6 +100,42 @@ class _Tracking:
             if step < LEAST_STEP or self.steps > MOST_STEPS:
                 return False
         return self._keep()
+
+    def _bring_heavy(self, size: float) -> bool:
+        """Bring on loads far larger than one: their size grows by factors, and meshes follow."""
+        self.loads = 0.0
+        self.attempt = self._attempt(self.law)
+        residuals = self.newton.system.residuals(self.w, self.attempt.p).conditions
+        # Evenly at first, then by factors: first buckling is at a few units of load.
+        last = float(np.arcsinh(size / FIRST_LOADS))
+        at, step = 0.0, 0.5
+        while at < last:
+            following = min(last, at + step)
+            self.loads = FIRST_LOADS * float(np.sinh(following)) / size if following < last else 1.0
+            before, w = self.iterations, self.w
+            self.attempt = self._attempt(self.law)
+            done = self._step(self.law, (1 - self.loads) * residuals)
+            if done and self.iterations - before <= SURE:
+                at, step = following, min(step * _growth(self.iterations - before), MOST_GROWTH)
+                self._regrade()
+                continue
+            # After many iterations it may be another equilibrium: not what grew from before.
+            self.w, step = w, step / 3
+            if step < LEAST_GROWTH or self.steps > 2 * MOST_STEPS:
+                return False
+        return self._step(self.law, None) and self._keep()
+
+    def _along(self) -> float:
+        """Return the size of dead loads along the ribbon, as a force."""
+        numbers = [load.numbers().values() for load in self.posed.loads if load.dead]
+        return self.posed.length * max((abs(v) for some in numbers for v in some), default=0.0)
+
+    def _regrade(self) -> None:
+        """Move the nodes to where the ribbon bends now."""
+        solution = self.attempt.restored(self.w)
+        self.mesh = graded_mesh(solution, len(solution.nodes) - 1)
+        self.attempt = self._attempt(self.law)
+        self.w = self.attempt.unknowns(solution)
 
     def bring_down(self, target: float) -> bool:
         """Follow the smooth family to a smaller delta; other laws stay as they are."""
@@ -118,4 +166,14 @@ class _Tracking:
         return True
 
     def _attempt(self, law: Law) -> Attempt:
-        return self.structure.attempt(smooth_of(self.posed, law))
+        attempt = self.structure.attempt(smooth_of(self.posed, law), mesh=self.mesh)
+        if self.loads < 1:
+            names = {name for load in self.posed.loads if load.dead for name in load.numbers()}
+            for i, name in enumerate(attempt.problem.parameter_names):
+                attempt.p[i] *= self.loads if name in names else 1.0
+        return attempt
+
+
+def _growth(iterations: int) -> float:
+    """Return by what to multiply a step after one that took some iterations."""
+    return float(np.clip(2.5 - 0.1 * iterations, 0.7, 2.0))

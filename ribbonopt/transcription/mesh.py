@@ -34,6 +34,20 @@ class Mesh:
         return cls(tuple(np.full(n, 1 / n) for n in counts))
 
     @property
+    def graded(self) -> bool:
+        """Whether elements of a phase differ in width."""
+        return any(np.ptp(widths) > 1e-9 * widths.max() for widths in self.phases)
+
+    def resampled(self, *counts: int) -> Mesh:
+        """Return a mesh graded alike with other numbers of elements in the phases."""
+        phases = []
+        for widths, count in zip(self.phases, counts, strict=True):
+            nodes = np.append(0.0, np.cumsum(widths) / widths.sum())
+            index = np.linspace(0, len(widths), count + 1)
+            phases.append(np.diff(np.interp(index, np.arange(len(nodes)), nodes)))
+        return Mesh(tuple(phases))
+
+    @property
     def elements(self) -> tuple[int, ...]:
         """Number of elements of each phase."""
         return tuple(len(widths) for widths in self.phases)

@@ -1,0 +1,27 @@
+"""Meshes of starts: as fine as a ribbon winds, and graded to where it bends.
+
+A strong force keeps the bending in a layer of width 1 / sqrt(force) next to an end, thinner than an
+interval of a uniform mesh; a ribbon of many turns needs intervals in proportion to them.
+"""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ribbonopt.accuracy.remesh import redistributed
+from ribbonopt.solution.solution import Solution
+from ribbonopt.transcription import Mesh
+
+FLAT = 1 / 3  # power of the strains: a layer is followed to where it has decayed to e^-8
+
+
+def graded_mesh(solution: Solution, count: int) -> Mesh:
+    """Return a mesh of one phase, half of its intervals by length and half by bending."""
+    o, (_, fraction, weights, _) = solution.trajectory.at_stages, solution.trajectory.stages
+    bending = np.linalg.norm(o["u"], axis=1) ** FLAT
+    mean = float(weights @ bending)
+    density = 1 + bending / mean if mean > 0 else np.ones_like(bending)
+    density = np.concatenate([density[:1], density, density[-1:]])
+    positions = np.concatenate([[0.0], fraction, [1.0]])
+    share = np.append(0.0, np.cumsum(np.diff(positions) * (density[1:] + density[:-1]) / 2))
+    return Mesh((redistributed(positions, share, count),))
