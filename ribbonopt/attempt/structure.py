@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 Elements = tuple[int, ...]
 Kinds = tuple[int, ...]
 
+LEAST_IN_PHASE = 4  # elements
+
 
 @dataclass(frozen=True, eq=False)
 class Structure:
@@ -101,16 +103,26 @@ class Structure:
         """
         if posed is not self.posed and posed.structure != self.posed.structure:
             raise ModelError("this scene differs from the prepared one in more than its numbers")
-        mesh = mesh or self._mesh(switches)
+        mesh = self._mesh(switches, mesh)
         nlp, solver = self.on(mesh.elements)
         p = nlp.layout.parameters(posed.values, mesh.widths)
         parts = self.ribbon, self.problem, nlp, solver, self.sheets, switches
         return Attempt(posed, p, *parts, ledger or Ledger())
 
-    def _mesh(self, switches: Array | None) -> Mesh:
-        """Uniform elements; in phases, of about the width they would have without."""
+    def _mesh(self, switches: Array | None, given: Mesh | None) -> Mesh:
+        """Uniform elements, or graded as a mesh of one phase; in phases, about as wide as without.
+
+        A given mesh of as many phases is taken as it is.
+        """
+        phases = max(1, len(self.sheets))
+        if given is not None and len(given.phases) == phases:
+            return given
         count = self.posed.scene.transcription.intervals
+        if given is not None:
+            assert switches is not None
+            return given.resampled(count, switches, LEAST_IN_PHASE)
         if switches is None or not len(switches):
             return Mesh.uniform(count)
         shares = np.diff(np.concatenate([[0.0], switches, [1.0]]))
-        return Mesh.uniform(*(max(4, round(count * float(share))) for share in shares))
+        counts = (max(LEAST_IN_PHASE, round(count * float(share))) for share in shares)
+        return Mesh.uniform(*counts)

@@ -17,6 +17,7 @@ from ribbonopt.solution.solution import Solution
 from ribbonopt.transcription.buffered import Mapped
 
 NEGLIGIBLE = 1e-7  # m2 over the largest |m| that has no sign
+FAINT, SEEN = 1e-5, 10.0  # (m2, m3) over the largest |m|, and over the tolerance: is not seen
 BEYOND = 1.05  # |eta| of a mixture
 SHORTEST = 0.01  # of an arc of a mixture, and of the phase before one that begins at an end
 
@@ -37,6 +38,8 @@ def sign_changes(solution: Solution) -> Arcs:
     o, f = solution.at_stages, solution.trajectory.stages[1]
     value, leap, scale = o["switching"], o["leap"], _scale(solution)
     size = np.abs(value) > NEGLIGIBLE * scale
+    # In the tail of a layer, which mesh and rounding may let change sign, nothing can be told.
+    size &= np.maximum(np.abs(value), leap) > _faint(solution) * scale
     f, value, leap = f[size], value[size], leap[size]
     if not len(value):
         return Arcs((1,), np.empty(0))
@@ -91,6 +94,12 @@ def _beyond(solution: Solution) -> list[tuple[float, float]]:
     beyond = np.concatenate([[False], np.abs(eta) > BEYOND, [False]])
     edges = np.flatnonzero(beyond[1:] != beyond[:-1])
     return [(f[a], f[b - 1]) for a, b in zip(edges[::2], edges[1::2], strict=True)]
+
+
+def _faint(solution: Solution) -> float:
+    """Return (m2, m3), over the largest |m|, of a tail that does not show in the answer."""
+    tolerance = solution.posed.scene.tolerance
+    return NEGLIGIBLE if tolerance is None else float(np.clip(SEEN * tolerance, NEGLIGIBLE, FAINT))
 
 
 def _scale(solution: Solution) -> float:

@@ -41,6 +41,8 @@ class Search:
         Steps so far, with their cost.
     smooth : list of Solution
         Equilibria of the smooth law met on the way, delta decreasing.
+    layered : bool
+        Whether these needed a graded mesh, so that what starts from them does.
     """
 
     posed: Posed
@@ -48,6 +50,7 @@ class Search:
     ledger: Ledger = field(default_factory=Ledger)
     smooth: list[Solution] = field(default_factory=list)
     last: Attempt | None = None
+    layered: bool = False
 
     @cached_property
     def plain(self) -> Attempt:
@@ -74,8 +77,8 @@ class Search:
         self.smooth.insert(0, guess)
         if guess.mesh.graded:
             # A layer that a uniform mesh of so few intervals would not see.
-            count = self.posed.scene.transcription.intervals
-            mesh = guess.mesh.resampled(count)
+            count, self.layered = self.posed.scene.transcription.intervals, True
+            mesh = guess.mesh.resampled(count, np.empty(0))
             self.plain = self._kept(self.structure.attempt(self.posed, self.ledger, mesh))
         if not self.phases_help:
             return self.plain.run(guess, quick=True)
@@ -158,7 +161,9 @@ class Search:
 
     def _run_phases(self, arcs: Arcs, source: Solution) -> bool:
         structure = self.structure.in_phases(arcs.kinds)
-        attempt = structure.attempt(self.posed, self.ledger, switches=arcs.switches)
+        graded = source.mesh.graded and len(source.mesh.phases) == 1 and len(arcs.kinds) > 1
+        mesh = source.mesh if graded and self.layered else None
+        attempt = structure.attempt(self.posed, self.ledger, mesh, arcs.switches)
         return self._kept(attempt).run(source, quick=True)
 
     def _kept(self, attempt: Attempt) -> Attempt:

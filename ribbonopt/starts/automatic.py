@@ -89,15 +89,15 @@ class Automatic:
         last = sharpness(own, LAST)
         if isinstance(shape, Chord) and shape.straight and not _bends(posed, shape):
             # At this delta the law is linear: it can be bent from a straight ribbon.
-            points = self._from_straight(posed, shape, last, ledger)
-            if not points and not loaded(posed):
+            started = self._from_straight(posed, shape, last, ledger)
+            if not started and not loaded(posed):
                 raise ConvergenceError(
                     "the ribbon is straight and without stress: it cannot bend in its own plane, "
                     "so that the loads of its ends there are not determined; shorten or turn it, "
                     "if only a little",
                     "indeterminate",
                 )
-            return points
+            return started
         points: list[Solution] = []
         start: Guess = guess
         for _ in range(1 + AGAIN):

@@ -12,7 +12,7 @@ from ribbonopt.accuracy.remesh import redistributed
 from ribbonopt.solution.solution import Solution
 from ribbonopt.transcription import Mesh
 
-FLAT = 1 / 3  # power of the strains: a layer is followed to where it has decayed to e^-8
+FLAT = 1 / 5  # power of the strains: a layer is followed far into its tail
 
 
 def graded_mesh(solution: Solution, count: int) -> Mesh:
