@@ -19,7 +19,14 @@ from ribbonopt.errors import ConvergenceError
 from ribbonopt.guess import Guess, ShapeGuess
 from ribbonopt.guess.shapes import Chord, Shape
 from ribbonopt.mechanics.laws.catalogue import capabilities
-from ribbonopt.mechanics.laws.smooth import ROD, first_law, in_family, sharpened, sharpness
+from ribbonopt.mechanics.laws.smooth import (
+    ROD,
+    first_law,
+    in_family,
+    named,
+    sharpened,
+    sharpness,
+)
 from ribbonopt.problem import Posed
 from ribbonopt.scene import Law
 from ribbonopt.solution.solution import Solution
@@ -153,4 +160,4 @@ def _bends(posed: Posed, chord: Chord) -> bool:
 
 
 def _delta(law: Law) -> str:
-    return f", delta = {sharpness(law, 0.0):.3g}" if in_family(law) else ""
+    return f", {named(law)}" if in_family(law) else ""

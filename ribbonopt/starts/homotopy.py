@@ -21,7 +21,7 @@ from ribbonopt.solution.solution import Solution
 from ribbonopt.solvers import NewtonSolver, Status
 from ribbonopt.transcription import Mesh
 
-from .grading import graded_mesh
+from .grading import graded_mesh, is_coarse
 
 MESH = Collocation(scheme="gauss", degree=3, intervals=30)
 SOLVER = Newton(tolerance=1e-8, max_iterations=30)
@@ -74,13 +74,11 @@ class _Tracking:
         self.mesh: Mesh | None = None
         self.loads = 1.0  # share of the loads along the ribbon
         self.attempt = self._attempt(law)
-        assert isinstance(self.attempt.solver, NewtonSolver)  # as SOLVER says
-        self.newton = self.attempt.solver
         self.w = self.attempt.unknowns(guess)
 
     def bring_loads(self) -> bool:
         """Meet the conditions: at once where they nearly hold, else bit by bit."""
-        residuals = self.newton.system.residuals(self.w, self.attempt.p).conditions
+        residuals = self._conditions()
         _, _, constants = self.attempt.nlp.layout.unpack(self.w)
         off = float(np.abs(residuals).max()) / (1 + float(np.abs(constants).max(initial=0.0)))
         if off < NEAR and self._step(self.law, None):
@@ -105,7 +103,7 @@ class _Tracking:
         """Bring on loads far larger than one: their size grows by factors, and meshes follow."""
         self.loads = 0.0
         self.attempt = self._attempt(self.law)
-        residuals = self.newton.system.residuals(self.w, self.attempt.p).conditions
+        residuals = self._conditions()
         # Evenly at first, then by factors: first buckling is at a few units of load.
         last = float(np.arcsinh(size / FIRST_LOADS))
         at, step = 0.0, 0.5
@@ -133,7 +131,7 @@ class _Tracking:
     def _regrade(self) -> None:
         """Move the nodes to where the ribbon bends now."""
         solution = self.attempt.restored(self.w)
-        self.mesh = graded_mesh(solution, len(solution.nodes) - 1)
+        self.mesh = graded_mesh(solution, MESH.intervals)
         self.attempt = self._attempt(self.law)
         self.w = self.attempt.unknowns(solution)
 
@@ -145,15 +143,21 @@ class _Tracking:
             if self._step(law, None):
                 self.law, factor = law, max(0.1, factor**2)
                 self._keep()
+                if is_coarse(self.points[-1]):
+                    self._regrade()
                 continue
             factor = float(np.sqrt(factor))
             if factor > LEAST_FACTOR or self.steps > MOST_STEPS:
                 return False
         return True
 
+    def _conditions(self) -> Array:
+        """Residuals of the conditions at the ends."""
+        return _newton(self.attempt).system.residuals(self.w, self.attempt.p).conditions
+
     def _step(self, law: Law, relaxed: Array | None) -> bool:
         attempt = self.attempt if law is self.law else self._attempt(law)
-        report = self.newton.solve(self.w, attempt.p, relaxed)
+        report = _newton(attempt).solve(self.w, attempt.p, relaxed)
         self.steps += 1
         self.iterations += report.iterations
         if report.status is not Status.CONVERGED:
@@ -172,6 +176,11 @@ class _Tracking:
             for i, name in enumerate(attempt.problem.parameter_names):
                 attempt.p[i] *= self.loads if name in names else 1.0
         return attempt
+
+
+def _newton(attempt: Attempt) -> NewtonSolver:
+    assert isinstance(attempt.solver, NewtonSolver)  # as SOLVER says
+    return attempt.solver
 
 
 def _growth(iterations: int) -> float:
