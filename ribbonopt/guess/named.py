@@ -41,6 +41,12 @@ class ShapeGuess:
     shape: Shape
     law: Callable[[Array], Array] | None = None
 
+    @property
+    def most_turning(self) -> float:
+        """Bound of the angle (radians) by which the frames turn in all."""
+        strains = self.shape.strains(np.linspace(0, 1, 33))
+        return self.shape.length * float(np.linalg.norm(strains, axis=1).max())
+
     def fields(self, fraction: Array) -> RodFields:
         """Fields at fractions (k,) of the length."""
         r, frames = self.shape.positions(fraction), self.shape.frames(fraction)

@@ -207,12 +207,20 @@ def solve(scene: Scene) -> Solution:
         Solution whose status and message say so.
     """
     prepared = prepare(scene)
-    solution = prepared.solve()
     if prepared.scene.starts == 1:
-        return solution
+        return prepared.solve()
     from ribbonopt.starts.equilibria import equilibria  # few scenes ask for it
 
-    return equilibria(prepared.posed(), solution, prepared.automatic, prepared.polish)
+    refuse_unreachable(prepared.posed())
+    first, failed = None, _no_start()
+    try:
+        first = prepared.solve()
+    except ConvergenceError as error:  # other starts may lead somewhere
+        failed = error
+    found = equilibria(prepared.posed(), first, prepared.automatic, prepared.polish)
+    if found is None:
+        raise failed
+    return found
 
 
 def prepare(scene: Scene) -> Prepared:

@@ -45,7 +45,10 @@ class Status(Enum):
         "the equations are solved, but not the problem the scene states: start from another guess, "
         "or refine the mesh"
     )
-    NO_START = "no equilibrium was found to start from, from any shape that fits the ends: give a guess, or bring the ends to an easier place first"
+    NO_START = (
+        "no equilibrium was found to start from, from any shape that fits the ends: give a guess, "
+        "or bring the ends to an easier place first"
+    )
     REGULARIZED = (
         "no equilibrium of the law asked for was found that is valid everywhere; this is one of "
         "the smooth law (variational), near which it should be"

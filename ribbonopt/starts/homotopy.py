@@ -153,7 +153,8 @@ class _Tracking:
 
     def _conditions(self) -> Array:
         """Residuals of the conditions at the ends."""
-        return _newton(self.attempt).system.residuals(self.w, self.attempt.p).conditions
+        found: Array = _newton(self.attempt).system.residuals(self.w, self.attempt.p).conditions
+        return found
 
     def _step(self, law: Law, relaxed: Array | None) -> bool:
         attempt = self.attempt if law is self.law else self._attempt(law)
