@@ -20,7 +20,7 @@ from ribbonopt.attempt.attempt import Attempt
 from ribbonopt.attempt.ledger import Ledger
 from ribbonopt.attempt.structure import Structure
 from ribbonopt.checks.arcs import Arcs, sign_changes, with_mixtures
-from ribbonopt.guess import Guess, turning_of
+from ribbonopt.guess import Guess, ShapeGuess, turning_of
 from ribbonopt.problem import Posed
 from ribbonopt.scene import Scene, Shooting
 from ribbonopt.solution.solution import Solution
@@ -65,7 +65,7 @@ class Search:
         if isinstance(guess, Solution) and guess.sheets and self.phases_help:
             if self._run_phases(Arcs(guess.sheets, guess.trajectory.ends[1:-1]), guess):
                 return True
-        self._wind(guess)
+        guess = self._wound(guess)
         if not self.plain.run(guess, quick=quick, check=not self.phases_help):
             return False
         found = self.plain.best
@@ -150,15 +150,21 @@ class Search:
         structure = self.structure.in_phases(sheets)
         return self._kept(structure.attempt(self.posed, self.ledger, mesh, switches))
 
-    def _wind(self, guess: Guess) -> None:
-        """Take as many intervals as a guess winds, where those of the scene are too few."""
+    def _wound(self, guess: Guess) -> Guess:
+        """Take as many intervals as a guess winds, where those of the scene are too few.
+
+        Returns the guess, a shape with the force that balances it.
+        """
         settings = self.posed.scene.transcription
         steps = settings.steps if isinstance(settings, Shooting) else 1
         each = steps * max(1.0, settings.degree / 2)
         turning = turning_of(guess, each * settings.intervals)
-        if turning > each * settings.intervals:
-            mesh = Mesh.uniform(int(np.ceil(turning / each)))
-            self.plain = self._kept(self.structure.attempt(self.posed, self.ledger, mesh))
+        if turning <= each * settings.intervals:
+            return guess
+        # Finer than just enough: a coarse mesh has equilibria of its own near by.
+        mesh = Mesh.uniform(int(np.ceil(2 * turning / each)))
+        self.plain = self._kept(self.structure.attempt(self.posed, self.ledger, mesh))
+        return guess.balanced() if isinstance(guess, ShapeGuess) else guess
 
     def _in_given_phases(self, source: Solution) -> bool:
         """Try the phases that a solution shows or the scene names; whether that succeeds."""

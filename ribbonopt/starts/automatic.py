@@ -13,6 +13,8 @@ from collections.abc import Iterator
 from dataclasses import dataclass, replace
 from functools import cached_property
 
+import numpy as np
+
 from ribbonopt.attempt.ledger import Ledger
 from ribbonopt.attempt.structure import Structure
 from ribbonopt.errors import ConvergenceError
@@ -28,7 +30,7 @@ from ribbonopt.mechanics.laws.smooth import (
     sharpness,
 )
 from ribbonopt.problem import Posed
-from ribbonopt.scene import Law
+from ribbonopt.scene import Law, Variational
 from ribbonopt.solution.solution import Solution
 
 from .energy import least_energy_of
@@ -38,7 +40,8 @@ from .loops import closed_posed, fundamental_scene
 from .unfold import Unfolded
 
 FIRST, LAST = 0.3, 0.01  # delta of the first solve, and of the last unless the scene's is smaller
-AGAIN = 2  # how often the energy is minimised again where the path is lost
+STRAIGHT = 1e-6  # strains, Dw = L = 1
+AGAIN, SNAPS = 2, 8  # how often the energy is minimised again where the path is lost; of rods
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,10 +61,19 @@ class Automatic:
             yield follower
         if shape is None and self._piece is not None:
             yield from self._unfolded(posed, ledger)
+        # A law that is not smooth may refuse the last point and take an earlier one.
+        last = slice(-1, None) if in_family(posed.scene.law) else slice(None)
+        straight: list[Solution] = []
         for start in [shape] if shape else shapes_for(posed):
             points = self._points(posed, start, ledger)
-            # A law that is not smooth may refuse the last point and take an earlier one.
-            yield from reversed(points[-1:] if in_family(posed.scene.law) else points)
+            if not points and not straight and isinstance(start, Chord) and start.straight:
+                # Far from where the energy began: its loads are brought on from none.
+                straight = self._from_straight(posed, replace(start, bow=0.0), ledger)
+                # What stays straight may be the top of a hill: other shapes come first.
+                points = straight if straight and _is_bent(straight[-1]) else []
+            yield from reversed(points[last])
+        if straight and not _is_bent(straight[-1]):
+            yield from reversed(straight[last])
 
     @cached_property
     def _energy(self) -> Structure:
@@ -96,7 +108,7 @@ class Automatic:
         last = sharpness(own, LAST)
         if isinstance(shape, Chord) and shape.straight and not _bends(posed, shape):
             # At this delta the law is linear: it can be bent from a straight ribbon.
-            started = self._from_straight(posed, shape, last, ledger)
+            started = self._from_straight(posed, shape, ledger)
             if not started and not loaded(posed):
                 raise ConvergenceError(
                     "the ribbon is straight and without stress: it cannot bend in its own plane, "
@@ -107,7 +119,8 @@ class Automatic:
             return started
         points: list[Solution] = []
         start: Guess = guess
-        for _ in range(1 + AGAIN):
+        # Rods soft in twist snap on their way, from one equilibrium to the next.
+        for _ in range(1 + (AGAIN if isinstance(law, Variational) else SNAPS)):
             least = self._least(posed, law, start, ledger)
             if not least.status.converged:
                 break
@@ -118,16 +131,12 @@ class Automatic:
             # The branch has an end here: the energy's minimum goes on elsewhere.
             start = followed.points[-1]
             law = sharpened(law, max(last, 0.6 * sharpness(start.scene.law, last)))
-        if not points and isinstance(shape, Chord) and shape.straight:
-            # Far from where the energy began: its loads are brought on from none.
-            return self._from_straight(posed, replace(shape, bow=0.0), last, ledger)
         return points
 
-    def _from_straight(
-        self, posed: Posed, chord: Chord, last: float, ledger: Ledger
-    ) -> list[Solution]:
+    def _from_straight(self, posed: Posed, chord: Chord, ledger: Ledger) -> list[Solution]:
         """Equilibria from a straight ribbon as its loads grow, under the law that is linear."""
         rod = sharpened(first_law(posed.scene.law, FIRST), ROD)
+        last = sharpness(posed.scene.law, LAST)
         return list(self._follow(posed, rod, ShapeGuess(chord), last, ledger).points)
 
     def _least(self, posed: Posed, law: Law, start: Guess, ledger: Ledger) -> Solution:
@@ -157,6 +166,11 @@ def _bends(posed: Posed, chord: Chord) -> bool:
     """Whether something bends a straight ribbon between its ends, so that it is no start."""
     natural = capabilities(posed.scene.law).natural
     return bool(posed.loads) or natural or compresses(posed, chord)
+
+
+def _is_bent(solution: Solution) -> bool:
+    """Whether a ribbon is not straight, as the smallest bow would not be."""
+    return bool(np.abs(solution.trajectory.at_stages["u"]).max() > STRAIGHT)
 
 
 def _delta(law: Law) -> str:
