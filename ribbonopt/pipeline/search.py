@@ -26,6 +26,8 @@ from ribbonopt.scene import Scene, Shooting
 from ribbonopt.solution.solution import Solution
 from ribbonopt.transcription import Mesh
 
+COARSER = 3  # intervals of starts, of degree 3, to one of a scene
+
 
 @dataclass(eq=False)
 class Search:
@@ -43,6 +45,8 @@ class Search:
         Equilibria of the smooth law met on the way, delta decreasing.
     layered : bool
         Whether these needed a graded mesh, so that what starts from them does.
+    wound : bool
+        Whether the last guess had so many turns that it needed more intervals.
     """
 
     posed: Posed
@@ -51,6 +55,7 @@ class Search:
     smooth: list[Solution] = field(default_factory=list)
     last: Attempt | None = None
     layered: bool = False
+    wound: bool = False
 
     @cached_property
     def plain(self) -> Attempt:
@@ -65,7 +70,9 @@ class Search:
         if isinstance(guess, Solution) and guess.sheets and self.phases_help:
             if self._run_phases(Arcs(guess.sheets, guess.trajectory.ends[1:-1]), guess):
                 return True
-        guess = self._wound(guess)
+        wound = self._wound(guess)
+        # From shapes of many turns IPOPT takes long, and leads nowhere.
+        quick, guess = quick or wound is not None, wound or guess
         if not self.plain.run(guess, quick=quick, check=not self.phases_help):
             return False
         found = self.plain.best
@@ -79,8 +86,11 @@ class Search:
         if guess.mesh.graded:
             # A layer that a uniform mesh of so few intervals would not see.
             count, self.layered = self.posed.scene.transcription.intervals, True
-            mesh = guess.mesh.resampled(count, np.empty(0))
-            self.plain = self._kept(self.structure.attempt(self.posed, self.ledger, mesh))
+            count = max(count, len(guess.mesh.widths) // COARSER)
+            self._take(guess.mesh.resampled(count, np.empty(0)))
+        elif self.wound:
+            self._take(None)
+            self.wound = False
         if not self.phases_help:
             return self.plain.run(guess, quick=True)
         if len(self.smooth) == 1:
@@ -150,20 +160,24 @@ class Search:
         structure = self.structure.in_phases(sheets)
         return self._kept(structure.attempt(self.posed, self.ledger, mesh, switches))
 
-    def _wound(self, guess: Guess) -> Guess:
+    def _take(self, mesh: Mesh | None) -> None:
+        """Begin anew without phases, on a mesh or that of the scene."""
+        self.plain = self._kept(self.structure.attempt(self.posed, self.ledger, mesh))
+
+    def _wound(self, guess: Guess) -> Guess | None:
         """Take as many intervals as a guess winds, where those of the scene are too few.
 
-        Returns the guess, a shape with the force that balances it.
+        Returns that guess, a shape with the force that balances it; None where they are enough.
         """
         settings = self.posed.scene.transcription
         steps = settings.steps if isinstance(settings, Shooting) else 1
         each = steps * max(1.0, settings.degree / 2)
         turning = turning_of(guess, each * settings.intervals)
         if turning <= each * settings.intervals:
-            return guess
+            return None
         # Finer than just enough: a coarse mesh has equilibria of its own near by.
-        mesh = Mesh.uniform(int(np.ceil(2 * turning / each)))
-        self.plain = self._kept(self.structure.attempt(self.posed, self.ledger, mesh))
+        self._take(Mesh.uniform(int(np.ceil(2 * turning / each))))
+        self.wound = True
         return guess.balanced() if isinstance(guess, ShapeGuess) else guess
 
     def _in_given_phases(self, source: Solution) -> bool:

@@ -41,7 +41,7 @@ from .unfold import Unfolded
 
 FIRST, LAST = 0.3, 0.01  # delta of the first solve, and of the last unless the scene's is smaller
 STRAIGHT = 1e-6  # strains, Dw = L = 1
-AGAIN, SNAPS = 2, 8  # how often the energy is minimised again where the path is lost; of rods
+AGAIN, SNAPS = 2, 6  # how often the energy is minimised again where the path is lost; of rods
 
 
 @dataclass(frozen=True, eq=False)

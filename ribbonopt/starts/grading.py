@@ -12,7 +12,7 @@ from ribbonopt.accuracy.remesh import redistributed, size_for
 from ribbonopt.solution.solution import Solution
 from ribbonopt.transcription import Mesh
 
-EACH, MOST = 0.4, 160  # radians to an interval; intervals
+EACH, MOST = 0.5, 80  # radians to an interval; intervals
 FAR = 1.0  # radians in an interval
 FLAT = 1 / 5  # power of the strains: a layer is followed far into its tail
 

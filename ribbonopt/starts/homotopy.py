@@ -16,7 +16,7 @@ from ribbonopt.attempt.structure import Structure
 from ribbonopt.guess import Guess
 from ribbonopt.mechanics.laws.smooth import in_family, sharpened, sharpness
 from ribbonopt.problem import Posed
-from ribbonopt.scene import Collocation, Law, Newton
+from ribbonopt.scene import Collocation, Law, Newton, Variational
 from ribbonopt.solution.solution import Solution
 from ribbonopt.solvers import NewtonSolver, Status
 from ribbonopt.transcription import Mesh
@@ -32,6 +32,7 @@ MOST_GROWTH, LEAST_GROWTH = 1.2, 0.02  # of the logarithm of a load in a step
 SURE = 12  # iterations after which a step has surely not left its branch
 LEAST_STEP = 1 / 64
 MOST_STEPS = 40
+SNAP_FACTOR = 0.7  # of a rod's ratio of stiffnesses, where to minimise its energy again
 FACTOR, LEAST_FACTOR = 0.33, 0.95  # delta from one step to the next, first and where to give up
 
 
@@ -147,7 +148,10 @@ class _Tracking:
                     self._regrade()
                 continue
             factor = float(np.sqrt(factor))
-            if factor > LEAST_FACTOR or self.steps > MOST_STEPS:
+            if (
+                factor > (LEAST_FACTOR if isinstance(law, Variational) else SNAP_FACTOR)
+                or self.steps > MOST_STEPS
+            ):
                 return False
         return True
 
