@@ -23,6 +23,8 @@ if TYPE_CHECKING:
 Elements = tuple[int, ...]
 Kinds = tuple[int, ...]
 
+LEAST_IN_PHASE = 4  # elements
+
 
 @dataclass(frozen=True, eq=False)
 class Structure:
@@ -110,13 +112,18 @@ class Structure:
         parts = self.ribbon, self.problem, nlp, solver, self.sheets, switches
         return Attempt(posed, p, *parts, ledger or Ledger())
 
-    def mesh(self, switches: Array | None, least: int = 0) -> Mesh:
+    def mesh(self, switches: Array | None, least: int = 0, graded_as: Mesh | None = None) -> Mesh:
         """Uniform elements, `least` or more; in phases, of about the width they would have without.
 
-        `switches` are the fractions of the length where phases meet.
+        `switches` are the fractions of the length where phases meet. `graded_as` is a mesh of one
+        phase whose elements are as wide where these should be.
         """
         count = max(self.posed.scene.transcription.intervals, least)
+        if graded_as is not None:
+            inner = np.empty(0) if switches is None else switches
+            return graded_as.resampled(count, inner, LEAST_IN_PHASE)
         if switches is None or not len(switches):
             return Mesh.uniform(count)
         shares = np.diff(np.concatenate([[0.0], switches, [1.0]]))
-        return Mesh.uniform(*(max(4, round(count * float(share))) for share in shares))
+        counts = (max(LEAST_IN_PHASE, round(count * float(share))) for share in shares)
+        return Mesh.uniform(*counts)

@@ -17,10 +17,12 @@ from ribbonopt.guess import Guess
 from ribbonopt.guess.balanced import Balanced
 from ribbonopt.guess.named import ShapeGuess
 from ribbonopt.problem import Ribbon
+from ribbonopt.scene import Scene
 from ribbonopt.solution.solution import Solution
 from ribbonopt.transcription.buffered import Mapped
 
 NEGLIGIBLE = 1e-7  # m2 over the largest |m| that has no sign
+FAINT, SEEN = 1e-5, 10.0  # (m2, m3) over the largest |m|, and over the tolerance: is not seen
 BEYOND = 1.05  # |eta| of a mixture
 MARGIN = 1e-6  # of the largest moment: how far below zero a margin of the law may be
 EMPTY = 1e-5  # of the length of the ribbon: a phase that may not be there
@@ -68,6 +70,8 @@ def sign_changes(solution: Solution) -> Arcs:
     o, f = solution.at_stages, solution.trajectory.stages[1]
     value, leap, scale = o["switching"], o["leap"], _scale(solution)
     size = np.abs(value) > NEGLIGIBLE * scale
+    # In the tail of a layer, which mesh and rounding may let change sign, nothing can be told.
+    size &= np.maximum(np.abs(value), leap) > _faint(solution) * scale
     f, value, leap = f[size], value[size], leap[size]
     if not len(value):
         return Arcs((1,), np.empty(0))
@@ -132,6 +136,17 @@ def without_empty(solution: Solution) -> Arcs | None:
     return Arcs(tuple(kinds), np.array(switches))
 
 
+def given_arcs(source: Solution, scene: Scene) -> Arcs:
+    """Phases that meet where a scene says, of alternating sign; `source` may have other units."""
+    assert isinstance(scene.switching, tuple)
+    start, end = scene.interval
+    switches = (np.array(scene.switching) - start) / (end - start)
+    s = source.scene.interval
+    middle = s[0] + (s[1] - s[0]) * switches[:1] / 2
+    first = 1 if source.outputs(middle)["m2"][0] > 0 else -1
+    return Arcs(tuple(first * (-1) ** i for i in range(len(switches) + 1)), switches)
+
+
 def _reaching(mixture: tuple[float, float], first: float, last: float) -> tuple[float, float]:
     """Fractions of a mixture that stops at gaps from the ends of the ribbon where it is near."""
     a, b = mixture
@@ -161,6 +176,12 @@ def _beyond(solution: Solution) -> list[tuple[float, float]]:
     beyond = np.concatenate([[False], np.abs(eta) > BEYOND, [False]])
     edges = np.flatnonzero(beyond[1:] != beyond[:-1])
     return [(f[a], f[b - 1]) for a, b in zip(edges[::2], edges[1::2], strict=True)]
+
+
+def _faint(solution: Solution) -> float:
+    """Return (m2, m3), over the largest |m|, of a tail that does not show in the answer."""
+    tolerance = solution.posed.scene.tolerance
+    return NEGLIGIBLE if tolerance is None else float(np.clip(SEEN * tolerance, NEGLIGIBLE, FAINT))
 
 
 def _scale(solution: Solution) -> float:

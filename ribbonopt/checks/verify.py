@@ -38,7 +38,8 @@ def verify(solution: Solution, ribbon: Ribbon) -> Verification:
     exact = solution.dense.blocks.symplectic and not solution.problem.recovered
     allowed = TOLERANCE + (0.0 if exact else residual)
     if not worst <= allowed:
-        units = "" if solution.scene.ribbon is None else " (units Dw = L = 1)"
+        same = solution.posed.given is solution.posed.scene
+        units = "" if same else " (units Dw = L = 1)"
         problems.append(f"{worst_name} is off by {worst:.2g}{units}")
     if not drift["orthonormality"] <= allowed:
         problems.append(

@@ -7,6 +7,7 @@ unknowns of a discretised problem. A `Solution` is itself a guess.
 from .loads import FollowerLoads, IntegratedLoads
 from .named import ShapeGuess, guess_of, words
 from .unknowns import Guess, initial_unknowns
+from .winding import turning_of
 
 __all__ = [
     "FollowerLoads",
@@ -15,5 +16,6 @@ __all__ = [
     "ShapeGuess",
     "guess_of",
     "initial_unknowns",
+    "turning_of",
     "words",
 ]

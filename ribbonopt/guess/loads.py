@@ -28,6 +28,12 @@ class IntegratedLoads:
     loads: LoadGuess
     backwards: bool = False
 
+    @property
+    def most_turning(self) -> float:
+        """Bound of the angle (radians) by which the frames turn in all, for stiffness 1."""
+        n, m = (np.abs(v).max() for v in (self.loads.force, self.loads.moment))
+        return self.posed.length * float(m + self.posed.length * n)
+
     def fields(self, fraction: Array) -> RodFields:
         """Fields at fractions (k,) of the length, increasing from 0 to 1."""
         x, c = self._integrated(fraction)
@@ -55,7 +61,7 @@ class IntegratedLoads:
         length, s = self.posed.length, np.array(self.posed.scene.interval[:1])
         widths = np.diff(fraction) * (-length if self.backwards else length)
         # Steps short against the strains, which the loads bound.
-        strain = np.abs(m).max() + length * np.abs(n).max()
+        strain = self.most_turning / length
         substeps = int(np.clip(np.ceil(np.abs(widths).max() * strain), 1, 100))
         theta = self.posed.values
         widths = np.repeat(widths / substeps, substeps)
@@ -106,6 +112,12 @@ class FollowerLoads:
     posed: Posed
     force: Array
     moment: Array
+
+    @property
+    def most_turning(self) -> float:
+        """Bound of the angle (radians) by which the frames turn in all, for stiffness 1."""
+        force, moment = float(np.abs(self.force).max()), float(np.abs(self.moment).max())
+        return self.posed.length * (moment + self.posed.length * force)
 
     def fields(self, fraction: Array) -> RodFields:
         """Fields at fractions (k,) of the length, increasing from 0 to 1."""

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import casadi as ca
 import numpy as np
@@ -27,19 +27,41 @@ from .loads import IntegratedLoads
 from .shapes import Helical, Shape, TwistedCircle
 from .unknowns import Guess
 
+TURN = 16  # samples for each radian
 ROD = np.array([0.0, 1.0, 2.0])  # moment over strain of a ribbon that is hardly twisted
 
 
 @dataclass(frozen=True, eq=False)
 class ShapeGuess:
-    """A shape without force: nothing to be known of loads.
+    """A shape, without force unless one is given: nothing to be known of loads.
 
     The moment is that of `law` for its strains (k, 3), or of a rod of stiffness 1 and 2; it need
-    not be in equilibrium.
+    not be in equilibrium. `force` (3,) is in the lab frame.
     """
 
     shape: Shape
     law: Callable[[Array], Array] | None = None
+    force: Array | None = None
+
+    def balanced(self) -> ShapeGuess:
+        """Return the same with the constant force that balances its moments best: m' = n x d3.
+
+        Exact for helices; for guesses that wind so often that Newton's method would find another
+        equilibrium near by.
+        """
+        fraction = np.linspace(0, 1, 16 + int(TURN * self.most_turning))
+        found = self.fields(fraction)
+        d3 = found.frames[1:-1, :, 2]
+        rates = np.gradient(found.m, self.shape.length * fraction, axis=0)[1:-1]
+        across = np.eye(3) - d3[:, :, None] * d3[:, None, :]
+        force = np.linalg.lstsq(across.sum(axis=0), np.cross(d3, rates).sum(axis=0), rcond=1e-8)[0]
+        return replace(self, force=force)
+
+    @property
+    def most_turning(self) -> float:
+        """Bound of the angle (radians) by which the frames turn in all."""
+        strains = self.shape.strains(np.linspace(0, 1, 33))
+        return self.shape.length * float(np.linalg.norm(strains, axis=1).max())
 
     def fields(self, fraction: Array) -> RodFields:
         """Fields at fractions (k,) of the length."""
@@ -47,7 +69,8 @@ class ShapeGuess:
         strains = self.shape.strains(fraction)
         moments = strains * ROD if self.law is None else self.law(strains)
         m = np.einsum("kij,kj->ki", frames, moments)
-        return RodFields(r, frames, np.zeros_like(r), m)
+        n = np.zeros_like(r) if self.force is None else np.tile(self.force, (len(r), 1))
+        return RodFields(r, frames, n, m)
 
 
 def guess_of(posed: Posed, ribbon: Ribbon) -> Guess | None:

@@ -62,13 +62,15 @@ class Fields:
     name, files = "fields", ("solution.npz",)
 
     def write(self, solution: Solution, folder: Path) -> None:
-        """Write `s` (k,), vectors (k, 3); in units Dw = L = 1 `w`, `widths`, `theta`, ..."""
+        """Write `s` (k,), vectors (k, 3); in `units` Dw = L = 1 `w`, `theta`, ..."""
         for found, inner in equilibria(solution, folder):
             s, dense = np.linspace(*found.scene.interval, ROWS), found.dense
             rows = found.outputs(s)
             arrays: dict[str, Any] = {"s": s} | {name: rows[name] for name in VECTORS}
             arrays |= {"w": dense.w, "widths": dense.blocks.widths(dense.p)}
             arrays |= {"theta": dense.theta, "multipliers": found.multipliers}
+            units = found.units
+            arrays |= {"units": (units.length, units.force, units.stiffness)}
             arrays |= {"sheets": found.sheets, "elements": dense.blocks.layout.elements}
             np.savez(inner / "solution.npz", **arrays)
 

@@ -13,6 +13,7 @@ from ribbonopt.attempt.structure import Structure
 from ribbonopt.errors import OutputError
 from ribbonopt.problem import Posed
 from ribbonopt.scene import Scene, load_scene, validate_scene
+from ribbonopt.scene.units import Units, units_of
 from ribbonopt.solution.made import solution_at
 from ribbonopt.solution.solution import Solution
 from ribbonopt.solution.verification import Verification
@@ -107,13 +108,14 @@ def load_solution(path: str | Path, scene: Scene | None = None) -> Solution:
         with open(folder / "solution.npz", "rb") as file, np.load(file) as data:
             names = ("w", "widths", "theta", "multipliers")
             w, widths, theta, multipliers = (data[name] for name in names)
+            inside = tuple(map(float, data["units"])) if "units" in data else None
             sheets, elements = (
                 tuple(int(v) for v in data[name]) for name in ("sheets", "elements")
             )
         status = Status[summary["status"].upper()]
     except (ValueError, KeyError, TypeError, OSError, EOFError, BadZipFile) as error:
         raise OutputError(f"{folder}: damaged result ({error}); solve the scene again") from error
-    posed = Posed.of(scene)
+    posed = Posed.of(scene, _units(scene, inside))
     structure = Structure.of(posed).in_phases(sheets)
     problem, (nlp, _) = structure.problem, structure.on(elements)
     if len(w) != nlp.unknowns or len(theta) != problem.parameters.numel():
@@ -144,6 +146,14 @@ def load_solution(path: str | Path, scene: Scene | None = None) -> Solution:
         verification=Verification((), worst, between, law, drift),
         sheets=sheets,
     )
+
+
+def _units(scene: Scene, inside: tuple[float, ...] | None) -> Units:
+    """Return the units that numbers were saved in; older results do not say."""
+    if inside is None:
+        return Units() if scene.ribbon is None else units_of(scene)
+    length, force, stiffness = inside
+    return Units(length, force, scene.ribbon is not None, stiffness)
 
 
 def _number(value: float | None) -> float:

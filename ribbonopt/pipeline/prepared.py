@@ -219,13 +219,20 @@ def solve(scene: Scene) -> Solution:
         Solution whose status and message say so.
     """
     prepared = prepare(scene)
-    solution = prepared.solve()
     if prepared.scene.starts == 1:
-        return solution
+        return prepared.solve()
     from ribbonopt.starts.equilibria import equilibria  # few scenes ask for it
 
-    found = equilibria(prepared.posed(), solution, prepared.automatic, prepared.polish)
-    return of_starts(solution, found)
+    refuse_unreachable(prepared.posed())
+    first, failed = None, _no_start()
+    try:
+        first = prepared.solve()
+    except ConvergenceError as error:  # other starts may lead somewhere
+        failed = error
+    found = equilibria(prepared.posed(), first, prepared.automatic, prepared.polish)
+    if found is None:
+        raise failed
+    return of_starts(first, found)
 
 
 def prepare(scene: Scene) -> Prepared:

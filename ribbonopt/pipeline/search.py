@@ -10,64 +10,34 @@ phase assumes.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, field
-from functools import cached_property
+from dataclasses import dataclass
 
 import numpy as np
 
-from ribbonopt.arrays import Array
-from ribbonopt.attempt.attempt import Attempt
-from ribbonopt.attempt.ledger import Ledger
-from ribbonopt.attempt.structure import Structure
 from ribbonopt.checks.arcs import (
     MIXTURE,
     Arcs,
+    given_arcs,
     is_mixture,
     sign_changes,
     with_mixtures,
     without_empty,
 )
-from ribbonopt.guess import Guess
+from ribbonopt.guess import Guess, ShapeGuess
 from ribbonopt.guess.balanced import Balanced
 from ribbonopt.guess.flat import Flattened, nearly_flat
-from ribbonopt.mechanics.laws.smooth import sharpness
-from ribbonopt.problem import Posed
-from ribbonopt.scene import Scene
 from ribbonopt.solution.solution import Solution
 from ribbonopt.transcription import Mesh
 
-LABELLED = 1e-3  # delta of the sharpest smooth law that is shown in place of another
+from .intervals import intervals_for
+from .tried import Tried, bluntness
+
+COARSER = 3  # intervals of starts, of degree 3, to one of a scene
 
 
 @dataclass(eq=False)
-class Search:
-    """What has been tried on one scene.
-
-    Attributes
-    ----------
-    posed : Posed
-        What is asked.
-    structure : Structure
-        Its structure, which keeps those in several phases.
-    ledger : Ledger
-        Steps so far, with their cost.
-    smooth : list of Solution
-        Equilibria of the smooth law met on the way.
-    tried : set of tuples of int
-        Kinds of phases that sharper ones of these showed, and that led nowhere.
-    """
-
-    posed: Posed
-    structure: Structure
-    ledger: Ledger = field(default_factory=Ledger)
-    smooth: list[Solution] = field(default_factory=list)
-    tried: set[tuple[int, ...]] = field(default_factory=set)
-    last: Attempt | None = None
-
-    @cached_property
-    def plain(self) -> Attempt:
-        """The attempt without phases."""
-        return self._kept(self.structure.attempt(self.posed, self.ledger))
+class Search(Tried):
+    """The search on one scene: guess after guess."""
 
     def run(self, guess: Guess, *, quick: bool = False) -> bool:
         """Try a guess without phases, and in phases if m2 changes sign in what comes out.
@@ -80,6 +50,12 @@ class Search:
         if self.needs_phases and not isinstance(guess, Solution) and is_mixture(guess):
             if self.run_in(MIXTURE, Balanced(guess)):
                 return True
+        count = intervals_for(guess, self.posed.scene)
+        if count is not None:
+            self._take(Mesh.uniform(count))
+            # From shapes of many turns IPOPT takes long, and leads nowhere.
+            self.wound = quick = True
+            guess = guess.balanced() if isinstance(guess, ShapeGuess) else guess
         if not self.plain.run(guess, quick=quick, check=not self.phases_help):
             return False
         found = self._flattened(self.plain.best)
@@ -90,7 +66,7 @@ class Search:
     def run_in(self, arcs: Arcs, source: Guess, least: int = 0) -> bool:
         """Try a guess in phases, on `least` intervals or more; whether that succeeds."""
         structure = self.structure.in_phases(arcs.kinds)
-        mesh = structure.mesh(arcs.switches, least)
+        mesh = structure.mesh(arcs.switches, least, self._layers_of(source, arcs))
         attempt = structure.attempt(self.posed, self.ledger, mesh, arcs.switches)
         done = self._kept(attempt).run(source, quick=True)
         found = attempt.best
@@ -109,24 +85,30 @@ class Search:
         """
         sharpest = self.sharpest
         self.smooth.append(guess)
+        sharper = sharpest is not None and bluntness(guess) < bluntness(sharpest)
+        if guess.mesh.graded and not sharper:
+            # A layer that a uniform mesh of so few intervals would not see.
+            count, self.layered = self.posed.scene.transcription.intervals, True
+            count = max(count, len(guess.mesh.widths) // COARSER)
+            self._take(guess.mesh.resampled(count, np.empty(0)))
+        elif self.wound:
+            self._take(None)
+            self.wound = False
         if not self.phases_help:
             return self.plain.run(guess, quick=True)
         if sharpest is None:
             return self._in_given_phases(guess) or (
                 not self.jumps(guess) and self.run(guess, quick=True)
             )
-        sharp, blunt = sorted((guess, sharpest), key=_bluntness)
+        sharp, blunt = sorted((guess, sharpest), key=bluntness)
         if sharp is guess or len(self.smooth) == 2:
             every = list(with_mixtures(sharp, blunt))
             if sharp is guess and self.jumps(sharp):
                 every.append(sign_changes(sharp))
             for arcs in every:
-                if arcs.kinds in self.tried:
-                    continue
-                if arcs.kinds != MIXTURE.kinds:
-                    self.tried.add(arcs.kinds)
-                if self.run_in(*self._freed(arcs, sharp)):
+                if arcs.kinds not in self.tried and self.run_in(*self._freed(arcs, sharp)):
                     return True
+                self.tried |= {arcs.kinds} - {MIXTURE.kinds}
         return sharp is not guess and self.run(guess, quick=True)
 
     def run_all(self, guesses: Iterable[Guess]) -> bool:
@@ -143,71 +125,12 @@ class Search:
         # All that was spared to be quick.
         return first is not None and not self.needs_phases and self.run(first)
 
-    @property
-    def settled(self) -> bool:
-        """Whether there is a solution of the law that is asked for."""
-        best = self.best
-        return best is not None and best.verified and not self.smooth_instead
-
-    @property
-    def energy(self) -> float:
-        """Energy of the best solution (Dw = L = 1)."""
-        return np.inf if self.best is None else self.best.trajectory.energy
-
-    @property
-    def smooth_instead(self) -> list[Solution]:
-        """Equilibria of the smooth law, sharpest first, where none was found of one with phases."""
-        best = self.best
-        if best is None or not self.needs_phases:
-            return []
-        wrong = not best.verified or (self.jumps(best) and not best.sheets)
-        found = sorted(self.smooth, key=_bluntness) if wrong else []
-        return [smooth for smooth in found if _bluntness(smooth) >= LABELLED]
-
-    @property
-    def sharpest(self) -> Solution | None:
-        """The sharpest equilibrium of the smooth law that was met."""
-        return min(self.smooth, key=_bluntness, default=None)
-
-    def changes_sign(self, solution: Solution) -> bool:
-        """Whether m2 changes sign along a solution."""
-        return len(sign_changes(solution).kinds) > 1
-
-    def jumps(self, solution: Solution) -> bool:
-        """Whether the law's strains jump along a solution, so that it needs phases to be right."""
-        return self.needs_phases and self.changes_sign(solution)
-
-    @property
-    def needs_phases(self) -> bool:
-        """Whether no solver can be trusted without phases: the law's strains jump."""
-        return self.phases_help and not self.structure.ribbon.law.smooth
-
-    @property
-    def best(self) -> Solution | None:
-        """The solution in phases, or the best without."""
-        last = self.last or self.plain
-        return last.best if last.sheets and last.best and last.best.verified else self.plain.best
-
-    @property
-    def phases_help(self) -> bool:
-        """Whether phases are of use: not for smooth laws, nor in other formulations."""
-        scene = self.posed.scene
-        allowed = scene.formulation == "inverted" and scene.switching != "off"
-        return allowed and self.structure.ribbon.law.kinked
-
-    def on_mesh(
-        self, sheets: tuple[int, ...], mesh: Mesh, switches: Array | None = None
-    ) -> Attempt:
-        """Return the means to solve on a mesh, in the phases of a solution."""
-        structure = self.structure.in_phases(sheets)
-        return self._kept(structure.attempt(self.posed, self.ledger, mesh, switches))
-
     def _in_given_phases(self, source: Solution) -> bool:
         """Try the phases that a solution shows or the scene names; whether that succeeds."""
         if not self.phases_help:
             return False
         if isinstance(self.posed.scene.switching, tuple):
-            if self.run_in(_given(source, self.posed.scene), source):
+            if self.run_in(given_arcs(source, self.posed.scene), source):
                 return True
         arcs = sign_changes(source)
         return len(arcs.kinds) > 1 and self.run_in(arcs, source)
@@ -231,21 +154,8 @@ class Search:
                 self.plain = self._kept(attempt)
         return self.plain.best
 
-    def _kept(self, attempt: Attempt) -> Attempt:
-        self.last = attempt
-        return attempt
-
-
-def _bluntness(solution: Solution) -> float:
-    return sharpness(solution.posed.scene.law, 1.0)
-
-
-def _given(source: Solution, scene: Scene) -> Arcs:
-    """Phases that meet where a scene says, of alternating sign; `source` may have other units."""
-    assert isinstance(scene.switching, tuple)
-    start, end = scene.interval
-    switches = (np.array(scene.switching) - start) / (end - start)
-    s = source.scene.interval
-    middle = s[0] + (s[1] - s[0]) * switches[:1] / 2
-    first = 1 if source.outputs(middle)["m2"][0] > 0 else -1
-    return Arcs(tuple(first * (-1) ** i for i in range(len(switches) + 1)), switches)
+    def _layers_of(self, source: Guess, arcs: Arcs) -> Mesh | None:
+        """Mesh of a source that was graded to layers, where phases need that too."""
+        if not (self.layered and isinstance(source, Solution)) or len(arcs.kinds) == 1:
+            return None
+        return source.mesh if source.mesh.graded and not source.sheets else None

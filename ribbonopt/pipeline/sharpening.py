@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 from ribbonopt.guess import Guess
 from ribbonopt.mechanics.laws.smooth import in_family, sharpened
@@ -26,14 +26,20 @@ MESH = Collocation(scheme="gauss", degree=6, intervals=20)
 SOLVER = Newton(max_iterations=40)
 
 
-def with_sharper(guesses: Iterable[Guess], prepare: Callable[[Scene], Prepared]) -> Iterator[Guess]:
-    """Yield guesses, sharper equilibria behind the first one of a smooth law."""
-    done = False
-    for guess in guesses:
-        yield guess
-        if isinstance(guess, Solution) and in_family(guess.posed.scene.law) and not done:
-            done = True
-            yield from sharper(guess, prepare)
+def sharpening(
+    guesses: Callable[..., Iterable[Guess]], prepare: Callable[[Scene], Prepared]
+) -> Callable[..., Iterator[Guess]]:
+    """Return what gives the same guesses, sharper equilibria behind the first of a smooth law."""
+
+    def sharpened_guesses(**shape: Any) -> Iterator[Guess]:
+        done = False
+        for guess in guesses(**shape):
+            yield guess
+            if isinstance(guess, Solution) and in_family(guess.posed.scene.law) and not done:
+                done = True
+                yield from sharper(guess, prepare)
+
+    return sharpened_guesses
 
 
 def sharper(blunt: Solution, prepare: Callable[[Scene], Prepared]) -> Iterator[Solution]:

@@ -27,11 +27,13 @@ def of_finer_mesh(missed: Solution, found: Solution) -> Solution:
     return replace(found, fell_back=(*found.fell_back, words))
 
 
-def of_starts(first: Solution, found: Solution) -> Solution:
-    """Return the answer of several starts, with what became of the first of them."""
+def of_starts(first: Solution | None, found: Solution) -> Solution:
+    """Return the answer of several starts, with what became of the first of them, if anything."""
     if found is first:
         return found
     words = "the first start led nowhere: the answer is from another of the `starts`"
+    if first is None:
+        return replace(found, fell_back=tuple(dict.fromkeys((words, *found.fell_back))))
     lost = () if first.verified else (words,)
     told = dict.fromkeys((*first.fell_back, *lost, *found.fell_back))
     given_up = dict.fromkeys((*first.given_up, *found.given_up))

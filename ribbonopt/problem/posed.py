@@ -24,7 +24,7 @@ from ribbonopt.scene.units import Units, in_special_units, units_of
 #: force and moment at the start where they are not unknowns but follow from costates
 RECOVERED = tuple(f"recovered.{name}" for name in ("nx", "ny", "nz", "mx", "my", "mz"))
 
-NO_LOADS = Loads()
+NO_LOADS, SPECIAL = Loads(), Units()
 
 Place = tuple[Array, Array]  # position (3,) and frame (3, 3), lab
 
@@ -43,23 +43,27 @@ class Posed:
         What it prescribes at the ends, in the order of its file.
     loads : tuple of Load
         What acts along the ribbon.
+    units : Units
+        Units of the scene as it was given, in units Dw = L = 1.
     """
 
     given: Scene
     scene: Scene
     conditions: tuple[Condition, ...]
     loads: tuple[Load, ...]
+    units: Units = SPECIAL
 
     @classmethod
-    def of(cls, scene: Scene) -> Posed:
-        """Pose a scene."""
-        special = in_special_units(scene)
+    def of(cls, scene: Scene, units: Units | None = None) -> Posed:
+        """Pose a scene; in units of another one where they are to be compared number by number."""
+        units = units or units_of(scene)
+        special = in_special_units(scene, units)
         loads: tuple[Load, ...] = ()
         if special.loads != NO_LOADS:
             from ribbonopt.mechanics.loads.catalogue import loads_of  # few scenes have any
 
             loads = loads_of(special)
-        return cls(scene, special, conditions_of(special), loads)
+        return cls(scene, special, conditions_of(special), loads, units)
 
     def under(self, **changes: Any) -> Posed:
         """Return the same ribbon, at the same ends, under other settings of the special scene.
@@ -72,11 +76,6 @@ class Posed:
         if special.boundary.loop is not None and special.formulation != self.scene.formulation:
             conditions = conditions_of(special)  # a loop closes otherwise where energy is minimised
         return Posed(special, special, conditions, self.loads)
-
-    @cached_property
-    def units(self) -> Units:
-        """Units of the scene as it was given, in units Dw = L = 1."""
-        return units_of(self.given)
 
     @cached_property
     def theta(self) -> dict[str, float]:

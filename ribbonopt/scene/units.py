@@ -1,10 +1,12 @@
 """Units: SI where a scene says what its ribbon is made of, else Dw = L = 1 (section 2).
 
-All that is solved is solved in the special units Dw = L = 1. `in_special_units` is the only door
-to them: what it returns has no `ribbon`, so that it is a scene like any other, its units are 1, and
-to convert it again changes nothing. (`theta_of` refuses a scene that was not converted, `Solution`
-multiplies what comes out.) Only the text of an equation (`also`) cannot be divided by a unit: its
-quantities are SI inside too, by two parameters, `UNIT_LENGTH` and `UNIT_FORCE`, that no formula
+All that is solved is solved in the special units Dw = L = 1, where numbers are near one. A scene
+without a `ribbon` is in them, unless its interval or its law's stiffness is far from one: then its
+own length and stiffness are the units inside. `in_special_units` is the only door: what it returns
+has no `ribbon`, so that it is a scene like any other, its units are 1, and to convert it again
+changes nothing. (`theta_of` refuses a scene that was not converted, `Solution` multiplies what
+comes out.) Only the text of an equation (`also`) cannot be divided by a unit: its quantities are
+in those of the scene inside too, by two parameters, `UNIT_LENGTH` and `UNIT_FORCE`, that no formula
 can name.
 """
 
@@ -15,23 +17,28 @@ from dataclasses import dataclass, fields, is_dataclass, replace
 from typing import Any
 
 from .ends import Boundary, End
+from .laws import Kirchhoff, Law, OwnLaw
 from .loads import Loads
 from .model import Guess, LoadGuess, Reference, Scene, StrainGuess
 from .quantities import dimension
 
 UNIT_LENGTH, UNIT_FORCE = "units.length", "units.force"
+SHORT, LONG = 1e-2, 10.0  # lengths of intervals that need no other unit
+SOFT, STIFF = 1e-2, 1e2  # bending stiffnesses that need none
+BLEND = 4  # power of the size by which its unit goes over from 1 to the size itself
 
 
 @dataclass(frozen=True)
 class Units:
     """What 1 of the special units is worth: L and D w / L^2, and what follows from them.
 
-    `si` says whether that is in metres and newtons.
+    `si` says whether that is in metres and newtons, `stiffness` what the law's is divided by.
     """
 
     length: float = 1.0
     force: float = 1.0
     si: bool = False
+    stiffness: float = 1.0
 
     @property
     def moment(self) -> float:
@@ -55,23 +62,46 @@ class Units:
 
 
 def units_of(scene: Scene) -> Units:
-    """Return the units of a scene, 1 without a `ribbon`; D = E h^3 / (12 (1 - nu^2))."""
-    ribbon = scene.ribbon
+    """Return the units of a scene; D = E h^3 / (12 (1 - nu^2)) with a `ribbon`.
+
+    Without one they are 1 as long as sizes are near one. Laws and loads declared in Python have
+    their numbers in units Dw = L = 1, whatever the sizes.
+    """
+    ribbon, law = scene.ribbon, scene.law
+    stiffness = _unit(law.B2, SOFT, STIFF) if isinstance(law, Kirchhoff) else 1.0
     if ribbon is None:
-        return Units()
+        start, end = scene.interval
+        told = bool(scene.loads.own) or isinstance(law, OwnLaw)
+        length = 1.0 if told else _unit(end - start, SHORT, LONG)
+        return Units(length, stiffness / length**2, stiffness=stiffness)
     rigidity = ribbon.youngs_modulus * ribbon.thickness**3 / (12 * (1 - ribbon.poisson_ratio**2))
-    return Units(ribbon.length, rigidity * ribbon.width / ribbon.length**2, si=True)
+    force = stiffness * rigidity * ribbon.width / ribbon.length**2
+    return Units(ribbon.length, force, si=True, stiffness=stiffness)
 
 
-def in_special_units(scene: Scene) -> Scene:
-    """Return an equal scene in units Dw = L = 1, formulas evaluated; itself if it is in them."""
-    if scene.ribbon is None:
+def _unit(size: float, least: float, most: float) -> float:
+    """Return 1 for a size in a range, the size itself far off it, continuously from one to other.
+
+    What is left, the size over its unit, lies in the range.
+    """
+    if size < least:
+        return max((size / least) ** BLEND, size)
+    return min((size / most) ** BLEND, size) if size > most else 1.0
+
+
+def in_special_units(scene: Scene, units: Units | None = None) -> Scene:
+    """Return an equal scene in units Dw = L = 1, formulas evaluated; itself if it is in them.
+
+    `units` are those that count as 1 inside, if not the scene's own.
+    """
+    units, boundary, parameters = units or units_of(scene), scene.boundary, scene.parameters
+    if scene.ribbon is None and units == Units():
         return scene
-    units, boundary, parameters = units_of(scene), scene.boundary, scene.parameters
     (start, end), switches = scene.interval, scene.switching
     own = {UNIT_LENGTH: units.length, UNIT_FORCE: units.force} if boundary.also else {}
     return replace(
         scene,
+        law=_law(scene.law, units.stiffness),
         interval=(start / units.length, end / units.length),
         parameters=parameters | own,
         boundary=_boundary(boundary, units, parameters),
@@ -83,6 +113,13 @@ def in_special_units(scene: Scene) -> Scene:
         record={},
         continuation=None,
     )
+
+
+def _law(law: Law, stiffness: float) -> Law:
+    """Return a law of stiffnesses divided by a unit: those that have none are as they are."""
+    if stiffness == 1 or not isinstance(law, Kirchhoff):
+        return law
+    return replace(law, B2=law.B2 / stiffness, B3=law.B3 / stiffness)
 
 
 def _boundary(boundary: Boundary, units: Units, parameters: Mapping[str, float]) -> Boundary:

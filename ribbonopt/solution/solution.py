@@ -245,6 +245,6 @@ class Solution:
         return self.integral("u3") / (2 * np.pi)
 
     def _in_own_units(self, values: Mapping[str, Array]) -> dict[str, Array]:
-        if self.scene.ribbon is None:
+        if self.posed.given is self.posed.scene:
             return dict(values)
         return {name: value * self.units.of(name) for name, value in values.items()}

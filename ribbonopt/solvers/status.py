@@ -46,8 +46,8 @@ class Status(Enum):
         "or refine the mesh"
     )
     NO_START = (
-        "no equilibrium of the smooth law was found to start from, from any shape that fits the "
-        "ends: give a guess, or bring the ends to an easier place first"
+        "no equilibrium was found to start from, from any shape that fits the ends: give a guess, "
+        "or bring the ends to an easier place first"
     )
     REGULARIZED = (
         "no equilibrium of the law asked for was found that is valid everywhere; this is one of "

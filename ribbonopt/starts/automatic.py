@@ -10,8 +10,10 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
+
+import numpy as np
 
 from ribbonopt.attempt.ledger import Ledger
 from ribbonopt.attempt.structure import Structure
@@ -19,9 +21,16 @@ from ribbonopt.errors import ConvergenceError
 from ribbonopt.guess import Guess, ShapeGuess
 from ribbonopt.guess.shapes import Chord, Shape
 from ribbonopt.mechanics.laws.catalogue import capabilities
-from ribbonopt.mechanics.laws.smooth import ROD, first_law, in_family, sharpened, sharpness
+from ribbonopt.mechanics.laws.smooth import (
+    ROD,
+    first_law,
+    in_family,
+    named,
+    sharpened,
+    sharpness,
+)
 from ribbonopt.problem import Posed
-from ribbonopt.scene import Law
+from ribbonopt.scene import Law, Variational
 from ribbonopt.solution.solution import Solution
 
 from .energy import least_energy_of
@@ -31,7 +40,8 @@ from .loops import closed_posed, fundamental_scene
 from .unfold import unfolded
 
 FIRST, LAST = 0.3, 0.01  # delta of the first solve, and of the last unless the scene's is smaller
-AGAIN = 2  # how often the energy is minimised again where the path is lost
+STRAIGHT = 1e-6  # strains, Dw = L = 1
+AGAIN, SNAPS = 2, 6  # how often the energy is minimised again where the path is lost; of rods
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,14 +65,23 @@ class Automatic:
             yield from self._unfolded(posed, ledger)
             what = "the band unfolded from its fundamental piece led nowhere"
             ledger.fall_back("piece", f"{what}; it was started from the least energy of the whole")
+        # A law that is not smooth may refuse the last point and take an earlier one.
+        last = slice(-1, None) if in_family(posed.scene.law) else slice(None)
+        straight: list[Solution] = []
         for number, start in enumerate([shape] if shape else shapes_for(posed)):
             if number:
                 what = "shape that fits the ends" if number == 1 else "shapes that fit the ends"
                 first = f"the first {'' if number == 1 else f'{number} '}{what} led nowhere"
                 ledger.fall_back("shape", f"{first}; the automatic start went on from another")
             points = self._points(posed, start, ledger)
-            # A law that is not smooth may refuse the last point and take an earlier one.
-            yield from reversed(points[-1:] if in_family(posed.scene.law) else points)
+            if not points and not straight and isinstance(start, Chord) and start.straight:
+                # Far from where the energy began: its loads are brought on from none.
+                straight = self._from_straight(posed, replace(start, bow=0.0), ledger)
+                # What stays straight may be the top of a hill: other shapes come first.
+                points = straight if straight and _is_bent(straight[-1]) else []
+            yield from reversed(points[last])
+        if straight and not _is_bent(straight[-1]):
+            yield from reversed(straight[last])
 
     @cached_property
     def _energy(self) -> Structure:
@@ -96,19 +115,19 @@ class Automatic:
         last = sharpness(own, LAST)
         if isinstance(shape, Chord) and shape.straight and not _bends(posed, shape):
             # At this delta the law is linear: it can be bent from a straight ribbon.
-            rod = sharpened(law, ROD)
-            followed = self._follow(posed, rod, guess, last, ledger)
-            if not followed.points and not loaded(posed):
+            started = self._from_straight(posed, shape, ledger)
+            if not started and not loaded(posed):
                 raise ConvergenceError(
                     "the ribbon is straight and without stress: it cannot bend in its own plane, "
                     "so that the loads of its ends there are not determined; shorten or turn it, "
                     "if only a little",
                     "indeterminate",
                 )
-            return list(followed.points)
+            return started
         points: list[Solution] = []
         start: Guess = guess
-        for _ in range(1 + AGAIN):
+        # Rods soft in twist snap on their way, from one equilibrium to the next.
+        for _ in range(1 + (AGAIN if isinstance(law, Variational) else SNAPS)):
             least = self._least(posed, law, start, ledger)
             if not least.status.converged:
                 break
@@ -122,6 +141,12 @@ class Automatic:
             ledger.fall_back("path", f"{what}; it went on from the least energy there")
             law = sharpened(law, max(last, 0.6 * sharpness(start.scene.law, last)))
         return points
+
+    def _from_straight(self, posed: Posed, chord: Chord, ledger: Ledger) -> list[Solution]:
+        """Equilibria from a straight ribbon as its loads grow, under the law that is linear."""
+        rod = sharpened(first_law(posed.scene.law, FIRST), ROD)
+        last = sharpness(posed.scene.law, LAST)
+        return list(self._follow(posed, rod, ShapeGuess(chord), last, ledger).points)
 
     def _least(self, posed: Posed, law: Law, start: Guess, ledger: Ledger) -> Solution:
         """Least energy from a guess; worth nothing unless converged."""
@@ -152,5 +177,10 @@ def _bends(posed: Posed, chord: Chord) -> bool:
     return bool(posed.loads) or natural or compresses(posed, chord)
 
 
+def _is_bent(solution: Solution) -> bool:
+    """Whether a ribbon is not straight, as the smallest bow would not be."""
+    return bool(np.abs(solution.trajectory.at_stages["u"]).max() > STRAIGHT)
+
+
 def _delta(law: Law) -> str:
-    return f", delta = {sharpness(law, 0.0):.3g}" if in_family(law) else ""
+    return f", {named(law)}" if in_family(law) else ""

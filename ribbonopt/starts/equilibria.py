@@ -17,6 +17,7 @@ import numpy as np
 
 from ribbonopt.arrays import Array
 from ribbonopt.attempt.ledger import Ledger
+from ribbonopt.errors import ConvergenceError
 from ribbonopt.guess import Guess
 from ribbonopt.guess.named import shape_of
 from ribbonopt.guess.shapes import Chord, Perturbed, Shape
@@ -58,8 +59,11 @@ class _Described:
 
 
 def equilibria(
-    posed: Posed, first: Solution, automatic: Automatic, attempt: Callable[[Guess], Solution]
-) -> Solution:
+    posed: Posed,
+    first: Solution | None,
+    automatic: Automatic,
+    attempt: Callable[[Guess], Solution],
+) -> Solution | None:
     """Return the equilibrium of least energy, the other distinct ones as its `others`.
 
     Parameters
@@ -67,14 +71,14 @@ def equilibria(
     posed
         What is asked; `starts` and `seed` say how many starts, and which perturbations.
     first
-        What the first start gave; returned as it is where no start leads anywhere.
+        What the first start gave, if anything; returned as it is where no start leads anywhere.
     automatic
         The automatic start of this structure.
     attempt
         Solves from one guess.
     """
     started = time.perf_counter()
-    found = [first] if first.verified else []
+    found = [first] if first is not None and first.verified else []
     scene = posed.scene
     found += more_starts(posed, automatic, attempt, range(1, scene.starts))
     if not found:
@@ -84,8 +88,9 @@ def equilibria(
     count = len(lowest.others) + 1
     words = "1 equilibrium" if count == 1 else f"{count} equilibria"
     step = {"step": f"{scene.starts - 1} more starts: {words} in all", "seconds": seconds}
-    spent = {name: first.timings.get(name, 0.0) + seconds for name in ("rest", "total")}
-    timings = {**first.timings, **spent}
+    before = {} if first is None else first.timings
+    spent = {name: before.get(name, 0.0) + seconds for name in ("rest", "total")}
+    timings = {**before, **spent}
     return replace(lowest, steps=(*lowest.steps, step), timings=timings)
 
 
@@ -93,13 +98,24 @@ def more_starts(
     posed: Posed, automatic: Automatic, attempt: Callable[[Guess], Solution], numbers: range
 ) -> Iterator[Solution]:
     """Yield a verified solution of each start that leads to one; number 0 is the scene's own."""
-    ledger = Ledger()
     for shape in islice(_variants(posed), numbers.start - 1, numbers.stop - 1):
-        for guess in islice(automatic.guesses(posed, ledger, shape), TRIES):
-            solution = attempt(guess)
-            if solution.verified:
-                yield solution
-                break
+        try:
+            found = _from_shape(posed, automatic, attempt, shape)
+        except ConvergenceError:  # of this start: what others find is not lost
+            continue
+        if found is not None:
+            yield found
+
+
+def _from_shape(
+    posed: Posed, automatic: Automatic, attempt: Callable[[Guess], Solution], shape: Shape
+) -> Solution | None:
+    """Return a verified solution that a shape leads to, or None."""
+    for guess in islice(automatic.guesses(posed, Ledger(), shape), TRIES):
+        solution = attempt(guess)
+        if solution.verified:
+            return solution
+    return None
 
 
 def least(solutions: Sequence[Solution], kinds: Kinds | None = None) -> Solution:

@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import replace
 
 import numpy as np
 
 from ribbonopt.arrays import Array
-from ribbonopt.guess import FollowerLoads
+from ribbonopt.guess import FollowerLoads, IntegratedLoads
 from ribbonopt.guess.named import loop_shape
 from ribbonopt.guess.placing import place_ends
 from ribbonopt.guess.shapes import Chord, Shape
@@ -17,9 +17,11 @@ from ribbonopt.mechanics.ends.frames import DIRECTORS
 from ribbonopt.mechanics.ends.placement import LoadAlong
 from ribbonopt.mechanics.ends.winding import winding
 from ribbonopt.problem import Posed, Ribbon
+from ribbonopt.scene import LoadGuess
 
 from .loops import loop_of
 
+ACROSS = 1e-12  # cosine of a right angle
 SMALL_BOW = 0.3  # radians, for a strip that nothing shortens but a load
 
 
@@ -61,8 +63,12 @@ def loaded(posed: Posed) -> bool:
 
 
 def compresses(posed: Posed, chord: Chord) -> bool:
-    """Whether a dead force pushes the ends together: a straight strip may buckle under it."""
-    return bool(dead_force_of(posed) @ (chord.end[0] - chord.start[0]) < 0)
+    """Whether a dead force pushes the ends together: a straight strip may buckle under it.
+
+    A force across the strip, to rounding, does not.
+    """
+    force, along = dead_force_of(posed), chord.end[0] - chord.start[0]
+    return bool(force @ along < -ACROSS * np.linalg.norm(force) * np.linalg.norm(along))
 
 
 def dead_force_of(posed: Posed) -> Array:
@@ -76,17 +82,17 @@ def dead_force_of(posed: Posed) -> Array:
     return force
 
 
-def follower_loads(posed: Posed) -> FollowerLoads | None:
+def follower_loads(posed: Posed) -> FollowerLoads | IntegratedLoads | None:
     """Return the ribbon that known loads along the end's directors bend, if the start is clamped.
 
-    Loads that vanish are known in any frame.
+    Loads that vanish are known in any frame, and so is a moment without a force.
     """
     conditions = posed.conditions
     if posed.loads:
         return None  # what acts along the ribbon is known at its start only
     start = [c for c in conditions if getattr(c, "end", None) == "start"]
     clamped = any(isinstance(c, Frame) for c in start) and len(start) == 4
-    found = {}
+    found: dict[str, Array] = {}
     for quantity in ("force", "moment"):
         given = {
             c.axis: c.value
@@ -94,6 +100,8 @@ def follower_loads(posed: Posed) -> FollowerLoads | None:
             if isinstance(c, Component) and (c.end, c.quantity) == ("end", quantity)
         }
         zero = set(given) == set("xyz") and not any(given.values())
+        if quantity == "moment" and clamped and set(given) == set("xyz") and not zero:
+            return _rolled(posed, given) if not found["force"].any() else None
         if not zero and set(given) != set(DIRECTORS):
             return None
         found[quantity] = np.array(list(given.values()))
@@ -101,3 +109,10 @@ def follower_loads(posed: Posed) -> FollowerLoads | None:
         return None
     plain = posed.under(formulation="inverted", states="reduced")
     return FollowerLoads(Ribbon.of(plain), plain, found["force"], found["moment"])
+
+
+def _rolled(posed: Posed, moment: Mapping[str, float]) -> IntegratedLoads:
+    """Return the ribbon under a moment alone, lab frame, which is the same all along it."""
+    plain = posed.under(formulation="inverted", states="reduced")
+    x, y, z = (moment[axis] for axis in "xyz")
+    return IntegratedLoads(Ribbon.of(plain), plain, LoadGuess((0.0, 0.0, 0.0), (x, y, z)))

@@ -16,15 +16,23 @@ from ribbonopt.attempt.structure import Structure
 from ribbonopt.guess import Guess
 from ribbonopt.mechanics.laws.smooth import in_family, sharpened, sharpness
 from ribbonopt.problem import Posed
-from ribbonopt.scene import Collocation, Law, Newton
+from ribbonopt.scene import Collocation, Law, Newton, Variational
 from ribbonopt.solution.solution import Solution
 from ribbonopt.solvers import NewtonSolver, Status
+from ribbonopt.transcription import Mesh
+
+from .grading import graded_mesh, is_coarse
 
 MESH = Collocation(scheme="gauss", degree=3, intervals=30)
 SOLVER = Newton(tolerance=1e-8, max_iterations=30)
 NEAR = 0.05  # residual of the conditions, over 1 + size of the loads, that Newton may close at once
+HEAVY = 30.0  # size of loads, Dw = L = 1, beyond which they are brought on by factors
+FIRST_LOADS = 2.0  # size of loads that are brought on evenly before they grow by factors
+MOST_GROWTH, LEAST_GROWTH = 1.2, 0.02  # of the logarithm of a load in a step
+SURE = 12  # iterations after which a step has surely not left its branch
 LEAST_STEP = 1 / 64
 MOST_STEPS = 40
+SNAP_FACTOR = 0.7  # of a rod's ratio of stiffnesses, where to minimise its energy again
 FACTOR, LEAST_FACTOR = 0.33, 0.95  # delta from one step to the next, first and where to give up
 
 
@@ -64,18 +72,21 @@ class _Tracking:
         self.structure, self.posed, self.law = structure, posed, law
         self.steps = self.iterations = 0
         self.points: list[Solution] = []
+        self.mesh: Mesh | None = None
+        self.loads = 1.0  # share of the loads along the ribbon
         self.attempt = self._attempt(law)
-        assert isinstance(self.attempt.solver, NewtonSolver)  # as SOLVER says
-        self.newton = self.attempt.solver
         self.w = self.attempt.unknowns(guess)
 
     def bring_loads(self) -> bool:
         """Meet the conditions: at once where they nearly hold, else bit by bit."""
-        residuals = self.newton.system.residuals(self.w, self.attempt.p).conditions
+        residuals = self._conditions()
         _, _, constants = self.attempt.nlp.layout.unpack(self.w)
         off = float(np.abs(residuals).max()) / (1 + float(np.abs(constants).max(initial=0.0)))
         if off < NEAR and self._step(self.law, None):
             return self._keep()
+        size = max(float(np.abs(residuals).max()), self._along())
+        if size > HEAVY:
+            return self._bring_heavy(size)
         share, step = 0.0, 0.25
         if not self._step(self.law, residuals):
             return False
@@ -89,6 +100,42 @@ class _Tracking:
                 return False
         return self._keep()
 
+    def _bring_heavy(self, size: float) -> bool:
+        """Bring on loads far larger than one: their size grows by factors, and meshes follow."""
+        self.loads = 0.0
+        self.attempt = self._attempt(self.law)
+        residuals = self._conditions()
+        # Evenly at first, then by factors: first buckling is at a few units of load.
+        last = float(np.arcsinh(size / FIRST_LOADS))
+        at, step = 0.0, 0.5
+        while at < last:
+            following = min(last, at + step)
+            self.loads = FIRST_LOADS * float(np.sinh(following)) / size if following < last else 1.0
+            before, w = self.iterations, self.w
+            self.attempt = self._attempt(self.law)
+            done = self._step(self.law, (1 - self.loads) * residuals)
+            if done and self.iterations - before <= SURE:
+                at, step = following, min(step * _growth(self.iterations - before), MOST_GROWTH)
+                self._regrade()
+                continue
+            # After many iterations it may be another equilibrium: not what grew from before.
+            self.w, step = w, step / 3
+            if step < LEAST_GROWTH or self.steps > 2 * MOST_STEPS:
+                return False
+        return self._step(self.law, None) and self._keep()
+
+    def _along(self) -> float:
+        """Return the size of dead loads along the ribbon, as a force."""
+        numbers = [load.numbers().values() for load in self.posed.loads if load.dead]
+        return self.posed.length * max((abs(v) for some in numbers for v in some), default=0.0)
+
+    def _regrade(self) -> None:
+        """Move the nodes to where the ribbon bends now."""
+        solution = self.attempt.restored(self.w)
+        self.mesh = graded_mesh(solution, MESH.intervals)
+        self.attempt = self._attempt(self.law)
+        self.w = self.attempt.unknowns(solution)
+
     def bring_down(self, target: float) -> bool:
         """Follow the smooth family to a smaller delta; other laws stay as they are."""
         factor = FACTOR
@@ -97,15 +144,25 @@ class _Tracking:
             if self._step(law, None):
                 self.law, factor = law, max(0.1, factor**2)
                 self._keep()
+                if is_coarse(self.points[-1]):
+                    self._regrade()
                 continue
             factor = float(np.sqrt(factor))
-            if factor > LEAST_FACTOR or self.steps > MOST_STEPS:
+            if (
+                factor > (LEAST_FACTOR if isinstance(law, Variational) else SNAP_FACTOR)
+                or self.steps > MOST_STEPS
+            ):
                 return False
         return True
 
+    def _conditions(self) -> Array:
+        """Residuals of the conditions at the ends."""
+        found: Array = _newton(self.attempt).system.residuals(self.w, self.attempt.p).conditions
+        return found
+
     def _step(self, law: Law, relaxed: Array | None) -> bool:
         attempt = self.attempt if law is self.law else self._attempt(law)
-        report = self.newton.solve(self.w, attempt.p, relaxed)
+        report = _newton(attempt).solve(self.w, attempt.p, relaxed)
         self.steps += 1
         self.iterations += report.iterations
         if report.status is not Status.CONVERGED:
@@ -118,4 +175,19 @@ class _Tracking:
         return True
 
     def _attempt(self, law: Law) -> Attempt:
-        return self.structure.attempt(smooth_of(self.posed, law))
+        attempt = self.structure.attempt(smooth_of(self.posed, law), mesh=self.mesh)
+        if self.loads < 1:
+            names = {name for load in self.posed.loads if load.dead for name in load.numbers()}
+            for i, name in enumerate(attempt.problem.parameter_names):
+                attempt.p[i] *= self.loads if name in names else 1.0
+        return attempt
+
+
+def _newton(attempt: Attempt) -> NewtonSolver:
+    assert isinstance(attempt.solver, NewtonSolver)  # as SOLVER says
+    return attempt.solver
+
+
+def _growth(iterations: int) -> float:
+    """Return by what to multiply a step after one that took some iterations."""
+    return float(np.clip(2.5 - 0.1 * iterations, 0.7, 2.0))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 
@@ -32,6 +33,27 @@ class Mesh:
         if min(counts) < 1:
             raise TranscriptionError(f"number of intervals: found {min(counts)}, expected >= 1")
         return cls(tuple(np.full(n, 1 / n) for n in counts))
+
+    @property
+    def graded(self) -> bool:
+        """Whether elements of a phase differ in width."""
+        return any(np.ptp(widths) > 1e-9 * widths.max() for widths in self.phases)
+
+    def resampled(self, count: int, switches: Array, least: int = 1) -> Mesh:
+        """Return a mesh of about `count` elements, graded alike, in phases that meet elsewhere.
+
+        `switches` (k,) are fractions of the length, as the one phase of this mesh has it; no phase
+        has fewer than `least` elements.
+        """
+        (widths,) = self.phases
+        nodes = np.append(0.0, np.cumsum(widths) / widths.sum())
+        order = np.arange(len(nodes)) * count / len(widths)
+        ends = np.interp(np.concatenate([[0.0], switches, [1.0]]), nodes, order)
+        phases = []
+        for a, b in pairwise(ends):
+            inner = np.interp(np.linspace(a, b, max(least, round(b - a)) + 1), order, nodes)
+            phases.append(np.diff(inner) / (inner[-1] - inner[0]))
+        return Mesh(tuple(phases))
 
     @property
     def elements(self) -> tuple[int, ...]:

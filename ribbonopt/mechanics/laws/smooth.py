@@ -1,19 +1,30 @@
-"""The smooth laws that a start goes through: convex energies, from blunt to as sharp as wanted."""
+"""The smooth laws that a start goes through: convex energies, from blunt to as sharp as wanted.
+
+For ribbons the variational law, delta decreasing from a rod's; for rods much softer or stiffer in
+twist than in bending, other rods, from a ratio of stiffnesses that is easy. Sharpness is a number
+from 1, easy, towards 0: delta, or the smaller stiffness over the larger.
+"""
 
 from __future__ import annotations
 
-from ribbonopt.scene import Law, Variational
+from dataclasses import replace
+
+from ribbonopt.scene import Kirchhoff, Law, Variational
 
 from .catalogue import capabilities
 
 ROD = 1.0  # delta at which the law is linear
+UNEVEN = 0.1  # ratio of a rod's stiffnesses below which it is approached from there
 
 
 def first_law(law: Law, delta: float) -> Law:
     """Return the smooth law to begin with: the law itself where its energy is smooth at m = 0.
 
-    Otherwise the variational law, at `delta` or, where that is the law, at its own if larger.
+    Of rods that are too uneven a more even one. Otherwise the variational law, at `delta` or, where
+    that is the law, at its own if larger.
     """
+    if isinstance(law, Kirchhoff):
+        return sharpened(law, UNEVEN)
     found = capabilities(law)
     if found.linear_at_zero and found.variational:
         return law
@@ -21,15 +32,35 @@ def first_law(law: Law, delta: float) -> Law:
 
 
 def sharpness(law: Law, other: float) -> float:
-    """Return delta of a law of the smooth family, `other` of any other law."""
-    return law.delta if isinstance(law, Variational) else other
+    """Return delta of a smooth law, the ratio of an uneven rod, `other` of any other law."""
+    if isinstance(law, Variational):
+        return law.delta
+    return _ratio(law) if isinstance(law, Kirchhoff) and in_family(law) else other
 
 
 def in_family(law: Law) -> bool:
-    """Whether a law is of the smooth family, so that it has a delta to follow."""
-    return isinstance(law, Variational)
+    """Whether a law is one of a family of smooth laws, so that it has a sharpness to follow."""
+    return isinstance(law, Variational) or (
+        isinstance(law, Kirchhoff) and _ratio(law) <= UNEVEN * (1 + 1e-9)
+    )
 
 
-def sharpened(law: Law, delta: float) -> Law:
-    """Return a law of the smooth family at another delta; any other law as it is."""
-    return Variational(delta=delta) if in_family(law) else law
+def sharpened(law: Law, to: float) -> Law:
+    """Return a law of a smooth family at another sharpness; any other law as it is."""
+    if isinstance(law, Variational):
+        return Variational(delta=to)
+    if not isinstance(law, Kirchhoff) or not in_family(law):
+        return law
+    ratio = min(to, UNEVEN)
+    return replace(law, B3=law.B2 * (ratio if law.B3 < law.B2 else 1 / ratio))
+
+
+def named(law: Law) -> str:
+    """Return the sharpness of a law in words, for a report; nothing of laws that have none."""
+    if isinstance(law, Variational):
+        return f"delta = {law.delta:.3g}"
+    return f"B3 / B2 = {law.B3 / law.B2:.3g}" if isinstance(law, Kirchhoff) else ""
+
+
+def _ratio(law: Kirchhoff) -> float:
+    return min(law.B2, law.B3) / max(law.B2, law.B3)

@@ -17,6 +17,7 @@ from ribbonopt.pipeline.prepared import Prepared, prepare
 from ribbonopt.scene import Scene
 from ribbonopt.scene.lens import value_at
 from ribbonopt.scene.stages import stages_of
+from ribbonopt.scene.units import units_of
 from ribbonopt.solution.solution import Solution
 
 from .curve import Curve
@@ -53,8 +54,10 @@ class Continuation:
             )
         first, before = Curve(scene, self.stages[0]), scene
         self.prepared = prepared or prepare(first.scene_at(first.start))
+        # The same along all stages, however long or stiff the ribbon becomes.
+        self._units = None if scene.ribbon is not None else units_of(first.scene_at(first.start))
         for stage in self.stages:
-            curve = Curve(before, stage)
+            curve = Curve(before, stage, self._units)
             refuse_idle(curve, self.prepared.problem)
             before = curve.scene_at(curve.goals[-1])
         if not self.prepared.problem.square:
@@ -78,7 +81,7 @@ class Continuation:
         given = given[stage] if isinstance(given, tuple) else given
         if given is not None and given.from_ is None and given.values is None:
             found = replace(found, from_=value_at(scene, found.parameter))
-        return Curve(scene, found)
+        return Curve(scene, found, self._units)
 
     def resume(self, history: History[Solution]) -> Iterator[Point[Solution]]:
         """Go on where a history ends, as if there had been no break."""

@@ -12,6 +12,7 @@ from ribbonopt.arrays import Array
 from ribbonopt.problem import BoundaryValueProblem, Posed
 from ribbonopt.scene import ContinuationStage, Scene
 from ribbonopt.scene.lens import with_value
+from ribbonopt.scene.units import Units
 from ribbonopt.solution.solution import Solution
 from ribbonopt.solvers.extended import Line
 
@@ -30,10 +31,13 @@ class Curve:
         The scene, in the user's units.
     stage : ContinuationStage
         What is continued; `from_` is given.
+    units : Units or None
+        What counts as 1 inside, all along the curve; None for what each scene says.
     """
 
     scene: Scene
     stage: ContinuationStage
+    units: Units | None = None
     _posed: dict[float, Posed] = field(default_factory=dict)
 
     @property
@@ -149,5 +153,5 @@ class Curve:
                 self._posed.pop(next(iter(self._posed)))
             scene = with_value(self.scene, self.stage.parameter, self.value(position))
             scene = replace(scene, continuation=None)
-            self._posed[position] = Posed.of(scene)
+            self._posed[position] = Posed.of(scene, self.units)
         return self._posed[position]

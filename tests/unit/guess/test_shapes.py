@@ -453,7 +453,12 @@ def test_only_loads_that_follow_the_end_of_a_clamped_ribbon_are_known_beforehand
     follower = AnyVector(d1=0, d2=1, d3=0)
     assert follower_loads(Posed.of(scene(CLAMP, End("free")))) is None  # nothing to integrate
     assert follower_loads(Posed.of(scene(CLAMP, End("free", force=(0, 0, 1))))) is None  # dead
-    assert follower_loads(Posed.of(scene(CLAMP, End("free", moment=(0, 0, 1))))) is None
+    both = End("free", force=(0, 0, 1), moment=(0, 1, 0))
+    assert follower_loads(Posed.of(scene(CLAMP, both))) is None
+    # Without a force the moment is the same all along the ribbon.
+    alone = follower_loads(Posed.of(scene(CLAMP, End("free", moment=(0, 1, 0)))))
+    assert alone is not None
+    np.testing.assert_allclose(alone.fields(np.linspace(0, 1, 5)).m, [[0, 1, 0]] * 5, atol=1e-12)
     assert follower_loads(Posed.of(scene(CLAMP, End("free", moment=follower)))) is not None
     assert follower_loads(Posed.of(scene(End("free", moment=follower), CLAMP))) is None
 

@@ -1,0 +1,129 @@
+"""What has been tried on one scene, and what is to be thought of it."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass, field
+from functools import cached_property
+
+import numpy as np
+
+from ribbonopt.arrays import Array
+from ribbonopt.attempt.attempt import Attempt
+from ribbonopt.attempt.ledger import Ledger
+from ribbonopt.attempt.structure import Structure
+from ribbonopt.checks.arcs import sign_changes
+from ribbonopt.mechanics.laws.smooth import sharpness
+from ribbonopt.problem import Posed
+from ribbonopt.solution.solution import Solution
+from ribbonopt.transcription import Mesh
+
+LABELLED = 1e-3  # delta of the sharpest smooth law that is shown in place of another
+
+
+@dataclass(eq=False)
+class Tried:
+    """What has been tried on one scene.
+
+    Attributes
+    ----------
+    posed : Posed
+        What is asked.
+    structure : Structure
+        Its structure, which keeps those in several phases.
+    ledger : Ledger
+        Steps so far, with their cost.
+    smooth : list of Solution
+        Equilibria of the smooth law met on the way.
+    tried : set of tuples of int
+        Kinds of phases that sharper ones of these showed, and that led nowhere.
+    layered : bool
+        Whether these needed a graded mesh, so that what starts from them does.
+    wound : bool
+        Whether the last guess had so many turns that it needed more intervals.
+    """
+
+    posed: Posed
+    structure: Structure
+    ledger: Ledger = field(default_factory=Ledger)
+    smooth: list[Solution] = field(default_factory=list)
+    tried: set[tuple[int, ...]] = field(default_factory=set)
+    last: Attempt | None = None
+    layered: bool = False
+    wound: bool = False
+
+    @cached_property
+    def plain(self) -> Attempt:
+        """The attempt without phases."""
+        return self._kept(self.structure.attempt(self.posed, self.ledger))
+
+    @property
+    def settled(self) -> bool:
+        """Whether there is a solution of the law that is asked for."""
+        best = self.best
+        return best is not None and best.verified and not self.smooth_instead
+
+    @property
+    def energy(self) -> float:
+        """Energy of the best solution (Dw = L = 1)."""
+        return np.inf if self.best is None else self.best.trajectory.energy
+
+    @property
+    def smooth_instead(self) -> list[Solution]:
+        """Equilibria of the smooth law, sharpest first, where none was found of one with phases."""
+        best = self.best
+        if best is None or not self.needs_phases:
+            return []
+        wrong = not best.verified or (self.jumps(best) and not best.sheets)
+        found = sorted(self.smooth, key=bluntness) if wrong else []
+        return [smooth for smooth in found if bluntness(smooth) >= LABELLED]
+
+    @property
+    def sharpest(self) -> Solution | None:
+        """The sharpest equilibrium of the smooth law that was met."""
+        return min(self.smooth, key=bluntness, default=None)
+
+    def changes_sign(self, solution: Solution) -> bool:
+        """Whether m2 changes sign along a solution."""
+        return len(sign_changes(solution).kinds) > 1
+
+    def jumps(self, solution: Solution) -> bool:
+        """Whether the law's strains jump along a solution, so that it needs phases to be right."""
+        return self.needs_phases and self.changes_sign(solution)
+
+    @property
+    def needs_phases(self) -> bool:
+        """Whether no solver can be trusted without phases: the law's strains jump."""
+        return self.phases_help and not self.structure.ribbon.law.smooth
+
+    @property
+    def best(self) -> Solution | None:
+        """The solution in phases, or the best without."""
+        last = self.last or self.plain
+        return last.best if last.sheets and last.best and last.best.verified else self.plain.best
+
+    @property
+    def phases_help(self) -> bool:
+        """Whether phases are of use: not for smooth laws, nor in other formulations."""
+        scene = self.posed.scene
+        allowed = scene.formulation == "inverted" and scene.switching != "off"
+        return allowed and self.structure.ribbon.law.kinked
+
+    def on_mesh(
+        self, sheets: tuple[int, ...], mesh: Mesh, switches: Array | None = None
+    ) -> Attempt:
+        """Return the means to solve on a mesh, in the phases of a solution."""
+        structure = self.structure.in_phases(sheets)
+        return self._kept(structure.attempt(self.posed, self.ledger, mesh, switches))
+
+    def _take(self, mesh: Mesh | None) -> None:
+        """Begin anew without phases, on a mesh or that of the scene."""
+        self.plain = self._kept(self.structure.attempt(self.posed, self.ledger, mesh))
+
+    def _kept(self, attempt: Attempt) -> Attempt:
+        self.last = attempt
+        return attempt
+
+
+def bluntness(solution: Solution) -> float:
+    """Return delta of the smooth law of a solution, 1 for any other law."""
+    return sharpness(solution.posed.scene.law, 1.0)
