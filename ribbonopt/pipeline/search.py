@@ -26,6 +26,7 @@ from ribbonopt.scene import Scene, Shooting
 from ribbonopt.solution.solution import Solution
 from ribbonopt.transcription import Mesh
 
+EACH, FEW_TURNS = 3.0, 20.0  # radians: to an interval; in all, for which any mesh is left alone
 COARSER = 3  # intervals of starts, of degree 3, to one of a scene
 
 
@@ -171,9 +172,10 @@ class Search:
         """
         settings = self.posed.scene.transcription
         steps = settings.steps if isinstance(settings, Shooting) else 1
-        each = steps * max(1.0, settings.degree / 2)
-        turning = turning_of(guess, each * settings.intervals)
-        if turning <= each * settings.intervals:
+        each = EACH * steps
+        enough = max(FEW_TURNS, each * settings.intervals)
+        turning = turning_of(guess, enough)
+        if turning <= enough:
             return None
         # Finer than just enough: a coarse mesh has equilibria of its own near by.
         self._take(Mesh.uniform(int(np.ceil(2 * turning / each))))
