@@ -23,13 +23,15 @@ from ribbonopt.solution.solution import Solution
 from ribbonopt.solution.trajectory import Trajectory
 from ribbonopt.solvers.condense import CondensedSystem
 
-from .gaps import LEAST, gaps_at_nodes, gaps_between
-from .layers import Layers, layers, overlooked
+from .gaps import LEAST, RESOLVED, gaps_at_nodes, gaps_between
+from .layers import Layers, clear_of, layers, overlooked
 
 UNIT = 3e-16  # local error by rounding alone
 SAFETY = 4.0  # bar over estimate: what the next better scheme itself may miss
 DOUBTFUL = 3.0  # times the difference of the schemes, from which on errors are not known,
 SMALL = 1e-4  # unless they are smaller than this all the same
+BLURRED = 1e-14  # of the length: by how much rounding moves a layer, over that by which it may
+USUAL = 1e-8  # tolerance of scenes that have none
 QUIET = 1e-12  # local errors that are rounding
 
 
@@ -82,7 +84,7 @@ def analyse(
     known = solution.trajectory.found
     if Analysis not in known:
         # Refinement, rows and summaries ask one after the other; none but the first for factors.
-        found = _analysed(solution.trajectory, near, keep)
+        found = _analysed(solution, near, keep)
         known[Analysis] = replace(found, factors=None)
         return found
     analysis: Analysis = known[Analysis]
@@ -101,7 +103,8 @@ def estimate_error(solution: Solution) -> dict[str, float]:
     quantity = {"n0": "n", "m0": "m", "u0": "u", "u": "u", "H0": "H", "energy": "m"}
     found = analyse(solution)
     bar = SAFETY if found.known else math.nan
-    return {name: bar * units.of(quantity.get(name, "")) * e for name, e in found.errors.items()}
+    errors = {name: error for name, error in found.errors.items() if name != RESOLVED}
+    return {name: bar * units.of(quantity.get(name, "")) * e for name, e in errors.items()}
 
 
 def relative_error(solution: Solution) -> tuple[float, str]:
@@ -109,7 +112,8 @@ def relative_error(solution: Solution) -> tuple[float, str]:
 
     Loads are measured by the larger of force times length and moment, H by that and itself, strains
     by the largest along the ribbon, states by the length. Next to a straight ribbon without stress
-    errors count absolutely: there is nothing that they could be relative to.
+    errors count absolutely: there is nothing that they could be relative to. Strains do not count
+    in layers so thin, for the tolerance, that rounding moves them: they are jumps.
     """
     found = analyse(solution)
     error, worst = _worst(found.errors, found.sizes)
@@ -123,7 +127,8 @@ def _worst(errors: Mapping[str, float], sizes: Mapping[str, float]) -> tuple[flo
     return relative[worst], worst
 
 
-def _analysed(trajectory: Trajectory, near: CondensedSystem | None, keep: bool) -> Analysis:
+def _analysed(solution: Solution, near: CondensedSystem | None, keep: bool) -> Analysis:
+    trajectory, tolerance = solution.trajectory, solution.posed.scene.tolerance or USUAL
     dense = trajectory.dense
     finer, split = dense.refined()
     blocks, w, p = finer.blocks, finer.w, finer.p
@@ -137,16 +142,17 @@ def _analysed(trajectory: Trajectory, near: CondensedSystem | None, keep: bool) 
     size = np.maximum(np.abs(dense.at_nodes).max(axis=0), 1.0)
     local = np.abs(residuals.nodes / size).max(axis=1).reshape(-1, split).sum(axis=1)
     near_by = tuple(layers(trajectory, i) for i in range(len(trajectory.problem.phases)))
-    errors, sizes = gaps_at_nodes(trajectory, better, split), _sizes(trajectory)
+    clear = clear_of(trajectory, near_by, BLURRED / tolerance)
+    errors, sizes = gaps_at_nodes(trajectory, better, split, clear), _sizes(trajectory)
     witnessed = np.maximum(_witness(better, split), overlooked(trajectory, near_by))
     local, doubt = _more(local, witnessed)
     # Rounding of one element counts as its local error does.
     more = doubt * (1 + len(local) * UNIT / float(local.sum()))
     errors = {name: error * more for name, error in errors.items()}
     # Between the nodes the output starts from the node before, with the error of that element.
-    states, strains, inside = gaps_between(trajectory, better, near_by)
-    errors["states"] = max(errors["states"], float(local.max()), states)
-    errors["u"] = max(errors["u"], strains)
+    more_inside, inside = gaps_between(trajectory, better, near_by, clear)
+    errors |= {name: max(errors[name], gap) for name, gap in more_inside.items()}
+    errors["states"] = max(errors["states"], float(local.max()))
     kept = factors if keep else None
     known = doubt <= DOUBTFUL or _worst(errors, sizes)[0] <= SMALL
     return Analysis(better, local, inside, errors, sizes, more, known, near_by, kept)
@@ -183,5 +189,5 @@ def _sizes(trajectory: Trajectory) -> dict[str, float]:
         "H0": max(loads, abs(float(start["H"][0]))),
         "energy": abs(trajectory.energy),
         "states": 1.0,
-        "u": strains,
+        RESOLVED: strains,
     }

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,11 +13,20 @@ from ribbonopt.solution.trajectory import Trajectory
 from .layers import Layers, between
 
 ROUNDING = 1e-15
+RESOLVED = "u, layers apart"  # strains but in layers so thin that rounding moves them
 LEAST = 1e-3  # size of an answer, Dw = L = 1, below which its error counts absolutely
 
 
-def gaps_at_nodes(trajectory: Trajectory, better: Trajectory, split: int) -> dict[str, float]:
-    """Differences of the answers, none below rounding; `better` has elements split in parts."""
+def gaps_at_nodes(
+    trajectory: Trajectory,
+    better: Trajectory,
+    split: int,
+    clear: Callable[[Array], NDArray[np.bool_]],
+) -> dict[str, float]:
+    """Differences of the answers, none below rounding.
+
+    `better` has elements split in parts; `clear` says which fractions are in no thin layer.
+    """
     ours = trajectory.at_nodes
     theirs = {name: values[::split] for name, values in better.at_nodes.items()}
     errors = {f"{name}0": _gap(theirs[name][0], ours[name][0]) for name in ("n", "m", "u")}
@@ -27,26 +36,33 @@ def gaps_at_nodes(trajectory: Trajectory, better: Trajectory, split: int) -> dic
     along = {name: ours[name] for name in ("r", "d1", "d2", "d3", "u")}
     if len(trajectory.ends) > 2:
         along = _shifted(trajectory, better.nodes[::split])
-    same = _same_side(ours, theirs)
-    strains = _gap(theirs["u"][same], along.pop("u")[same])
-    return errors | {"states": max(_gap(theirs[k], along[k]) for k in along), "u": strains}
+    same, u = _same_side(ours, theirs), along.pop("u")
+    errors |= {"states": max(_gap(theirs[k], along[k]) for k in along)}
+    for name, rows in (("u", same), (RESOLVED, same & clear(trajectory.nodes))):
+        errors[name] = _gap(theirs["u"][rows], u[rows])
+    return errors
 
 
 def gaps_between(
-    trajectory: Trajectory, better: Trajectory, near_by: tuple[Layers, ...]
-) -> tuple[float, float, Array]:
+    trajectory: Trajectory,
+    better: Trajectory,
+    near_by: tuple[Layers, ...],
+    clear: Callable[[Array], NDArray[np.bool_]],
+) -> tuple[dict[str, float], Array]:
     """Errors of states and strains inside elements, and each element's (N,), relative."""
     result = np.zeros(len(trajectory.nodes) - 1)
     fractions, elements = between(trajectory, near_by)
     if not len(fractions):
-        return 0.0, 0.0, result
+        return {}, result
     ours, theirs = (t.outputs(fractions) for t in (trajectory, better))
     gaps = {k: np.abs(theirs[k] - ours[k]).max(axis=1) for k in ("r", "d1", "d2", "d3", "u")}
     strains = np.where(_same_side(ours, theirs), gaps.pop("u"), 0.0)
     states = np.max(list(gaps.values()), axis=0)
     size = max(float(np.abs(ours["u"]).max()), LEAST)
-    np.maximum.at(result, elements, np.maximum(states, strains / size))
-    return float(states.max()), float(strains.max()), result
+    resolved = np.where(clear(fractions), strains, 0.0)
+    np.maximum.at(result, elements, np.maximum(states, resolved / size))
+    found = {"states": states, "u": strains, RESOLVED: resolved}
+    return {name: float(values.max()) for name, values in found.items()}, result
 
 
 def _shifted(trajectory: Trajectory, nodes: Array) -> dict[str, Array]:

@@ -8,6 +8,7 @@ from each pair of neighbouring stages, in the complex plane, says where on this 
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -22,6 +23,8 @@ SHARE = 0.1  # of a change of strains that a step over it may cost
 BESIDE = 0.3  # steps between stages, by which the nearest pair may miss a singularity
 NEAR = 4.0  # ellipse of an element between whose nodes errors may be larger than at them
 WATCHED = 1.0  # exponent of an element, from which on it is looked at between its nodes
+FADED = 10.0  # how much less than it may a layer shows where strains count again
+FAINT = 1e-6  # of the largest change of strains: what is no layer
 THINNEST = 1e-12  # of a phase: distance to a singularity that counts as none
 
 Complex = NDArray[np.complex128]
@@ -68,7 +71,8 @@ class Layers:
         larger = (self.sizes * depth / target) ** (1 / (order + 1))
         larger = np.maximum(larger, seen(degree))
         distance = np.maximum(np.abs(positions[:, None] - self.places), THINNEST)
-        return np.asarray((4 * distance / (larger - 1 / larger)).min(axis=1))
+        widths = 4 * distance / (larger - 1 / larger)
+        return np.asarray(np.where(self.sizes > target, widths, np.inf).min(axis=1))
 
 
 def seen(degree: int) -> float:
@@ -102,9 +106,38 @@ def layers(trajectory: Trajectory, phase: int) -> Layers:
     near[0] |= ahead.real[0] < 0
     near[-1] |= ahead.real[-1] > 1
     at = np.clip(np.searchsorted(nodes, sigma[:-1], side="right") - 1, 0, len(widths) - 1)
-    near &= (np.abs(offset) <= REACH * widths[at][:, None]) & (sizes > 0) & (step > 0)
+    near &= (np.abs(offset) <= REACH * widths[at][:, None]) & (step > 0)
+    # In a moment that fades away everything is near to zero, and of no account.
+    near &= sizes > FAINT * rows[:, :, 2].max()
     stage, which = np.nonzero(near)
     return Layers(sigma[stage] + offset[stage, which], sizes[stage, which])
+
+
+def clear_of(
+    trajectory: Trajectory, found: tuple[Layers, ...], thin: float
+) -> Callable[[Array], NDArray[np.bool_]]:
+    """Return what tells which fractions (k,) of the length are outside layers thinner than `thin`.
+
+    What rounding does to the place of such a layer is more than strains in it can bear.
+    """
+    places, depths = [], []
+    for a, b, near in zip(trajectory.ends[:-1], trajectory.ends[1:], found, strict=True):
+        z = near.places
+        beyond = np.maximum(np.maximum(-z.real, z.real - 1), 0.0)
+        depths.append((b - a) * np.hypot(beyond, z.imag))
+        places.append(a + (b - a) * z.real)
+    depth, place = np.concatenate(depths), np.concatenate(places)
+    depth, place = depth[depth < thin], place[depth < thin]
+
+    def clear(fractions: Array) -> NDArray[np.bool_]:
+        if not len(depth):
+            return np.ones(len(fractions), bool)
+        # Beside it strains change by its depth over the square of the distance.
+        reach = np.sqrt(FADED * np.maximum(depth, THINNEST) * thin)
+        away = np.abs(fractions[:, None] - place) > reach
+        return np.asarray(away.all(axis=1))
+
+    return clear
 
 
 def between(trajectory: Trajectory, found: tuple[Layers, ...]) -> tuple[Array, NDArray[np.intp]]:

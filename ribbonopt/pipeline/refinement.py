@@ -83,7 +83,7 @@ def refine(
         if error <= tolerance:
             done = solution if solution is first else verified(solution, ribbon)
             return replace(done, steps=tuple(steps))
-        if _is_rounding(solution, tolerance):
+        if error > SLOW * before and _is_rounding(solution, tolerance):
             status = Status.ROUNDED
             break
         started = time.perf_counter()

@@ -10,6 +10,7 @@ from ribbonopt.checks.validity import generatrix_slopes, warnings_of, wunderlich
 from ribbonopt.output.report import report
 from ribbonopt.output.summary import summarize
 from ribbonopt.scene import Boundary, Loop, RibbonSizes
+from ribbonopt.scene.units import units_of
 from ribbonopt.solution.solution import Solution
 from ribbonopt.solvers import Status
 
@@ -26,7 +27,8 @@ def of_size(
     interval = (start * length, end * length)
     ribbon = RibbonSizes(length, width, thickness, 1e9, 0.3)
     given = replace(solution.scene, interval=interval, ribbon=ribbon)
-    return replace(solution, posed=replace(solution.posed, given=given))
+    posed = replace(solution.posed, given=given, units=units_of(given))
+    return replace(solution, posed=posed)
 
 
 def with_loop(solution: Solution, loop: Loop) -> Solution:
