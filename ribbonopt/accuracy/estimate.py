@@ -135,8 +135,9 @@ def _analysed(solution: Solution, near: CondensedSystem | None, keep: bool) -> A
     if near is None:
         residuals, derivatives = blocks.linearize(w, p)
         factors = CondensedSystem(blocks, derivatives, p, only=None if keep else residuals)
+        growth = blocks.growth(derivatives, p).reshape(-1, split).sum(axis=1)
     else:
-        residuals, factors, keep = blocks.residuals(w, p), near, True
+        residuals, factors, keep, growth = blocks.residuals(w, p), near, True, dense.growth
     step = factors.solve(residuals)
     better = Trajectory(trajectory.problem, finer.moved(step))
     size = np.maximum(np.abs(dense.at_nodes).max(axis=0), 1.0)
@@ -150,7 +151,7 @@ def _analysed(solution: Solution, near: CondensedSystem | None, keep: bool) -> A
     more = doubt * (1 + len(local) * UNIT / float(local.sum()))
     errors = {name: error * more for name, error in errors.items()}
     # Between the nodes the output starts from the node before, with the error of that element.
-    more_inside, inside = gaps_between(trajectory, better, near_by, clear)
+    more_inside, inside = gaps_between(trajectory, better, near_by, growth, clear)
     errors |= {name: max(errors[name], gap) for name, gap in more_inside.items()}
     errors["states"] = max(errors["states"], float(local.max()))
     kept = factors if keep else None

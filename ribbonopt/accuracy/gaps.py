@@ -37,21 +37,25 @@ def gaps_at_nodes(
     if len(trajectory.ends) > 2:
         along = _shifted(trajectory, better.nodes[::split])
     same, u = _same_side(ours, theirs), along.pop("u")
-    errors |= {"states": max(_gap(theirs[k], along[k]) for k in along)}
-    for name, rows in (("u", same), (RESOLVED, same & clear(trajectory.nodes))):
-        errors[name] = _gap(theirs["u"][rows], u[rows])
-    return errors
+    strains = resolved = _gap(theirs["u"][same], u[same])
+    apart = same & clear(trajectory.nodes)
+    if (apart != same).any():
+        resolved = _gap(theirs["u"][apart], u[apart])
+    better_states, states = (np.hstack([rows[k] for k in along]) for rows in (theirs, along))
+    errors["states"] = _gap(better_states, states)
+    return errors | {"u": strains, RESOLVED: resolved}
 
 
 def gaps_between(
     trajectory: Trajectory,
     better: Trajectory,
     near_by: tuple[Layers, ...],
+    growth: Array,
     clear: Callable[[Array], NDArray[np.bool_]],
 ) -> tuple[dict[str, float], Array]:
     """Errors of states and strains inside elements, and each element's (N,), relative."""
     result = np.zeros(len(trajectory.nodes) - 1)
-    fractions, elements = between(trajectory, near_by)
+    fractions, elements = between(trajectory, near_by, growth)
     if not len(fractions):
         return {}, result
     ours, theirs = (t.outputs(fractions) for t in (trajectory, better))

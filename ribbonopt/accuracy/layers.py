@@ -18,10 +18,11 @@ from ribbonopt.arrays import Array
 from ribbonopt.solution.trajectory import Trajectory
 
 REACH = 1.0  # widths of an element, beyond which nothing can be said from it
+BEYOND = 1e-3  # of a phase, how far beyond its ends at least
 SEEN = 10.0  # decay of a solution over the stages of an element, by which they show a singularity
 SHARE = 0.1  # of a change of strains that a step over it may cost
 BESIDE = 0.3  # steps between stages, by which the nearest pair may miss a singularity
-NEAR = 4.0  # ellipse of an element between whose nodes errors may be larger than at them
+NEAR = 2.5  # ellipse of an element between whose nodes errors may be larger than at them
 WATCHED = 1.0  # exponent of an element, from which on it is looked at between its nodes
 FADED = 10.0  # how much less than it may a layer shows where strains count again
 FAINT = 1e-6  # of the largest change of strains: what is no layer
@@ -91,22 +92,25 @@ def layers(trajectory: Trajectory, phase: int) -> Layers:
         return Layers(np.empty(0, complex), np.empty(0))
     a, b = trajectory.ends[phase : phase + 2]
     _, fraction, _, phases = trajectory.stages
-    sigma = (fraction[phases == phase] - a) / (b - a)
-    nodes, step = trajectory.dense.nodes(phase), np.diff(sigma)[:, None]
-    widths, change = np.diff(nodes), np.diff(rows[:, :, :2], axis=0)
-    size, farthest = (rows[:-1, :, :2] ** 2).sum(axis=2), REACH * widths.max()
-    if not (size * step**2 <= farthest**2 * (change**2).sum(axis=2)).any():
+    sigma = (fraction if len(trajectory.ends) == 2 else fraction[phases == phase]) - a
+    sigma, nodes = sigma / (b - a), trajectory.dense.nodes(phase)
+    values = rows[:, :, 0] + 1j * rows[:, :, 1]
+    step, change = (sigma[1:] - sigma[:-1])[:, None], values[1:] - values[:-1]
+    widths = nodes[1:] - nodes[:-1]
+    if not (np.abs(values[:-1]) * step <= REACH * widths.max() * np.abs(change)).any():
         return Layers(np.empty(0, complex), np.empty(0))
-    values, sizes = rows[:, :, 0] + 1j * rows[:, :, 1], np.maximum(rows[:-1, :, 2], rows[1:, :, 2])
+    sizes = np.maximum(rows[:-1, :, 2], rows[1:, :, 2])
     with np.errstate(divide="ignore", invalid="ignore"):
-        ahead = -values[:-1] / np.diff(values, axis=0)  # in steps from one stage to the next
+        ahead = -values[:-1] / change  # in steps from one stage to the next
         offset = ahead * step
         near = (ahead.real > -BESIDE) & (ahead.real < 1 + BESIDE)
     # Those beyond an end are seen from there only.
     near[0] |= ahead.real[0] < 0
     near[-1] |= ahead.real[-1] > 1
     at = np.clip(np.searchsorted(nodes, sigma[:-1], side="right") - 1, 0, len(widths) - 1)
-    near &= (np.abs(offset) <= REACH * widths[at][:, None]) & (step > 0)
+    reach = REACH * widths[at][:, None]
+    reach[[0, -1]] = np.maximum(reach[[0, -1]], BEYOND)
+    near &= (np.abs(offset) <= reach) & (step > 0)
     # In a moment that fades away everything is near to zero, and of no account.
     near &= sizes > FAINT * rows[:, :, 2].max()
     stage, which = np.nonzero(near)
@@ -120,6 +124,8 @@ def clear_of(
 
     What rounding does to the place of such a layer is more than strains in it can bear.
     """
+    if not any(map(len, found)):
+        return lambda fractions: np.ones(len(fractions), bool)
     places, depths = [], []
     for a, b, near in zip(trajectory.ends[:-1], trajectory.ends[1:], found, strict=True):
         z = near.places
@@ -140,13 +146,15 @@ def clear_of(
     return clear
 
 
-def between(trajectory: Trajectory, found: tuple[Layers, ...]) -> tuple[Array, NDArray[np.intp]]:
+def between(
+    trajectory: Trajectory, found: tuple[Layers, ...], growth: Array
+) -> tuple[Array, NDArray[np.intp]]:
     """Return where to look at a solution between nodes: fractions (k,) and their elements (k,).
 
-    In stiff elements, and next to layers and in them.
+    In elements of large `growth` (N,), and next to layers and in them.
     """
     dense, nodes, ends = trajectory.dense, trajectory.nodes, trajectory.ends
-    chosen, extra = dense.growth > WATCHED, [np.empty(0)]
+    chosen, extra = growth > WATCHED, [np.empty(0)]
     if any(map(len, found)):
         chosen = chosen | np.concatenate([n.close(dense.nodes(i)) for i, n in enumerate(found)])
         extra += [

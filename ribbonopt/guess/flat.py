@@ -40,10 +40,13 @@ class Flattened:
 
 def nearly_flat(solution: Solution) -> bool:
     """Whether a solution lies in a plane but for a little, which may be an error."""
-    o = solution.at_nodes
-    parts = [(np.abs(o[name]).max(), np.abs(o[name[0]]).max()) for name in ("m1", "m3", "n2")]
-    off = max(across / whole if whole > 0 else 0.0 for across, whole in parts)
-    return bool(EXACTLY < off < NEARLY)
+    o, off = solution.trajectory.at_nodes, 0.0
+    for name in ("m3", "m1", "n2"):
+        across, whole = float(np.abs(o[name]).max()), float(np.abs(o[name[0]]).max())
+        if across >= NEARLY * whole > 0:
+            return False
+        off = max(off, across / whole if whole > 0 else 0.0)
+    return off > EXACTLY
 
 
 def _normal(direction: Array) -> Array:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import casadi as ca
@@ -31,8 +32,13 @@ class IntegratedLoads:
     @property
     def most_turning(self) -> float:
         """Bound of the angle (radians) by which the frames turn in all, for stiffness 1."""
+        return self.posed.length * min(self._most_strain, _bounded_strain(self.posed, self.loads))
+
+    @property
+    def _most_strain(self) -> float:
+        """Bound of the strains, for stiffness 1: the force may act on all of the length."""
         n, m = (np.abs(v).max() for v in (self.loads.force, self.loads.moment))
-        return self.posed.length * float(m + self.posed.length * n)
+        return float(m + self.posed.length * n)
 
     def fields(self, fraction: Array) -> RodFields:
         """Fields at fractions (k,) of the length, increasing from 0 to 1."""
@@ -61,8 +67,7 @@ class IntegratedLoads:
         length, s = self.posed.length, np.array(self.posed.scene.interval[:1])
         widths = np.diff(fraction) * (-length if self.backwards else length)
         # Steps short against the strains, which the loads bound.
-        strain = self.most_turning / length
-        substeps = int(np.clip(np.ceil(np.abs(widths).max() * strain), 1, 100))
+        substeps = int(np.clip(np.ceil(np.abs(widths).max() * self._most_strain), 1, 100))
         theta = self.posed.values
         widths = np.repeat(widths / substeps, substeps)
         steps, shared = self.ribbon.kept(_steps), (np.tile(c, STEPS), np.tile(theta, STEPS))
@@ -74,6 +79,14 @@ class IntegratedLoads:
             (after,) = steps(parts[-1][-1], *shared, part, here)
             parts.append(after.reshape(STEPS, -1))
         return np.vstack(parts)[: count + 1 : substeps], c
+
+
+def _bounded_strain(posed: Posed, loads: LoadGuess) -> float:
+    """Bound of the strains by H = W + n3, |u|^2 <= 2 W; infinite where H is not constant."""
+    if posed.loads:
+        return math.inf
+    n, m = (float(np.linalg.norm(v)) for v in (loads.force, loads.moment))
+    return math.sqrt(m**2 + 4 * n)
 
 
 def _sections(ribbon: Ribbon) -> Mapped:

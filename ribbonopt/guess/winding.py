@@ -8,7 +8,7 @@ import numpy as np
 
 from .unknowns import Guess
 
-A_TURN = 8  # samples for each radian that a guess may wind at most
+A_TURN = 2  # samples for each radian that a guess may wind at most
 MOST = 4096
 
 
@@ -23,9 +23,10 @@ class Winding(Guess, Protocol):
 
 def turning_of(guess: Guess, enough: float) -> float:
     """Return the angle (radians) by which the frames of a guess turn in all; 0 below `enough`."""
-    if not isinstance(guess, Winding) or not guess.most_turning > enough:
+    most = getattr(guess, "most_turning", 0.0)  # of a `Winding`: its check would take longer
+    if not most > enough:
         return 0.0
-    count = int(np.clip(A_TURN * guess.most_turning, 2, MOST))
+    count = int(np.clip(A_TURN * most, 2, MOST))
     frames = guess.fields(np.linspace(0, 1, count)).frames
     cosines = (np.einsum("kij,kij->k", frames[1:], frames[:-1]) - 1) / 2
     angles = np.arccos(np.clip(cosines, -1, 1))

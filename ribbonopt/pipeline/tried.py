@@ -71,7 +71,7 @@ class Tried:
     def smooth_instead(self) -> list[Solution]:
         """Equilibria of the smooth law, sharpest first, where none was found of one with phases."""
         best = self.best
-        if best is None or not self.needs_phases:
+        if best is None or not (self.smooth and self.needs_phases):
             return []
         wrong = not best.verified or (self.jumps(best) and not best.sheets)
         found = sorted(self.smooth, key=bluntness) if wrong else []

@@ -113,11 +113,12 @@ class Trajectory:
         if not count:
             return np.empty((0, 0, 3))
         v, fraction, _, phases = self.stages
-        rows = phases == phase
-        s = self._extent[0] + self.length * fraction[rows]
-        places = self._places(phase, fraction[rows], s)
+        if len(self.problem.phases) > 1:
+            rows = phases == phase
+            v, fraction = v[rows], fraction[rows]
+        places = self._places(phase, fraction, self._extent[0] + self.length * fraction)
         function = self.problem.kept(_singular)[phase]
-        (found,) = function(v[rows], self.dense.constants, self.dense.theta, places)
+        (found,) = function(v, self.dense.constants, self.dense.theta, places)
         return found.reshape(-1, count, 3)
 
     @property

@@ -87,6 +87,9 @@ class Blocks(Protocol):
         Quicker where it is for the stages' part of the residuals `only`.
         """
 
+    def growth(self, derivatives: Derivatives, p: Array) -> Array:
+        """Exponents (N,) by which neighbouring solutions part in each element, or meet."""
+
     def widths(self, p: Array) -> Array:
         """Relative widths (N,) of the elements."""
 

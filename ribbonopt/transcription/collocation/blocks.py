@@ -20,6 +20,7 @@ from ribbonopt.transcription.residuals import Derivatives, Residuals
 from ribbonopt.transcription.tableaus import Tableau, next_tableau
 
 from .elimination import StageElimination
+from .phase_equations import rates_of
 
 if TYPE_CHECKING:
     from ribbonopt.transcription.structure import Output
@@ -114,6 +115,11 @@ class ElementBlocks:
         """Solve every element's stage equations for its stages, maybe for some residuals only."""
         widths = self.widths(p)
         return StageElimination(self.layout, self.tableau, derivatives.stages, widths, only)
+
+    def growth(self, derivatives: Derivatives, p: Array) -> Array:
+        """Exponents (N,) by which neighbouring solutions part in each element, or meet."""
+        middle = derivatives.stages[:, self.layout.stages // 2]
+        return np.asarray(self.widths(p) * rates_of(middle, self.layout))
 
     def rates(self, w: Array, p: Array) -> Array:
         """Return the derivatives F (N, K, nx) at the stages, per relative position."""

@@ -31,21 +31,8 @@ class PhaseEquations:
         return z
 
     def rates(self, v: Array, places: Array) -> Array:
-        """Rates (k,) at which neighbouring solutions part or meet at unknowns v (k, nv).
-
-        The spectral radius of the derivatives by the states, algebraic variables following.
-        """
-        lay = self.layout
-        _, jacobian = self._linearized(v, places)
-        slopes = jacobian[:, : lay.nx, : lay.nx]
-        if lay.nz and lay.nz == lay.ng:
-            held = slice(lay.nx, lay.nv)
-            follow = _solved(jacobian[:, held, held], jacobian[:, held, : lay.nx])
-            slopes = slopes - jacobian[:, : lay.nx, held] @ follow
-        # From the eighth power, since norms of matrices far from normal say nothing.
-        for _ in range(3):
-            slopes = slopes @ slopes
-        return np.asarray(np.abs(slopes).sum(axis=-1).max(axis=-1) ** 0.125)
+        """Rates (k,) at which neighbouring solutions part or meet at unknowns v (k, nv)."""
+        return rates_of(self._linearized(v, places)[1], self.layout)
 
     def _linearized(self, v: Array, places: Array) -> tuple[Array, Array]:
         """Equations (k, ne) and their derivatives (k, ne, nv + nc)."""
@@ -53,6 +40,22 @@ class PhaseEquations:
         columns = self.layout.nv + self.layout.nc
         jacobian = jacobian.reshape(len(v), columns, -1).swapaxes(1, 2)
         return values.reshape(len(v), -1), jacobian
+
+
+def rates_of(jacobian: Array, layout: Layout) -> Array:
+    """Rates (k,) at which neighbouring solutions part or meet, from derivatives (k, ne, nv + nc).
+
+    The spectral radius of those by the states, algebraic variables following.
+    """
+    nx, held = layout.nx, slice(layout.nx, layout.nv)
+    slopes = jacobian[:, :nx, :nx]
+    if layout.nz and layout.nz == layout.ng:
+        follow = _solved(jacobian[:, held, held], jacobian[:, held, :nx])
+        slopes = slopes - jacobian[:, :nx, held] @ follow
+    # From the eighth power, since norms of matrices far from normal say nothing.
+    for _ in range(3):
+        slopes = slopes @ slopes
+    return np.asarray(np.abs(slopes).sum(axis=-1).max(axis=-1) ** 0.125)
 
 
 def _solved(matrices: Array, right: Array) -> Array:

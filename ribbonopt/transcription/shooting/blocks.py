@@ -106,6 +106,10 @@ class ShootingBlocks:
         """Neighbouring nodes are related already."""
         return NothingToEliminate(derivatives)
 
+    def growth(self, derivatives: Derivatives, p: Array) -> Array:
+        """Exponents (N,) of elements, zero: see `ShootingOutput.growth`."""
+        return np.zeros(self.layout.element_count)
+
     def widths(self, p: Array) -> Array:
         """Relative widths (N,) of the elements."""
         return self.layout.widths(p)
