@@ -149,7 +149,7 @@ def test_bars_hold_at_a_layer_at_the_end(epsilon: float) -> None:
     [
         ("inflection", "{type: kirchhoff, B2: 1, B3: 2}"),
         ("inflection", "{type: variational, delta: 0.1}"),
-        ("stiff", "{type: variational, delta: 0.1}"),
+        ("inflection", "{type: regularized, epsilon: 0.01}"),
     ],
 )
 def test_a_tolerance_beyond_rounding_is_told(name: str, law: str) -> None:

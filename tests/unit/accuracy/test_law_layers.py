@@ -1,9 +1,10 @@
-"""Layers of a law: where its strains are singular near the ribbon, and what elements see of that."""
+"""Layers of a law: where its strains are singular near the ribbon, and what elements see."""
 
 from collections.abc import Callable
 
 import numpy as np
 import pytest
+
 from ribbonopt.accuracy.layers import Layers, clear_of, layers, overlooked, seen
 from ribbonopt.solution.solution import Solution
 
