@@ -8,6 +8,7 @@ from typing import Any
 
 from ribbonopt.checks.arcs import phase_words
 
+NOTHING = 1e-50  # what guards the laws where m = 0 leaves of zero
 SMALL = 1e-3  # largest component of what is written with powers of ten
 
 
@@ -70,8 +71,8 @@ def _unknown_bars(s: Mapping[str, Any]) -> list[str]:
     if not unknown or s["loads_from"] == "costates" or not s["verified"]:
         return []
     return [
-        "  bars are not known where the mesh steps over a layer of the law, or the equations are",
-        "  singular: give a tolerance, or more intervals",
+        "  bars are not known: the mesh steps over a layer of the law (give a tolerance, or more "
+        "intervals), or the equations have no linearisation",
     ]
 
 
@@ -112,7 +113,7 @@ def _number(value: float | None, error: float | None, small: bool) -> str:
     if value is None:
         return "unknown"
     if error is None:
-        return f"{value:.6g}"
+        return f"{value:.6g}" if abs(value) > NOTHING else "0"
     if abs(value) <= error:
         return "0"
     # Twice the bar, so that the last digit printed still stands after rounding.

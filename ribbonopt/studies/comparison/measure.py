@@ -189,10 +189,13 @@ def _measured(
 
 
 def _estimate(solution: Solution, profile: Profile) -> float | None:
-    """Own estimate of the error of n(0), m(0) alone; None for minima (no square system)."""
+    """Own estimate of the error of n(0), m(0) alone; None where it is not known."""
     if solution.problem.recovered:
         return None
-    better, units = analyse(solution).better.at_nodes, solution.units
+    found, units = analyse(solution), solution.units
+    if not found.known:
+        return None
+    better = found.better.at_nodes
     n0, m0 = better["n"][0] * units.force, better["m"][0] * units.moment
     errors = errors_of(replace(profile, n0=n0, m0=m0), profile)
     return max(errors["error_n0"], errors["error_m0"], ROUNDING)

@@ -8,7 +8,7 @@ from typing import Any
 
 import numpy as np
 
-from ribbonopt.accuracy.estimate import relative_error
+from ribbonopt.accuracy.estimate import analyse, relative_error
 from ribbonopt.checks.zero_moment import lacks_linearisation, unknown_of
 from ribbonopt.errors import ModelError
 from ribbonopt.plain import Row, finite
@@ -109,11 +109,14 @@ class StageRecords:
 
 
 def error_of(solution: Solution) -> float | None:
-    """Relative error of the answer; None for minima, singular equations and those without slope."""
+    """Relative error of the answer, a bound; None where it is not known.
+
+    So for minima, singular equations and those without slope, and on meshes that step over layers.
+    """
     if solution.problem.recovered or lacks_linearisation(solution):
         return None
     try:
-        return relative_error(solution)[0]
+        return relative_error(solution)[0] if analyse(solution).known else None
     except np.linalg.LinAlgError:
         return None
 
