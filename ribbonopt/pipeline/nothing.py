@@ -9,24 +9,20 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterable
 from dataclasses import replace
-from typing import TYPE_CHECKING
 
 from ribbonopt.arrays import Array
 from ribbonopt.checks.winding import winds_as
 from ribbonopt.guess import Guess
 from ribbonopt.guess.flat import Flattened, nearly_flat
 from ribbonopt.mechanics.ends.winding import winding
-from ribbonopt.scene import Scene
 from ribbonopt.starts.first_shape import shapes_for
 from ribbonopt.starts.helix import helix_between, wound_evenly
 from ribbonopt.starts.loops import fundamental_scene
 from ribbonopt.starts.unfold import Unfolded, unfolded
 
+from .means import Prepare
 from .search import Search
 from .sharpening import sharpening
-
-if TYPE_CHECKING:
-    from .prepared import Prepared
 
 SAME = 1e-6  # relative, of energies
 MORE = 1.5  # times the energy of a helix that nearly fits
@@ -36,7 +32,7 @@ LEAST = 4  # intervals on every piece of a guess that is nearly the solution
 def from_nothing(
     search: Search,
     guesses: Callable[..., Iterable[Guess]],
-    prepare: Callable[[Scene], Prepared],
+    prepare: Prepare,
 ) -> Search:
     """Return the search that led to a solution, or the one given.
 

@@ -13,11 +13,12 @@ from typing import TYPE_CHECKING, Any
 
 from ribbonopt.guess import Guess
 from ribbonopt.mechanics.laws.smooth import in_family, sharpened
-from ribbonopt.scene import Collocation, Newton, Scene
+from ribbonopt.scene import Collocation, Newton
 from ribbonopt.solution.solution import Solution
 
+from .means import Means, Prepare
+
 if TYPE_CHECKING:
-    from .prepared import Prepared
     from .search import Search
 
 DELTAS = (2e-3, 4e-4, 8e-5)
@@ -27,7 +28,7 @@ SOLVER = Newton(max_iterations=40)
 
 
 def sharpening(
-    guesses: Callable[..., Iterable[Guess]], prepare: Callable[[Scene], Prepared]
+    guesses: Callable[..., Iterable[Guess]], prepare: Prepare
 ) -> Callable[..., Iterator[Guess]]:
     """Return what gives the same guesses, sharper equilibria behind the first of a smooth law."""
 
@@ -42,7 +43,7 @@ def sharpening(
     return sharpened_guesses
 
 
-def sharper(blunt: Solution, prepare: Callable[[Scene], Prepared]) -> Iterator[Solution]:
+def sharper(blunt: Solution, prepare: Prepare) -> Iterator[Solution]:
     """Yield ever sharper equilibria of the smooth law, each on a mesh that resolves its layers."""
     scene = replace(blunt.posed.scene, guess="auto", starts=1, switching="off", solver=SOLVER)
     scene = replace(scene, transcription=MESH, tolerance=TOLERANCE)
@@ -60,9 +61,7 @@ def sharper(blunt: Solution, prepare: Callable[[Scene], Prepared]) -> Iterator[S
         mesh = blunt.mesh
 
 
-def without_phases(
-    search: Search, prepared: Prepared, prepare: Callable[[Scene], Prepared]
-) -> Solution | None:
+def without_phases(search: Search, prepared: Means, prepare: Prepare) -> Solution | None:
     """Return a solution to tolerance without phases, where those that were tried lead to none.
 
     Of a law that has no more than a kink: a mesh graded to that will do. Sharper smooth laws have

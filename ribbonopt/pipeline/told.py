@@ -2,16 +2,16 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
-from ribbonopt.scene import Scene
 from ribbonopt.solution.solution import Solution
 from ribbonopt.solvers import Status
 
+from .means import Prepare
+
 if TYPE_CHECKING:
-    from .prepared import Prepared
     from .search import Search
 
 
@@ -40,9 +40,7 @@ def of_starts(first: Solution | None, found: Solution) -> Solution:
     return replace(found, given_up=tuple(given_up), fell_back=tuple(told))
 
 
-def regularized(
-    best: Solution, smooth: Sequence[Solution], prepare: Callable[[Scene], Prepared]
-) -> Solution | None:
+def regularized(best: Solution, smooth: Sequence[Solution], prepare: Prepare) -> Solution | None:
     """Return an equilibrium of the smooth law, labelled: none was found of the exact one."""
     for one in smooth:
         scene = replace(best.scene, law=one.scene.law, switching="off", guess="auto", starts=1)
