@@ -24,7 +24,8 @@ from ribbonopt.transcription.buffered import Mapped
 NEGLIGIBLE = 1e-7  # m2 over the largest |m| that has no sign
 FAINT, SEEN = 1e-5, 10.0  # (m2, m3) over the largest |m|, and over the tolerance: is not seen
 BEYOND = 1.05  # |eta| of a mixture
-MARGIN = 1e-6  # of the largest moment: how far below zero a margin of the law may be
+MARGIN = 1e-6  # of the largest moment: how far below zero a margin of the law may be at most,
+ROUNDED = 1e-12  # and at least
 EMPTY = 1e-5  # of the length of the ribbon: a phase that may not be there
 SHORTEST = 0.01  # of an arc of a mixture, and of the phase before one that begins at an end
 
@@ -188,11 +189,14 @@ def _scale(solution: Solution) -> float:
     return float(np.abs(solution.at_stages["m"]).max())
 
 
-def phase_problems(solution: Solution, ribbon: Ribbon, accuracy: float) -> list[str]:
+def phase_problems(
+    solution: Solution, ribbon: Ribbon, accuracy: float, moments: float = np.inf
+) -> list[str]:
     """Say where a solution in phases is not one of the law: wrong side of its switch, no mixture.
 
     Margins of a law are compared in units Dw = L = 1. `accuracy` is that of the equations, relative
-    to the largest load: what must be zero is so to that.
+    to the largest load: what must be zero is so to that. `moments` is the error of the moments:
+    what must not be negative is so to that.
     """
     problems = []
     v, fraction, _, phase = solution.trajectory.stages
@@ -209,7 +213,8 @@ def phase_problems(solution: Solution, ribbon: Ribbon, accuracy: float) -> list[
         names, count, margins = ribbon.kept(_margins)[kind]
         (values,) = margins(nodes[rows], constants, theta, s[rows])
         least = values.reshape(-1, len(names)).min(axis=0)
-        allowed = np.where(np.arange(len(names)) < count, MARGIN * scale, accuracy * loads)
+        margin = min(MARGIN * scale, max(moments, ROUNDED * scale))
+        allowed = np.where(np.arange(len(names)) < count, margin, accuracy * loads)
         short = zip(names, least, allowed, strict=True)
         problems += [name.format(where=where) for name, value, most in short if value < -most]
     return problems

@@ -11,7 +11,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ribbonopt.accuracy.estimate import analyse
+from ribbonopt.accuracy.estimate import SAFETY, Analysis, analyse
 from ribbonopt.accuracy.gaps import LEAST
 from ribbonopt.arrays import Array
 from ribbonopt.problem import Ribbon
@@ -50,7 +50,7 @@ def verify(solution: Solution, ribbon: Ribbon) -> Verification:
     if solution.sheets:
         from .arcs import phase_problems  # few scenes have phases
 
-        problems += phase_problems(solution, ribbon, TOLERANCE + residual)
+        problems += phase_problems(solution, ribbon, TOLERANCE + residual, _moment_error(solution))
     if ribbon.law.bounds_eta and not solution.problem.recovered:
         eta = np.abs(nodes["eta"])
         if 0 in solution.sheets:
@@ -100,6 +100,19 @@ def _off_the_law(solution: Solution, ribbon: Ribbon) -> list[str]:
         f"the strains at s = {s:.4g} are off the law by {found:.1e} of the largest: refine the "
         "mesh (transcription), or use formulation: inverted, which holds the law exactly"
     ]
+
+
+def _moment_error(solution: Solution) -> float:
+    """Bar of the moments along the ribbon, Dw = L = 1; infinite while the mesh is to be refined."""
+    refined = Analysis in solution.trajectory.found
+    if solution.posed.scene.tolerance is not None and not refined:
+        return np.inf
+    try:
+        errors = analyse(solution).errors
+    except np.linalg.LinAlgError:  # no estimate
+        return np.inf
+    force = float(np.abs(solution.trajectory.at_nodes["n"]).max())
+    return SAFETY * (errors["m0"] + force * errors["states"])
 
 
 def _worst_condition(solution: Solution, ribbon: Ribbon) -> tuple[str, float]:

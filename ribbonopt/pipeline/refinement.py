@@ -81,7 +81,9 @@ def refine(
         if error < least:
             best, least = solution, error
         if error <= tolerance:
-            done = solution if solution is first else verified(solution, ribbon)
+            # In phases the signs of m2 are judged by the error, which is known only now.
+            same = solution is first and not solution.sheets
+            done = solution if same else verified(solution, ribbon)
             return replace(done, steps=tuple(steps))
         if error > SLOW * before and _is_rounding(solution, tolerance):
             status = Status.ROUNDED
