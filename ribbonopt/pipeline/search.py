@@ -108,7 +108,8 @@ class Search(Tried):
             for arcs in every:
                 if arcs.kinds not in self.tried and self.run_in(*self._freed(arcs, sharp)):
                     return True
-                self.tried |= {arcs.kinds} - {MIXTURE.kinds}
+                if 0 not in arcs.kinds:  # mixtures are nearer from sharper laws
+                    self.tried.add(arcs.kinds)
         return sharp is not guess and self.run(guess, quick=True)
 
     def run_all(self, guesses: Iterable[Guess]) -> bool:
