@@ -144,7 +144,7 @@ class Automatic:
 
     def _from_straight(self, posed: Posed, chord: Chord, ledger: Ledger) -> list[Solution]:
         """Equilibria from a straight ribbon as its loads grow, under the law that is linear."""
-        rod = sharpened(first_law(posed.scene.law, FIRST), ROD)
+        rod = first_law(posed.scene.law, ROD)
         last = sharpness(posed.scene.law, LAST)
         return list(self._follow(posed, rod, ShapeGuess(chord), last, ledger).points)
 

@@ -21,7 +21,7 @@ from ribbonopt.solution.solution import Solution
 from ribbonopt.solvers import NewtonSolver, Status
 from ribbonopt.transcription import Mesh
 
-from .grading import graded_mesh, is_coarse
+from .grading import FLAT, graded_mesh, is_coarse
 
 MESH = Collocation(scheme="gauss", degree=3, intervals=30)
 SOLVER = Newton(tolerance=1e-8, max_iterations=30)
@@ -32,8 +32,10 @@ MOST_GROWTH, LEAST_GROWTH = 1.2, 0.02  # of the logarithm of a load in a step
 SURE = 12  # iterations after which a step has surely not left its branch
 LEAST_STEP = 1 / 64
 MOST_STEPS = 40
-SNAP_FACTOR = 0.7  # of a rod's ratio of stiffnesses, where to minimise its energy again
 FACTOR, LEAST_FACTOR = 0.33, 0.95  # delta from one step to the next, first and where to give up
+# Of rods: ratio of stiffnesses from one step to the next, first, at most and where to give up.
+RATIO, LEAST_RATIO, MOST_RATIO = 0.5, 0.3, 0.95
+LAYERED = 40, 0.5  # intervals for layers of twist or bending, and how they gather there
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,7 +63,8 @@ def follow(
     `structure` is that of `smooth_of` for this kind of law, `posed` the scene itself.
     """
     run = _Tracking(structure, posed, law, guess)
-    complete = run.bring_loads() and run.bring_down(delta)
+    bring = run.bring_down if isinstance(law, Variational) else run.make_uneven
+    complete = run.bring_loads() and bring(delta)
     return HomotopyPath(tuple(run.points), run.steps, run.iterations, complete)
 
 
@@ -129,18 +132,18 @@ class _Tracking:
         numbers = [load.numbers().values() for load in self.posed.loads if load.dead]
         return self.posed.length * max((abs(v) for some in numbers for v in some), default=0.0)
 
-    def _regrade(self) -> None:
+    def _regrade(self, least: int = MESH.intervals, power: float = FLAT) -> None:
         """Move the nodes to where the ribbon bends now."""
         solution = self.attempt.restored(self.w)
-        self.mesh = graded_mesh(solution, MESH.intervals)
+        self.mesh = graded_mesh(solution, least, power)
         self.attempt = self._attempt(self.law)
         self.w = self.attempt.unknowns(solution)
 
     def bring_down(self, target: float) -> bool:
         """Follow the smooth family to a smaller delta; other laws stay as they are."""
         factor = FACTOR
-        while in_family(self.law) and sharpness(self.law, 0.0) > target * (1 + 1e-9):
-            law = sharpened(self.law, max(target, sharpness(self.law, 0.0) * factor))
+        while isinstance(self.law, Variational) and self.law.delta > target * (1 + 1e-9):
+            law = sharpened(self.law, max(target, self.law.delta * factor))
             if self._step(law, None):
                 self.law, factor = law, max(0.1, factor**2)
                 self._keep()
@@ -148,10 +151,39 @@ class _Tracking:
                     self._regrade()
                 continue
             factor = float(np.sqrt(factor))
-            if (
-                factor > (LEAST_FACTOR if isinstance(law, Variational) else SNAP_FACTOR)
-                or self.steps > MOST_STEPS
-            ):
+            if factor > LEAST_FACTOR or self.steps > MOST_STEPS:
+                return False
+        return True
+
+    def make_uneven(self, target: float) -> bool:
+        """Follow rods to a smaller ratio of stiffnesses; other laws stay as they are.
+
+        Each step begins on the secant through the two equilibria before; nodes follow the layers.
+        """
+        factor, before = RATIO, None
+        if in_family(self.law) and sharpness(self.law, 0.0) > target * (1 + 1e-9):
+            self._regrade(*LAYERED)
+            if not self._step(self.law, None):
+                return False
+            self.points[-1] = self.attempt.restored(self.w)
+        while in_family(self.law) and sharpness(self.law, 0.0) > target * (1 + 1e-9):
+            ratio = sharpness(self.law, 0.0)
+            law = sharpened(self.law, max(target, ratio * factor))
+            here = self.points[-1]
+            w, iterations = self.w, self.iterations
+            if before is not None:
+                ahead = np.log(sharpness(law, 0.0) / ratio)
+                past = np.log(ratio / sharpness(before.scene.law, 0.0))
+                self.w = w + (w - self.attempt.unknowns(before)) * (ahead / past)
+            # After many iterations it may be another equilibrium: the secant would be wrong.
+            if self._step(law, None) and self.iterations - iterations <= SURE:
+                before, self.law, factor = here, law, max(LEAST_RATIO, factor**1.7)
+                self._keep()
+                self._regrade(*LAYERED)
+                continue
+            self.w, factor = w, float(np.sqrt(factor))
+            self.attempt = self._attempt(self.law)
+            if factor > MOST_RATIO:
                 return False
         return True
 
