@@ -41,6 +41,7 @@ from .unfold import unfolded
 
 FIRST, LAST = 0.3, 0.01  # delta of the first solve, and of the last unless the scene's is smaller
 STRAIGHT = 1e-6  # strains, Dw = L = 1
+SAME = 1e-6  # relative, of energies
 AGAIN, SNAPS = 2, 6  # how often the energy is minimised again where the path is lost; of rods
 
 
@@ -68,12 +69,13 @@ class Automatic:
         # A law that is not smooth may refuse the last point and take an earlier one.
         last = slice(-1, None) if in_family(posed.scene.law) else slice(None)
         straight: list[Solution] = []
+        met: list[float] = []
         for number, start in enumerate([shape] if shape else shapes_for(posed)):
             if number:
                 what = "shape that fits the ends" if number == 1 else "shapes that fit the ends"
                 first = f"the first {'' if number == 1 else f'{number} '}{what} led nowhere"
                 ledger.fall_back("shape", f"{first}; the automatic start went on from another")
-            points = self._points(posed, start, ledger)
+            points = self._points(posed, start, ledger, met)
             if not points and not straight and isinstance(start, Chord) and start.straight:
                 # Far from where the energy began: its loads are brought on from none.
                 straight = self._from_straight(posed, replace(start, bow=0.0), ledger)
@@ -108,8 +110,13 @@ class Automatic:
             if isinstance(guess, Solution):
                 yield unfolded(guess, posed)
 
-    def _points(self, posed: Posed, shape: Shape, ledger: Ledger) -> list[Solution]:
-        """Equilibria on the way down, the nearest to the scene's law last."""
+    def _points(
+        self, posed: Posed, shape: Shape, ledger: Ledger, met: list[float]
+    ) -> list[Solution]:
+        """Equilibria on the way down, the nearest to the scene's law last.
+
+        `met` are energies of rods from which others led nowhere; this one's is added.
+        """
         own = posed.scene.law
         law, guess = first_law(own, FIRST), ShapeGuess(shape)
         last = sharpness(own, LAST)
@@ -131,6 +138,10 @@ class Automatic:
             least = self._least(posed, law, start, ledger)
             if not least.status.converged:
                 break
+            if not points and not isinstance(law, Variational) and in_family(law):
+                if any(abs(least.energy - energy) <= SAME * energy for energy in met):
+                    break
+                met.append(least.energy)
             followed = self._follow(posed, law, least, last, ledger)
             points += followed.points
             if followed.complete or not followed.points or not in_family(law):

@@ -33,9 +33,11 @@ SURE = 12  # iterations after which a step has surely not left its branch
 LEAST_STEP = 1 / 64
 MOST_STEPS = 40
 FACTOR, LEAST_FACTOR = 0.33, 0.95  # delta from one step to the next, first and where to give up
-# Of rods: ratio of stiffnesses from one step to the next, first, at most and where to give up.
-RATIO, LEAST_RATIO, MOST_RATIO = 0.5, 0.3, 0.95
-LAYERED = 40, 0.5  # intervals for layers of twist or bending, and how they gather there
+# Of rods: logarithm of the ratio of stiffnesses, steps at first, where to give up, and at most.
+FIRST_STEP, SMALLEST_STEP, LARGEST_STEP = 0.4, 0.04, 1.2
+FEW, MANY = 40, 80  # intervals for layers of twist or bending, and where few are too coarse
+GATHERED = 0.5  # power of the strains with which they gather there
+NARROWER = 0.3  # how much an interval may shrink in a step
 
 
 @dataclass(frozen=True, eq=False)
@@ -158,32 +160,38 @@ class _Tracking:
     def make_uneven(self, target: float) -> bool:
         """Follow rods to a smaller ratio of stiffnesses; other laws stay as they are.
 
-        Each step begins on the secant through the two equilibria before; nodes follow the layers.
+        Each step begins on the secant through the two equilibria before. Nodes follow the layers of
+        twist or bending, and so does the secant: it goes from node to node, wherever they are.
         """
-        factor, before = RATIO, None
-        if in_family(self.law) and sharpness(self.law, 0.0) > target * (1 + 1e-9):
-            self._regrade(*LAYERED)
-            if not self._step(self.law, None):
-                return False
-            self.points[-1] = self.attempt.restored(self.w)
-        while in_family(self.law) and sharpness(self.law, 0.0) > target * (1 + 1e-9):
-            ratio = sharpness(self.law, 0.0)
-            law = sharpened(self.law, max(target, ratio * factor))
-            here = self.points[-1]
-            w, iterations = self.w, self.iterations
-            if before is not None:
-                ahead = np.log(sharpness(law, 0.0) / ratio)
-                past = np.log(ratio / sharpness(before.scene.law, 0.0))
-                self.w = w + (w - self.attempt.unknowns(before)) * (ahead / past)
+        if not in_family(self.law) or sharpness(self.law, 0.0) <= target * (1 + 1e-9):
+            return True
+        self._regrade(FEW, GATHERED)
+        if not self._step(self.law, None):
+            return False
+        self.points[-1] = self.attempt.restored(self.w)
+        count, step, before = FEW, FIRST_STEP, None
+        at, last = float(np.log(sharpness(self.law, 0.0))), float(np.log(target))
+        while at > last + 1e-9:
+            step = min(step, at - last)
+            law = sharpened(self.law, float(np.exp(at - step)))
+            assert self.mesh is not None
+            here, iterations = (at, self.mesh, self.w), self.iterations
+            if before is not None and len(before[2]) == len(self.w):
+                ahead = step / (before[0] - at)
+                self.mesh = _beyond(before[1], self.mesh, ahead)
+                self.w = self.w + (self.w - before[2]) * ahead
             # After many iterations it may be another equilibrium: the secant would be wrong.
-            if self._step(law, None) and self.iterations - iterations <= SURE:
-                before, self.law, factor = here, law, max(LEAST_RATIO, factor**1.7)
+            if self._step(law, None, most=SURE):
+                before, self.law, at = here, law, at - step
+                step = min(LARGEST_STEP, step * _growth(2 * (self.iterations - iterations)))
                 self._keep()
-                self._regrade(*LAYERED)
+                if is_coarse(self.points[-1]):
+                    count = MANY
+                self._regrade(count, GATHERED)
                 continue
-            self.w, factor = w, float(np.sqrt(factor))
-            self.attempt = self._attempt(self.law)
-            if factor > MOST_RATIO:
+            _, self.mesh, self.w = here
+            step /= 2
+            if step < SMALLEST_STEP:
                 return False
         return True
 
@@ -192,9 +200,9 @@ class _Tracking:
         found: Array = _newton(self.attempt).system.residuals(self.w, self.attempt.p).conditions
         return found
 
-    def _step(self, law: Law, relaxed: Array | None) -> bool:
+    def _step(self, law: Law, relaxed: Array | None, most: int | None = None) -> bool:
         attempt = self.attempt if law is self.law else self._attempt(law)
-        report = _newton(attempt).solve(self.w, attempt.p, relaxed)
+        report = _newton(attempt).solve(self.w, attempt.p, relaxed, most=most)
         self.steps += 1
         self.iterations += report.iterations
         if report.status is not Status.CONVERGED:
@@ -223,3 +231,10 @@ def _newton(attempt: Attempt) -> NewtonSolver:
 def _growth(iterations: int) -> float:
     """Return by what to multiply a step after one that took some iterations."""
     return float(np.clip(2.5 - 0.1 * iterations, 0.7, 2.0))
+
+
+def _beyond(before: Mesh, here: Mesh, ahead: float) -> Mesh:
+    """Return the mesh that follows from two, `ahead` times as far on."""
+    (a,), (b,) = before.phases, here.phases
+    widths = np.maximum(b + (b - a) * ahead, NARROWER * b)
+    return Mesh((widths / widths.sum(),))
