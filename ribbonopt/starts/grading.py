@@ -27,8 +27,7 @@ def is_coarse(solution: Solution) -> bool:
 def graded_mesh(solution: Solution, least: int, power: float = FLAT) -> Mesh:
     """Return a mesh of one phase, half of its intervals by length and half by bending.
 
-    As many as the ribbon winds, but no fewer than `least`; `power` of the strains is how they gather
-    where it bends.
+    As many as the ribbon winds, but no fewer than `least`; they gather as a `power` of the strains.
     """
     o, (_, fraction, weights, _) = solution.trajectory.at_stages, solution.trajectory.stages
     strains = np.linalg.norm(o["u"], axis=1)
