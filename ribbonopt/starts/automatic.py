@@ -33,7 +33,7 @@ from ribbonopt.problem import Posed
 from ribbonopt.scene import Law, Variational
 from ribbonopt.solution.solution import Solution
 
-from .energy import least_energy_of
+from .energy import MESH, least_energy_of
 from .first_shape import compresses, follower_loads, loaded, shapes_for
 from .homotopy import HomotopyPath, follow, smooth_of
 from .loops import closed_posed, fundamental_scene
@@ -42,6 +42,8 @@ from .unfold import unfolded
 FIRST, LAST = 0.3, 0.01  # delta of the first solve, and of the last unless the scene's is smaller
 STRAIGHT = 1e-6  # strains, Dw = L = 1
 SAME = 1e-6  # relative, of energies
+# Ratio of a rod's stiffnesses: its layers, of about the root, are thinner than the mesh sees.
+THINNEST = MESH.intervals**-2
 AGAIN, SNAPS = 2, 6  # how often the energy is minimised again where the path is lost; of rods
 
 
@@ -133,7 +135,7 @@ class Automatic:
             return started
         points: list[Solution] = []
         start: Guess = guess
-        # Rods soft in twist snap on their way, from one equilibrium to the next.
+        # Uneven rods snap on their way, from one equilibrium to the next.
         for _ in range(1 + (AGAIN if isinstance(law, Variational) else SNAPS)):
             least = self._least(posed, law, start, ledger)
             if not least.status.converged:
@@ -148,9 +150,12 @@ class Automatic:
                 break
             # The branch has an end here: the energy's minimum goes on elsewhere.
             start = followed.points[-1]
+            further = max(last, 0.6 * sharpness(start.scene.law, last))
+            if not isinstance(law, Variational) and further < THINNEST:
+                break
             what = f"the path of the automatic start was lost at{_delta(start.scene.law)[1:]}"
             ledger.fall_back("path", f"{what}; it went on from the least energy there")
-            law = sharpened(law, max(last, 0.6 * sharpness(start.scene.law, last)))
+            law = sharpened(law, further)
         return points
 
     def _from_straight(self, posed: Posed, chord: Chord, ledger: Ledger) -> list[Solution]:
