@@ -56,13 +56,14 @@ class NewtonSolver:
         enough: float = 0.0,
         system: System | None = None,
         factors: Factors | None = None,
+        most: int | None = None,
     ) -> SolveReport:
         """Solve from the guess w (nw,) for the parameters p (np,).
 
         `relaxed` (nb,) are residuals that the conditions shall have instead of zero; `enough` is a
         tolerance that will do, where it is larger than the solver's own; `system` is solved instead
         of the program's own equations; `factors` are those of equations nearby, of the same sizes,
-        which are used as long as they contract by `INHERIT`.
+        which are used as long as they contract by `INHERIT`; `most` iterations, if that is fewer.
         """
         if not self.nlp.square:
             return _Run(self, w, p).report(Status.NOT_SQUARE)
@@ -70,6 +71,7 @@ class NewtonSolver:
         run.tolerance = max(self.tolerance, enough)
         run.system = system or run.system
         run.factors = factors
+        run.most = min(self.max_iterations, most or self.max_iterations)
         if relaxed is not None:
             if not isinstance(self.system, ElementSystem):
                 raise TypeError("conditions can be relaxed where the program has element blocks")
@@ -83,6 +85,7 @@ class _Run:
 
     def __init__(self, settings: NewtonSolver, w: Array, p: Array) -> None:
         self.settings, self.w, self.p = settings, w, p
+        self.most = settings.max_iterations
         self.system: System = settings.system
         self.factors: Factors | None = None
         self.tolerance = settings.tolerance
@@ -95,7 +98,7 @@ class _Run:
         if self.factors is not None and self._with_inherited_factors():
             return Status.CONVERGED
         damping = 1.0
-        while self.iterations < self.settings.max_iterations:
+        while self.iterations < self.most:
             try:
                 step = self._newton_step()
             except np.linalg.LinAlgError:
@@ -111,7 +114,7 @@ class _Run:
     def _with_inherited_factors(self) -> bool:
         """Iterate as long as factors of other equations contract; whether that was enough."""
         step = self._simplified_step(self.w)
-        while self.iterations < self.settings.max_iterations:
+        while self.iterations < self.most:
             size = self._size(step)
             if not size < np.inf:
                 return False
@@ -128,8 +131,7 @@ class _Run:
 
     def _with_these_factors(self, step: Array, damping: float) -> tuple[Status | None, float]:
         """Iterate while the factors are good enough: the end reached, or None; and the damping."""
-        settings = self.settings
-        while self.iterations < settings.max_iterations:
+        while self.iterations < self.most:
             size = self._size(step)
             if size <= self.tolerance:
                 self.w = self.w + step

@@ -33,7 +33,7 @@ from ribbonopt.problem import Posed
 from ribbonopt.scene import Law, Variational
 from ribbonopt.solution.solution import Solution
 
-from .energy import least_energy_of
+from .energy import MESH, least_energy_of
 from .first_shape import compresses, follower_loads, loaded, shapes_for
 from .homotopy import HomotopyPath, follow, smooth_of
 from .loops import closed_posed, fundamental_scene
@@ -41,6 +41,9 @@ from .unfold import unfolded
 
 FIRST, LAST = 0.3, 0.01  # delta of the first solve, and of the last unless the scene's is smaller
 STRAIGHT = 1e-6  # strains, Dw = L = 1
+SAME = 1e-6  # relative, of energies
+# Ratio of a rod's stiffnesses: its layers, of about the root, are thinner than the mesh sees.
+THINNEST = MESH.intervals**-2
 AGAIN, SNAPS = 2, 6  # how often the energy is minimised again where the path is lost; of rods
 
 
@@ -68,12 +71,13 @@ class Automatic:
         # A law that is not smooth may refuse the last point and take an earlier one.
         last = slice(-1, None) if in_family(posed.scene.law) else slice(None)
         straight: list[Solution] = []
+        met: list[float] = []
         for number, start in enumerate([shape] if shape else shapes_for(posed)):
             if number:
                 what = "shape that fits the ends" if number == 1 else "shapes that fit the ends"
                 first = f"the first {'' if number == 1 else f'{number} '}{what} led nowhere"
                 ledger.fall_back("shape", f"{first}; the automatic start went on from another")
-            points = self._points(posed, start, ledger)
+            points = self._points(posed, start, ledger, met)
             if not points and not straight and isinstance(start, Chord) and start.straight:
                 # Far from where the energy began: its loads are brought on from none.
                 straight = self._from_straight(posed, replace(start, bow=0.0), ledger)
@@ -108,8 +112,13 @@ class Automatic:
             if isinstance(guess, Solution):
                 yield unfolded(guess, posed)
 
-    def _points(self, posed: Posed, shape: Shape, ledger: Ledger) -> list[Solution]:
-        """Equilibria on the way down, the nearest to the scene's law last."""
+    def _points(
+        self, posed: Posed, shape: Shape, ledger: Ledger, met: list[float]
+    ) -> list[Solution]:
+        """Equilibria on the way down, the nearest to the scene's law last.
+
+        `met` are energies of rods from which others led nowhere; this one's is added.
+        """
         own = posed.scene.law
         law, guess = first_law(own, FIRST), ShapeGuess(shape)
         last = sharpness(own, LAST)
@@ -126,25 +135,32 @@ class Automatic:
             return started
         points: list[Solution] = []
         start: Guess = guess
-        # Rods soft in twist snap on their way, from one equilibrium to the next.
+        # Uneven rods snap on their way, from one equilibrium to the next.
         for _ in range(1 + (AGAIN if isinstance(law, Variational) else SNAPS)):
             least = self._least(posed, law, start, ledger)
             if not least.status.converged:
                 break
+            if not points and not isinstance(law, Variational) and in_family(law):
+                if any(abs(least.energy - energy) <= SAME * energy for energy in met):
+                    break
+                met.append(least.energy)
             followed = self._follow(posed, law, least, last, ledger)
             points += followed.points
             if followed.complete or not followed.points or not in_family(law):
                 break
             # The branch has an end here: the energy's minimum goes on elsewhere.
             start = followed.points[-1]
+            further = max(last, 0.6 * sharpness(start.scene.law, last))
+            if not isinstance(law, Variational) and further < THINNEST:
+                break
             what = f"the path of the automatic start was lost at{_delta(start.scene.law)[1:]}"
             ledger.fall_back("path", f"{what}; it went on from the least energy there")
-            law = sharpened(law, max(last, 0.6 * sharpness(start.scene.law, last)))
+            law = sharpened(law, further)
         return points
 
     def _from_straight(self, posed: Posed, chord: Chord, ledger: Ledger) -> list[Solution]:
         """Equilibria from a straight ribbon as its loads grow, under the law that is linear."""
-        rod = sharpened(first_law(posed.scene.law, FIRST), ROD)
+        rod = first_law(posed.scene.law, ROD)
         last = sharpness(posed.scene.law, LAST)
         return list(self._follow(posed, rod, ShapeGuess(chord), last, ledger).points)
 

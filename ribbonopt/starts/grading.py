@@ -24,16 +24,16 @@ def is_coarse(solution: Solution) -> bool:
     return bool((stages.max(axis=1) * widths * solution.posed.length > FAR).any())
 
 
-def graded_mesh(solution: Solution, least: int) -> Mesh:
+def graded_mesh(solution: Solution, least: int, power: float = FLAT) -> Mesh:
     """Return a mesh of one phase, half of its intervals by length and half by bending.
 
-    As many as the ribbon winds, but no fewer than `least`.
+    As many as the ribbon winds, but no fewer than `least`; they gather as a `power` of the strains.
     """
     o, (_, fraction, weights, _) = solution.trajectory.at_stages, solution.trajectory.stages
     strains = np.linalg.norm(o["u"], axis=1)
     turning = solution.posed.length * float(weights @ strains)
     count = max(least, min(size_for(int(np.ceil(turning / EACH))), MOST))
-    bending = strains**FLAT
+    bending = strains**power
     mean = float(weights @ bending)
     density = 1 + bending / mean if mean > 0 else np.ones_like(bending)
     density = np.concatenate([density[:1], density, density[-1:]])

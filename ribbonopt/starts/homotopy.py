@@ -21,7 +21,7 @@ from ribbonopt.solution.solution import Solution
 from ribbonopt.solvers import NewtonSolver, Status
 from ribbonopt.transcription import Mesh
 
-from .grading import graded_mesh, is_coarse
+from .grading import FLAT, graded_mesh, is_coarse
 
 MESH = Collocation(scheme="gauss", degree=3, intervals=30)
 SOLVER = Newton(tolerance=1e-8, max_iterations=30)
@@ -32,8 +32,12 @@ MOST_GROWTH, LEAST_GROWTH = 1.2, 0.02  # of the logarithm of a load in a step
 SURE = 12  # iterations after which a step has surely not left its branch
 LEAST_STEP = 1 / 64
 MOST_STEPS = 40
-SNAP_FACTOR = 0.7  # of a rod's ratio of stiffnesses, where to minimise its energy again
 FACTOR, LEAST_FACTOR = 0.33, 0.95  # delta from one step to the next, first and where to give up
+# Of rods: logarithm of the ratio of stiffnesses, steps at first, where to give up, and at most.
+FIRST_STEP, SMALLEST_STEP, LARGEST_STEP = 0.4, 0.04, 1.2
+FEW, MANY = 40, 80  # intervals for layers of twist or bending, and where few are too coarse
+GATHERED = 0.5  # power of the strains with which they gather there
+NARROWER = 0.3  # how much an interval may shrink in a step
 
 
 @dataclass(frozen=True, eq=False)
@@ -61,7 +65,8 @@ def follow(
     `structure` is that of `smooth_of` for this kind of law, `posed` the scene itself.
     """
     run = _Tracking(structure, posed, law, guess)
-    complete = run.bring_loads() and run.bring_down(delta)
+    bring = run.bring_down if isinstance(law, Variational) else run.make_uneven
+    complete = run.bring_loads() and bring(delta)
     return HomotopyPath(tuple(run.points), run.steps, run.iterations, complete)
 
 
@@ -129,18 +134,18 @@ class _Tracking:
         numbers = [load.numbers().values() for load in self.posed.loads if load.dead]
         return self.posed.length * max((abs(v) for some in numbers for v in some), default=0.0)
 
-    def _regrade(self) -> None:
+    def _regrade(self, least: int = MESH.intervals, power: float = FLAT) -> None:
         """Move the nodes to where the ribbon bends now."""
         solution = self.attempt.restored(self.w)
-        self.mesh = graded_mesh(solution, MESH.intervals)
+        self.mesh = graded_mesh(solution, least, power)
         self.attempt = self._attempt(self.law)
         self.w = self.attempt.unknowns(solution)
 
     def bring_down(self, target: float) -> bool:
         """Follow the smooth family to a smaller delta; other laws stay as they are."""
         factor = FACTOR
-        while in_family(self.law) and sharpness(self.law, 0.0) > target * (1 + 1e-9):
-            law = sharpened(self.law, max(target, sharpness(self.law, 0.0) * factor))
+        while isinstance(self.law, Variational) and self.law.delta > target * (1 + 1e-9):
+            law = sharpened(self.law, max(target, self.law.delta * factor))
             if self._step(law, None):
                 self.law, factor = law, max(0.1, factor**2)
                 self._keep()
@@ -148,10 +153,45 @@ class _Tracking:
                     self._regrade()
                 continue
             factor = float(np.sqrt(factor))
-            if (
-                factor > (LEAST_FACTOR if isinstance(law, Variational) else SNAP_FACTOR)
-                or self.steps > MOST_STEPS
-            ):
+            if factor > LEAST_FACTOR or self.steps > MOST_STEPS:
+                return False
+        return True
+
+    def make_uneven(self, target: float) -> bool:
+        """Follow rods to a smaller ratio of stiffnesses; other laws stay as they are.
+
+        Each step begins on the secant through the two equilibria before. Nodes follow the layers of
+        twist or bending, and so does the secant: it goes from node to node, wherever they are.
+        """
+        if not in_family(self.law) or sharpness(self.law, 0.0) <= target * (1 + 1e-9):
+            return True
+        self._regrade(FEW, GATHERED)
+        if not self._step(self.law, None):
+            return False
+        self.points[-1] = self.attempt.restored(self.w)
+        count, step, before = FEW, FIRST_STEP, None
+        at, last = float(np.log(sharpness(self.law, 0.0))), float(np.log(target))
+        while at > last + 1e-9:
+            step = min(step, at - last)
+            law = sharpened(self.law, float(np.exp(at - step)))
+            assert self.mesh is not None
+            here, iterations = (at, self.mesh, self.w), self.iterations
+            if before is not None and len(before[2]) == len(self.w):
+                ahead = step / (before[0] - at)
+                self.mesh = _beyond(before[1], self.mesh, ahead)
+                self.w = self.w + (self.w - before[2]) * ahead
+            # After many iterations it may be another equilibrium: the secant would be wrong.
+            if self._step(law, None, most=SURE):
+                before, self.law, at = here, law, at - step
+                step = min(LARGEST_STEP, step * _growth(2 * (self.iterations - iterations)))
+                self._keep()
+                if is_coarse(self.points[-1]):
+                    count = MANY
+                self._regrade(count, GATHERED)
+                continue
+            _, self.mesh, self.w = here
+            step /= 2
+            if step < SMALLEST_STEP:
                 return False
         return True
 
@@ -160,9 +200,9 @@ class _Tracking:
         found: Array = _newton(self.attempt).system.residuals(self.w, self.attempt.p).conditions
         return found
 
-    def _step(self, law: Law, relaxed: Array | None) -> bool:
+    def _step(self, law: Law, relaxed: Array | None, most: int | None = None) -> bool:
         attempt = self.attempt if law is self.law else self._attempt(law)
-        report = _newton(attempt).solve(self.w, attempt.p, relaxed)
+        report = _newton(attempt).solve(self.w, attempt.p, relaxed, most=most)
         self.steps += 1
         self.iterations += report.iterations
         if report.status is not Status.CONVERGED:
@@ -191,3 +231,10 @@ def _newton(attempt: Attempt) -> NewtonSolver:
 def _growth(iterations: int) -> float:
     """Return by what to multiply a step after one that took some iterations."""
     return float(np.clip(2.5 - 0.1 * iterations, 0.7, 2.0))
+
+
+def _beyond(before: Mesh, here: Mesh, ahead: float) -> Mesh:
+    """Return the mesh that follows from two, `ahead` times as far on."""
+    (a,), (b,) = before.phases, here.phases
+    widths = np.maximum(b + (b - a) * ahead, NARROWER * b)
+    return Mesh((widths / widths.sum(),))

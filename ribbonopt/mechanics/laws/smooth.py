@@ -14,7 +14,8 @@ from ribbonopt.scene import Kirchhoff, Law, Variational
 from .catalogue import capabilities
 
 ROD = 1.0  # delta at which the law is linear
-UNEVEN = 0.1  # ratio of a rod's stiffnesses below which it is approached from there
+UNEVEN = 0.3  # ratio of a rod's stiffnesses below which it is approached from a more even one
+EVEN = 0.8  # the ratio to begin with there: less than 1, so that it is known which is the larger
 
 
 def first_law(law: Law, delta: float) -> Law:
@@ -24,7 +25,7 @@ def first_law(law: Law, delta: float) -> Law:
     that is the law, at its own if larger.
     """
     if isinstance(law, Kirchhoff):
-        return sharpened(law, UNEVEN)
+        return sharpened(law, EVEN) if _ratio(law) < UNEVEN else law
     found = capabilities(law)
     if found.linear_at_zero and found.variational:
         return law
@@ -41,7 +42,7 @@ def sharpness(law: Law, other: float) -> float:
 def in_family(law: Law) -> bool:
     """Whether a law is one of a family of smooth laws, so that it has a sharpness to follow."""
     return isinstance(law, Variational) or (
-        isinstance(law, Kirchhoff) and _ratio(law) <= UNEVEN * (1 + 1e-9)
+        isinstance(law, Kirchhoff) and _ratio(law) <= EVEN * (1 + 1e-9)
     )
 
 
@@ -51,7 +52,7 @@ def sharpened(law: Law, to: float) -> Law:
         return Variational(delta=to)
     if not isinstance(law, Kirchhoff) or not in_family(law):
         return law
-    ratio = min(to, UNEVEN)
+    ratio = min(to, EVEN)
     return replace(law, B3=law.B2 * (ratio if law.B3 < law.B2 else 1 / ratio))
 
 
