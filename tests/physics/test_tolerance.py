@@ -12,7 +12,7 @@ import pytest
 from references import HALF_MOEBIUS
 from test_mixture import clamp, draw
 
-from ribbonopt.accuracy.estimate import relative_error
+from ribbonopt.accuracy.estimate import SAFETY, analyse, relative_error
 from ribbonopt.cli import main
 from ribbonopt.output.results import load_solution
 from ribbonopt.pipeline.prepared import prepare, solve
@@ -53,7 +53,7 @@ def true_error(found: Solution, truth: Solution) -> float:
     """Return the largest relative error of loads, strains, energy and states."""
     units = truth.units
     loads = loads_gap(found, truth.n0, truth.m0) / loads_gap(truth, np.zeros(3), np.zeros(3))
-    s = found.nodes
+    s = np.union1d(found.nodes, np.linspace(*found.scene.interval, 201))
     states = [np.abs(found.sample(s, d) - truth.sample(s, d)).max() for d in ("d1", "d2", "d3")]
     states.append(np.abs(found.sample(s, "r") - truth.sample(s, "r")).max() / units.of("r"))
     strains = np.abs(found.u0 - truth.u0).max() / np.abs(truth.at_stages["u"]).max()
@@ -74,18 +74,26 @@ def measured(scene: Scene) -> list[tuple[float, float, float]]:
     """Return tolerance, true error and estimate, each tolerance met from the same coarse mesh."""
     prepared = prepare(replace(scene, transcription=COARSE))
     truth = prepared.solve(replace(prepared.scene, tolerance=1e-12))
-    assert truth.verified, truth.message
+    # Rounding may leave a little more: of a bar, that is four times the estimate.
+    assert truth.verified or truth.status is Status.ROUNDED, truth.message
+    assert relative_error(truth)[0] <= 4e-12
     rows = []
     for tolerance in TOLERANCES:
         found = prepared.solve(replace(prepared.scene, tolerance=tolerance), guess=truth)
         assert found.verified, found.message
-        rows.append((tolerance, true_error(found, truth), relative_error(found)[0]))
+        rows.append((tolerance, true_error(found, truth), bar_of(found)))
     return rows
+
+
+def bar_of(found: Solution) -> float:
+    """Return the largest relative bar of what `true_error` looks at."""
+    known, names = analyse(found), ("n0", "m0", "u0", "energy", "states")
+    return SAFETY * max(known.errors[k] / known.sizes[k] for k in names)
 
 
 def assert_honest(rows: list[tuple[float, float, float]], share: float) -> None:
     below = [true <= tolerance for tolerance, true, _ in rows]
-    near = [0.1 <= estimate / true <= 10 for _, true, estimate in rows if true > 1e-13]
+    near = [0.9 <= bar / true <= 10 for _, true, bar in rows if true > 1e-13]
     assert np.mean(below) >= share, rows
     assert len(near) >= len(rows) / 2  # or there is nothing to say
     assert np.mean(near) >= 0.8, rows
