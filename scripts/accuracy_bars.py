@@ -23,10 +23,10 @@ CONFIGS = Path(__file__).resolve().parent.parent / "configs"
 HALF, WHOLE = "moebius_half.yaml", "moebius_regularized.yaml"
 # name: scene, tolerance, degree, first number of intervals, target in ms.
 CASES = {
-    "half 1e-9": (HALF, 1e-9, 6, 6, 4.0),
-    "half 1e-12": (HALF, 1e-12, 8, 6, 6.0),
-    "whole 1e-9": (WHOLE, 1e-9, 7, 8, 15.0),
-    "whole 1e-12": (WHOLE, 1e-12, 8, 10, 25.0),
+    "half 1e-9": (HALF, 1e-9, 6, 8, 4.0),
+    "half 1e-12": (HALF, 1e-12, 8, 8, 6.0),
+    "whole 1e-9": (WHOLE, 1e-9, 7, 10, 15.0),
+    "whole 1e-12": (WHOLE, 1e-12, 8, 14, 25.0),
 }
 WATCHED = (
     (refinement, "relative_error", "estimate"),

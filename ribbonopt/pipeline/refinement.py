@@ -39,6 +39,7 @@ if TYPE_CHECKING:
 ROUNDS = 20
 SLOW = 0.3  # share of the error before that a round should leave
 AIM = 0.5  # share of the tolerance that a new mesh aims at
+CLOSE = 10.0  # times the tolerance, from where on a mesh that helped little was not fine enough
 GROUND = 2e-14  # local error of an element that is rounding
 GROWTH = 2.0  # most that the number of elements grows in a round
 
@@ -89,7 +90,9 @@ def refine(
             status = Status.ROUNDED
             break
         started = time.perf_counter()
-        mesh, short = _better_mesh(solution, aim * tolerance, error, error > SLOW * before)
+        stuck, close = error > SLOW * before, error <= CLOSE * tolerance
+        goal = aim * tolerance * (1 / CLOSE if stuck and close else 1.0)
+        mesh, short = _better_mesh(solution, goal, error, stuck and not close)
         before = error
         attempt = attempt_on(mesh, solution.trajectory.ends[1:-1])
         if not attempt.run(solution, quick=True, check=False) or attempt.best is None:
