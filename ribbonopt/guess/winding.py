@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import Protocol, runtime_checkable
+from typing import Protocol
 
 import numpy as np
 
@@ -12,7 +12,6 @@ A_TURN = 2  # samples for each radian that a guess may wind at most
 MOST = 4096
 
 
-@runtime_checkable
 class Winding(Guess, Protocol):
     """A guess that knows a bound of its turning; a solution has a mesh that fits it."""
 
