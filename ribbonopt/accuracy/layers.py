@@ -97,7 +97,8 @@ def layers(trajectory: Trajectory, phase: int) -> Layers:
     values = rows[:, :, 0] + 1j * rows[:, :, 1]
     step, change = (sigma[1:] - sigma[:-1])[:, None], values[1:] - values[:-1]
     widths = nodes[1:] - nodes[:-1]
-    if not (np.abs(values[:-1]) * step <= REACH * widths.max() * np.abs(change)).any():
+    farthest = max(REACH * float(widths.max()), BEYOND)
+    if not (np.abs(values[:-1]) * step <= farthest * np.abs(change)).any():
         return Layers(np.empty(0, complex), np.empty(0))
     sizes = np.maximum(rows[:-1, :, 2], rows[1:, :, 2])
     with np.errstate(divide="ignore", invalid="ignore"):

@@ -60,7 +60,7 @@ class Status(Enum):
     )
     ROUNDED = (
         "the equations are solved, but rounding leaves the answer an error larger than the "
-        "tolerance, and on finer meshes it grows: raise the tolerance"
+        "tolerance, and finer meshes do not help: raise the tolerance"
     )
     UNREACHABLE = "the ends are further apart than the ribbon is long: bring them together"
 
