@@ -33,6 +33,7 @@ from .walk.metric import Metric
 from .walk.points import BUCKLING, POINT, Point
 from .walk.protocol import Trial
 
+GENTLE = 0.3  # share of the position in the tangent, from where on no fold is near
 STEEP = 0.1  # of the error at a given position: one along the branch that tells of a fold
 NEXT_TO_CROSSING = "next to where branches cross: the error is above the tolerance"
 
@@ -204,6 +205,8 @@ class RibbonEquations:
         """Return a solution verified, as exact as asked for; next to a fold, along the branch."""
         solution, position = trial.solution, float(trial.unknowns[-1])
         ahead = self.metric.dual(self.reduced(origin.solution, origin.tangent))
+        if abs(origin.tangent[-1]) > GENTLE * self.metric.sizes[-1]:
+            return self.prepared.refined(solution, SPARE), ""
         for _ in range(2):
             error = error_along(solution, self.curve, position, row_of(solution, ahead))
             if error <= min(tolerance, STEEP * relative_error(solution)[0]):
