@@ -15,6 +15,7 @@ from ribbonopt.scene import load_scene
 from ribbonopt.solution.solution import Solution
 from ribbonopt.views import plot_ribbon
 from ribbonopt.views.branch import COLOURS, plot_branch, save_branch_figures
+from ribbonopt.views.branch_rows import BranchFigure
 from ribbonopt.views.strip import plot_strip
 
 CONFIGS = Path(__file__).parents[3] / "configs"
@@ -22,9 +23,9 @@ STATES = ("stable", "unstable", "stability unknown")
 TURN = math.sqrt(0.5)
 
 
-def row(number, value, negative=0, kind="point", **others):
-    point = {"stage": 1, "branch": 0, "parameter": "parameters.load", "error": 1e-9}
-    return {**point, "number": number, "value": value, "negative": negative, "kind": kind, **others}
+def row(number, value, negative=0, kind="point", parameter="parameters.load", **others):
+    point = {"stage": 0, "branch": 0, "parameter": parameter, parameter: value, "error": 1e-9}
+    return {**point, "number": number, "negative": negative, "kind": kind, **others}
 
 
 def fold():
@@ -52,7 +53,7 @@ def pitchfork():
 def two_stages():
     rows = [row(i, 0.1 * i, energy=float(i), parameter="parameters.shortening") for i in range(4)]
     for i, epsilon in enumerate(np.geomspace(0.1, 1e-3, 5)):
-        rows.append(row(4 + i, epsilon, energy=3.0 + i, stage=2, parameter="law.epsilon"))
+        rows.append(row(4 + i, epsilon, energy=3.0 + i, stage=1, parameter="law.epsilon"))
     return rows
 
 
@@ -62,6 +63,13 @@ def lines_of(axes, label):
 
 def data_of(axes, label):
     return [line.get_xydata() for line in lines_of(axes, label)]
+
+
+def on_curve(curve, points):
+    """Check that a curve begins and ends with points, and meets each of them in their order."""
+    places = [int(np.flatnonzero((curve == point).all(axis=1))[0]) for point in points]
+    assert places == sorted(places)
+    assert (places[0], places[-1]) == (0, len(curve) - 1)
 
 
 def legend_of(figure):
@@ -78,12 +86,12 @@ def test_unstable_stretches_are_dashed_and_folds_end_both():
     figure = plot_branch(rows, "value", "energy", title="arch")
     (axes,) = figure.axes
     first, last = (i for i, r in enumerate(rows) if r["kind"] == "fold")
-    xy = np.array([[r["value"], r["energy"]] for r in rows])
+    xy = np.array([[r["parameters.load"], r["energy"]] for r in rows])
     before, after = data_of(axes, "stable")
     (between,) = data_of(axes, "unstable")
-    np.testing.assert_array_equal(before, xy[: first + 1])
-    np.testing.assert_array_equal(between, xy[first : last + 1])
-    np.testing.assert_array_equal(after, xy[last:])
+    on_curve(before, xy[: first + 1])
+    on_curve(between, xy[first : last + 1])
+    on_curve(after, xy[last:])
     assert {line.is_dashed() for line in lines_of(axes, "unstable")} == {True}
     assert {line.is_dashed() for line in lines_of(axes, "stable")} == {False}
     assert not lines_of(axes, "stability unknown")
@@ -99,8 +107,8 @@ def test_folds_are_squares_and_the_ends_are_marked():
     assert folds.get_marker() == "s"
     assert folds.get_linestyle() == "None"
     np.testing.assert_allclose(folds.get_ydata(), [-TURN, TURN])
-    assert data_of(axes, "first point")[0].tolist() == [[rows[0]["value"], -1.6]]
-    assert data_of(axes, "last point")[0].tolist() == [[rows[-1]["value"], 1.6]]
+    assert data_of(axes, "first point")[0].tolist() == [[rows[0]["parameters.load"], -1.6]]
+    assert data_of(axes, "last point")[0].tolist() == [[rows[-1]["parameters.load"], 1.6]]
     assert legend_of(figure) == ["stable", "unstable", "first point", "last point", "fold (2)"]
 
 
@@ -109,7 +117,17 @@ def test_branches_differ_in_colour_and_are_not_joined():
     (axes,) = figure.axes
     drawn = [line for line in axes.lines if line.get_label() in STATES]
     assert [line.get_color() for line in drawn] == [COLOURS[k] for k in (0, 0, 1, 2)]
-    assert [len(line.get_xdata()) for line in drawn] == [5, 5, 4, 4]
+    runs = [[r for r in pitchfork() if r["branch"] == k] for k in range(3)]
+    ends = [line.get_xydata()[[0, -1]].tolist() for line in drawn]
+    assert ends[:2] == [[[0, 0], [1, 0]], [[1, 0], [2, 0]]]
+    # each begins where it branches off
+    assert ends[2:] == [[[1, 0], [2, 1]], [[1, 0], [2, -1]]]
+    for line, run in zip(drawn[2:], runs[1:], strict=True):
+        points = [[r["parameters.load"], r["u2"]] for r in run]
+        on_curve(line.get_xydata(), [[1, 0], *points])
+        # between its points it is the parabola that it is
+        x, y = line.get_xydata().T
+        np.testing.assert_allclose(x, 1 + y**2, atol=0.02)
     (switch,) = lines_of(axes, "branch point")
     assert (switch.get_marker(), switch.get_markerfacecolor()) == ("o", "w")
     assert switch.get_xydata().tolist() == [[1, 0]]
@@ -128,13 +146,14 @@ def test_where_stability_changes_between_points_it_is_unknown():
     }
     thin, thick = lines_of(axes, "stability unknown")[0], lines_of(axes, "stable")[0]
     assert thin.get_linewidth() < thick.get_linewidth()
+    assert thin.is_dashed()
 
 
 def test_without_any_stability_lines_are_plain():
     figure = plot_branch([row(i, i, None, u2=i) for i in range(3)], "value", "u2")
     (line, *_) = figure.axes[0].lines
     assert not line.is_dashed()
-    assert len(line.get_xdata()) == 3
+    on_curve(line.get_xydata(), [[0, 0], [1, 1], [2, 2]])
     assert legend_of(figure) == ["first point", "last point"]
 
 
@@ -145,7 +164,8 @@ def test_each_parameter_has_its_axis(log):
     assert right.get_xlabel() == "law.epsilon\nstage 2"
     assert (left.get_xscale(), right.get_xscale()) == ("linear", "log")  # the first is at 0
     assert left.get_ylim() == right.get_ylim()
-    assert [len(axes.lines[0].get_xdata()) for axes in (left, right)] == [4, 5]
+    assert data_of(left, "stable")[0][[0, -1]].tolist() == [[0, 0], [0.1 * 3, 3]]
+    assert data_of(right, "stable")[0][[0, -1], 1].tolist() == [3, 7]
     assert lines_of(left, "first point") and not lines_of(left, "last point")
     assert lines_of(right, "last point") and not lines_of(right, "first point")
 
@@ -154,7 +174,10 @@ def test_stages_share_an_axis_where_the_parameter_is_not_drawn():
     (axes,) = plot_branch(two_stages(), "number", "energy", log=True).axes
     assert axes.get_xlabel() == "point"
     assert axes.get_xscale() == "linear"
-    assert [len(xy) for xy in data_of(axes, "stable")] == [4, 5]
+    assert [xy[[0, -1]].tolist() for xy in data_of(axes, "stable")] == [
+        [[0, 0], [3, 3]],
+        [[4, 3], [8, 7]],
+    ]
 
 
 @pytest.mark.parametrize("high", [0.02, 0.5, 100.0])
@@ -187,7 +210,7 @@ def test_one_point(log):
 def test_rows_without_values_are_skipped():
     rows = [row(i, i, u2=u2) for i, u2 in enumerate([1, None, 2, math.nan, 3])] + [row(5, 5)]
     (axes,) = plot_branch(rows, "value", "u2").axes
-    assert data_of(axes, "stable")[0].tolist() == [[0, 1], [2, 2], [4, 3]]
+    on_curve(data_of(axes, "stable")[0], [[0, 1], [2, 2], [4, 3]])
     assert data_of(axes, "last point")[0].tolist() == [[4, 3]]
 
 
@@ -233,16 +256,18 @@ def test_bands_are_drawn_whole_and_said_to_be():
 
 def test_files_are_written(tmp_path):
     pairs = [("value", "energy"), ("value", "u2"), ("u2", "energy"), ("number", "error")]
-    ribbons = [solved("helix")]
-    paths, left_out = save_branch_figures(fold(), ribbons, ["helix"], tmp_path, [*pairs, pairs[0]])
+    figure = BranchFigure(fold(), (*pairs, pairs[0]))
+    ribbons = {figure.pictured[0]["number"]: solved("helix")}
+    paths, left_out = save_branch_figures(figure, ribbons, tmp_path)
     assert left_out == []
     assert [path.name for path in paths] == ["branch.png", "ribbons.png"]
     assert all(imread(path).std() > 0.02 for path in paths)
     assert imread(paths[0]).shape[1] > 1500  # two panels wide
-    (only,) = save_branch_figures(fold(), [], [], tmp_path, pairs[:1]).paths
+    (only,) = save_branch_figures(BranchFigure(fold(), (pairs[0],)), {}, tmp_path).paths
     assert only == tmp_path / "branch.png"
 
 
 def test_a_folder_that_is_not_there(tmp_path):
     with pytest.raises(OutputError, match=r"branch\.png: cannot be written"):
-        save_branch_figures(fold(), [], [], tmp_path / "none", [("value", "energy")])
+        figure = BranchFigure(fold(), (("value", "energy"),))
+        save_branch_figures(figure, {}, tmp_path / "none")
