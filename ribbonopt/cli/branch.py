@@ -26,6 +26,7 @@ from .progress import ProgressLine
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from ribbonopt.plain import Rows
     from ribbonopt.solution.solution import Solution
     from ribbonopt.studies.continuation.continuation import Continuation
     from ribbonopt.studies.continuation.files import BranchFolder
@@ -99,7 +100,7 @@ def _draw(
     rows, scene = rows_of(lines), continuation.scene
     figure = BranchFigure(
         rows,
-        tuple(pairs or _usual(continuation.recorder)),
+        tuple(pairs or _usual(rows, continuation.recorder)),
         title=scene.name,
         log=[stage.parameter for stage in continuation.stages if stage.scale == "log"],
         jumps=[row["number"] for row in rows if JUMPED in row.get("note", "")],
@@ -111,11 +112,13 @@ def _draw(
     return drawn.paths
 
 
-def _usual(recorder: Recorder) -> Iterator[tuple[str, str]]:
-    """Yield what is worth seeing: what the scene records, and then some that all rows have."""
+def _usual(rows: Rows, recorder: Recorder) -> list[tuple[str, str]]:
+    """Return what is worth seeing: what the scene records, and of all rows what changes."""
+    from ribbonopt.views.columns import varied
+
     x = recorder.parameters[0] if len(recorder.parameters) == 1 else "value"
-    for name in [*recorder.formulas, "u2", "energy", "H0"][:4]:
-        yield x, name
+    others = [name for name in ("u2", "energy", "H0", "u3") if varied(rows, name)]
+    return [(x, name) for name in [*recorder.formulas, *others] or ["energy"]][:4]
 
 
 def _tell(options: argparse.Namespace, folder: BranchFolder, continuation: Continuation) -> int:

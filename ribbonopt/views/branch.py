@@ -19,7 +19,7 @@ from ribbonopt.solution.solution import Solution
 
 from .branch_axes import dress, label, unit_of
 from .branch_numbers import write_numbers
-from .branch_rows import KINK, POINT, BranchFigure, Plane
+from .branch_rows import KINK, POINT, BranchFigure, Piece, Plane
 from .branch_style import DOT, STYLES, UNKNOWN, mark_of, marks_of, state_of
 from .columns import ColumnPair
 from .curves import Array, curves_through
@@ -31,7 +31,9 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
     from matplotlib.gridspec import SubplotSpec
 
-COLOURS = (BENDING, TWIST, "#009e73", "#cc79a7", "#56b4e9", "#e69f00")  # one for each branch
+#: one for each branch
+COLOURS = (BENDING, TWIST, "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#7b3fa0", "#8a6d00")
+ENTRY = 2.2  # inches for one of the legend
 BEHIND, ASIDE = 0.01, 2.2  # of the axes: a curve this near to another is drawn as much wider
 
 
@@ -124,12 +126,11 @@ def _panel(
 def _draw(axes: Axes, plane: Plane, numbered: Sequence[int]) -> None:
     """Draw curves, marks and numbers of a plane that has points."""
     plain = {"ls": "-", "lw": 1.6} if _all_unknown(plane.figure) else {}
-    pieces = list(plane.joined())
-    curves = [_curves(plane, piece) for piece in pieces]
-    for i, (piece, found) in enumerate(zip(pieces, curves, strict=True)):
-        colour = COLOURS[piece[-1]["branch"] % len(COLOURS)]
+    curves = [_curves(plane, piece) for piece in plane.pieces]
+    for i, (piece, found) in enumerate(zip(plane.pieces, curves, strict=True)):
+        colour = COLOURS[piece.rows[-1]["branch"] % len(COLOURS)]
         wider = ASIDE if _behind(plane, found, curves[i + 1 :]) else 1.0
-        for state, curve in _stretches(piece, found):
+        for state, curve in _stretches(piece.rows, found):
             style = STYLES[state] | plain | (DOT if curve.shape[1] == 1 else {})
             style["lw"] *= wider
             axes.plot(*curve, color=colour, label="_" if plain else state, **style)
@@ -142,13 +143,15 @@ def _draw(axes: Axes, plane: Plane, numbered: Sequence[int]) -> None:
     write_numbers(axes, plane, numbered, [curve for found in curves for curve in found])
 
 
-def _curves(plane: Plane, piece: Sequence[Row]) -> list[Array]:
+def _curves(plane: Plane, piece: Piece) -> list[Array]:
     """Return the curve (2, m) from each point of a piece to the next; of one point itself."""
-    points = plane.points(piece)
-    if len(piece) == 1:
+    points = plane.points(piece.rows)
+    if len(piece.rows) == 1:
         return [points]
-    corners = [i for i, row in enumerate(piece) if row["kind"] == KINK]
-    curves = [plane.values(curve) for curve in curves_through(plane.scaled(points), corners)]
+    rows = [*piece.beyond[::-1], *piece.rows]
+    corners = [i for i, row in enumerate(rows) if row["kind"] == KINK]
+    found = curves_through(plane.scaled(plane.points(rows)), corners)
+    curves = [plane.values(curve) for curve in found[len(piece.beyond) :]]
     for i, curve in enumerate(curves):
         curve[:, 0], curve[:, -1] = points[:, i], points[:, i + 1]  # to the last digit
     return curves
@@ -211,5 +214,6 @@ def _legend(figure: Figure, subject: BranchFigure, numbers: bool) -> None:
     if numbers:
         handles.append(Line2D([], [], label="numbers: points in ribbons.png", color=INK, **DOT))
         handles[-1].set_linestyle("")
-    n = math.ceil(len(handles) / max(1, math.ceil(len(handles) / 5)))
+    wide = max(1, int(figure.get_figwidth() / ENTRY))
+    n = math.ceil(len(handles) / math.ceil(len(handles) / wide)) if handles else 1
     figure.legend(handles=handles, loc="outside lower center", ncols=n, frameon=False, fontsize=9)

@@ -7,6 +7,7 @@ from typing import TYPE_CHECKING
 from ribbonopt.scene.quantities import START_VECTORS
 
 from .branch_rows import VALUE, Plane
+from .columns import LEAST, NOISE
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -56,7 +57,7 @@ def dress(axes: Axes, plane: Plane) -> None:
             axis.set_major_locator(MaxNLocator("auto", integer=True))
         if plane.flat(k):
             low, high = plane.points(plane.rows)[k].min(), plane.points(plane.rows)[k].max()
-            room = abs(low + high) / 4 or 1.0
+            room = abs(low + high) / 4 if abs(low + high) > NOISE * LEAST else 1.0
             axis.set_view_interval(low - room, high + room, ignore=True)
         else:
             (axes.set_xmargin, axes.set_ymargin)[k](MARGIN)

@@ -2,23 +2,23 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection, Iterator
+from collections.abc import Collection
 from dataclasses import dataclass
 from functools import cached_property
-from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 
 from ribbonopt.plain import Row, Rows, is_number
-from ribbonopt.scene.quantities import ANSWERS, START_VECTORS
+from ribbonopt.scene.quantities import ANSWERS
 
-from .columns import NOISE, ColumnPair
+from .columns import ColumnPair, varied
 from .curves import Array
 
 POINT, FOLD, KINK = "point", "fold", "kink"
 VALUE = "value"  # the parameter that the row's own stage moves
 PICTURES, SPECIAL_PICTURES, ALONG = 12, 8, 5  # most pictures, of special points, least along
-FLOOR = 1e-4  # numbers are compared with at least this, to tell what is rounding
+BEYOND = 2  # points on the other side of a crossing, that decide how a curve leaves it
 NEAR = 0.04  # of the way along all branches: pictures this near to another show the same
 
 
@@ -97,6 +97,13 @@ class BranchFigure:
         return found
 
 
+class Piece(NamedTuple):
+    """Rows that one curve goes through; `beyond` are those on the other side of its begin."""
+
+    rows: list[Row]
+    beyond: list[Row]
+
+
 @dataclass(frozen=True)
 class Plane:
     """The plane of a pair of quantities; of one parameter alone if there are axes for each."""
@@ -141,7 +148,7 @@ class Plane:
             found[k] = 10 ** found[k]
         return np.asarray(found)
 
-    @property
+    @cached_property
     def runs(self) -> list[list[Row]]:
         """Rows by stage and branch, in order."""
         runs: dict[tuple[int, int], list[Row]] = {}
@@ -149,25 +156,33 @@ class Plane:
             runs.setdefault((row["stage"], row["branch"]), []).append(row)
         return list(runs.values())
 
-    def joined(self) -> Iterator[list[Row]]:
-        """Yield the runs, cut at jumps; each that branches off begins with where it does."""
-        for run in self.runs:
-            here = origin_of(run[0], self.figure.rows) if run[0]["branch"] else None
-            piece = [] if here is None or not np.isfinite(self.points([here])).all() else [here]
+    @cached_property
+    def pieces(self) -> list[Piece]:
+        """The runs, cut at jumps; each that branches off begins with where it does."""
+        begins = [self._origin(run) for run in self.runs]
+        found = []
+        for run, begin in zip(self.runs, begins, strict=True):
+            sides = [
+                r for r, b in zip(self.runs, begins, strict=True) if b is begin and r is not run
+            ]
+            # Where two runs leave one point they are the halves of one curve through it.
+            beyond = sides[0][:BEYOND] if begin is not None and len(sides) == 1 else []
+            rows = [] if begin is None else [begin]
             for row in run:
-                if row["number"] in self.figure.jumps and piece:
-                    yield piece
-                    piece = []
-                piece.append(row)
-            yield piece
+                if row["number"] in self.figure.jumps and rows:
+                    found.append(Piece(rows, beyond))
+                    rows, beyond = [], []
+                rows.append(row)
+            found.append(Piece(rows, beyond))
+        return found
+
+    def _origin(self, run: Rows) -> Row | None:
+        here = origin_of(run[0], self.figure.rows) if run[0]["branch"] else None
+        return None if here is None or not np.isfinite(self.points([here])).all() else here
 
     def flat(self, k: int) -> bool:
         """Whether the values along an axis differ by rounding only."""
-        name = self.name(k)
-        vector = next((vector for vector in START_VECTORS if name in vector), (self.pair[k],))
-        found = np.array([[_number(row, part) for part in vector] for row in self.rows], float)
-        largest = np.abs(found).max(initial=FLOOR, where=np.isfinite(found))
-        return bool(self.rows) and float(np.ptp(self.points(self.rows)[k])) <= NOISE * largest
+        return bool(self.rows) and not varied(self.rows, self.name(k))
 
     @cached_property
     def _frame(self) -> tuple[Array, Array]:
@@ -203,16 +218,6 @@ def origin_of(first: Row, rows: Rows) -> Row | None:
         return float(np.nansum((np.array(gaps) / np.where(size > 0, size, 1.0)) ** 2))
 
     return min(crossings, key=distance)
-
-
-def changes_of_note(rows: Rows) -> list[Row]:
-    """Return the points that have a note, the first of those that follow one another with it."""
-    found = [row for row in rows[:1] if row.get("note")]
-    return found + [
-        b
-        for a, b in pairwise(rows)
-        if b.get("note") and (b["note"] != a.get("note") or b["branch"] != a["branch"])
-    ]
 
 
 def _number(row: Row, quantity: str) -> float:

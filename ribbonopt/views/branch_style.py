@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
+from itertools import pairwise
 from typing import Any
 
 import numpy as np
 
-from ribbonopt.plain import Row
+from ribbonopt.plain import Row, Rows
 
-from .branch_rows import FOLD, KINK, POINT, Plane, changes_of_note
+from .branch_rows import FOLD, KINK, POINT, Plane
 from .style import FAINT, INK, TWIST
 
 STABLE, UNSTABLE, UNKNOWN = "stable", "unstable", "stability unknown"
@@ -46,7 +47,7 @@ def marks_of(plane: Plane) -> dict[str, list[Row]]:
     drawn = [row for row in plane.figure.rows if np.isfinite(plane.points([row])).all()]
     last = {row["branch"]: row for row in drawn}.values()
     marked = {FIRST: drawn[:1], LAST: [row for row in last if row is not drawn[0]]}
-    marked[NOTED] = [row for row in changes_of_note(drawn) if row["kind"] == POINT]
+    marked[NOTED] = [row for row in _changes_of_note(drawn) if row["kind"] == POINT]
     for row in drawn:
         if row["kind"] != POINT:
             marked.setdefault(mark_of(row), []).append(row)
@@ -57,3 +58,13 @@ def marks_of(plane: Plane) -> dict[str, list[Row]]:
 def mark_of(row: Row) -> str:
     """Return the mark of a special point."""
     return row["kind"] if row["kind"] in STYLES else OTHER
+
+
+def _changes_of_note(rows: Rows) -> list[Row]:
+    """Return the points that have a note, the first of those that follow one another with it."""
+    found = [row for row in rows[:1] if row.get("note")]
+    return found + [
+        b
+        for a, b in pairwise(rows)
+        if b.get("note") and (b["note"] != a.get("note") or b["branch"] != a["branch"])
+    ]

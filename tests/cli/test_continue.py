@@ -197,7 +197,7 @@ def test_figures_are_drawn_and_drawn_again(run: Run, tmp_path: Path) -> None:
     [
         (["u2:H0", "value:negative"], [("u2", "H0"), ("value", "negative")]),
         (["P:H0", "u2:parameters.P"], [("parameters.P", "H0"), ("u2", "parameters.P")]),
-        ([], [("parameters.P", name) for name in ("shortening", "deflection", "u2", "energy")]),
+        ([], [("parameters.P", name) for name in ("shortening", "deflection", "H0")]),
     ],
     ids=["pairs", "names", "usual"],
 )

@@ -24,7 +24,15 @@ BOUNDARY = Boundary(
     End("clamped", (0.0, 0.0, 0.0), "identity"),
     End("clamped", (0.68, 0.15, 0.31), RotationVector((0.0, 2.4, 0.6))),
 )
-ROW = {"number": 0, "stage": 0, "branch": 0, "parameter": "a", "a": 1.0, "kind": "point", "negative": 0}
+ROW = {
+    "number": 0,
+    "stage": 0,
+    "branch": 0,
+    "parameter": "a",
+    "a": 1.0,
+    "kind": "point",
+    "negative": 0,
+}
 
 
 @pytest.fixture(scope="module")
