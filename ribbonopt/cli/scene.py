@@ -119,6 +119,8 @@ def plot(options: argparse.Namespace) -> int:
         raise SceneError(
             f"--plot: {result} is no branch and no batch, whose columns could be drawn"
         )
+    elif not result.exists() and (beside := Path(f"{result}-branch")).is_dir():
+        raise SceneError(f"{result}: no such folder; did you mean {beside}?")
     else:
         solution = load_solution(result)
         paths, left_out = draw_figures(solution, picture_folder(options.out or result))

@@ -14,9 +14,10 @@ from ribbonopt.pipeline.prepared import solve
 from ribbonopt.scene import load_scene
 from ribbonopt.solution.solution import Solution
 from ribbonopt.views import plot_ribbon
-from ribbonopt.views.branch import COLOURS, plot_branch, save_branch_figures
+from ribbonopt.views.branch import COLOURS, draw_branch, plot_branch, save_branch_figures
 from ribbonopt.views.branch_rows import BranchFigure
 from ribbonopt.views.strip import plot_strip
+from ribbonopt.views.style import blank
 
 CONFIGS = Path(__file__).parents[3] / "configs"
 STATES = ("stable", "unstable", "stability unknown")
@@ -271,3 +272,170 @@ def test_a_folder_that_is_not_there(tmp_path):
     with pytest.raises(OutputError, match=r"branch\.png: cannot be written"):
         figure = BranchFigure(fold(), (("value", "energy"),))
         save_branch_figures(figure, {}, tmp_path / "none")
+
+
+# jumps, corners, notes, numbers
+
+
+def straight(kinds=(), notes=None, count=7):
+    kinds, notes = dict(kinds), notes or {}
+    return [
+        row(i, float(i), kind=kinds.get(i, "point"), u2=float(i % 3), note=notes.get(i, ""))
+        for i in range(count)
+    ]
+
+
+def test_no_line_crosses_a_jump():
+    rows = straight()
+    figure = BranchFigure(rows, (("value", "u2"),), jumps=[3])
+    (axes,) = draw_branch(figure, []).axes
+    ends = [xy[[0, -1], 0].tolist() for xy in data_of(axes, "stable")]
+    assert ends == [[0, 2], [3, 6]]
+
+
+@pytest.mark.parametrize("jump", [0, 6])
+def test_a_jump_at_an_end_leaves_a_point(jump):
+    (axes,) = draw_branch(BranchFigure(straight(), (("value", "u2"),), jumps=[jump]), []).axes
+    ends = [xy[[0, -1], 0].tolist() for xy in data_of(axes, "stable")]
+    assert ends == ([[0, 6]] if jump == 0 else [[0, 5], [6, 6]])
+
+
+@pytest.mark.parametrize(
+    ("kind", "marker", "name"),
+    [
+        *(("fold", "s", "fold"), ("branch point", "o", "branch point")),
+        *(("buckling point", "D", "buckling point"), ("kink", "v", "kink")),
+        ("what comes later", "*", "other special point"),
+    ],
+)
+def test_each_kind_has_its_mark(kind, marker, name):
+    figure = plot_branch(straight({2: kind, 4: kind}), "value", "u2")
+    (line,) = lines_of(figure.axes[0], name)
+    assert (line.get_marker(), line.get_xdata().tolist()) == (marker, [2, 4])
+    assert f"{name} (2)" in legend_of(figure)
+
+
+def test_a_kink_is_a_corner():
+    def slopes(kind):
+        (axes,) = plot_branch(straight({2: kind}), "value", "u2").axes
+        x, y = data_of(axes, "stable")[0].T
+        at = int(np.flatnonzero(x == 2)[0])
+        return [(y[k] - y[at]) / (x[k] - x[at]) for k in (at - 1, at + 1)]
+
+    into, out = slopes("kink")
+    assert into == pytest.approx(1, rel=0.3)
+    assert out < -1
+    into, out = slopes("branch point")
+    assert abs(into - out) < 0.5 * 3
+
+
+def test_notes_are_marked_where_they_begin():
+    notes = {1: "odd", 2: "odd", 3: "other", 5: "odd"}
+    figure = plot_branch(straight(notes=notes), "value", "u2")
+    (line,) = lines_of(figure.axes[0], "note")
+    assert line.get_xdata().tolist() == [1, 3, 5]
+    assert "note" in legend_of(figure)
+
+
+def test_special_points_and_ends_are_pictured_and_numbered():
+    rows = fold()
+    subject = BranchFigure(rows, (("value", "energy"),))
+    chosen = [r["number"] for r in subject.pictured]
+    special = [r["number"] for r in rows if r["kind"] != "point"]
+    assert {0, len(rows) - 1, *special} <= set(chosen)
+    assert chosen == sorted(set(chosen))
+    assert len(chosen) <= 12
+    (axes,) = draw_branch(subject, chosen).axes
+    texts = [number for text in axes.texts for number in text.get_text().split(", ")]
+    assert sorted(map(int, texts)) == chosen
+    for text in axes.texts:
+        number = int(text.get_text().split(",")[0])
+        assert text.xy == pytest.approx((rows[number]["parameters.load"], rows[number]["energy"]))
+    figure = draw_branch(subject, chosen)
+    assert "numbers: points in ribbons.png" in legend_of(figure)
+
+
+def test_pictures_are_spread_along_the_way_not_along_the_points():
+    # many points at the begin, as where steps are short
+    values = [*np.linspace(0, 0.01, 50), *np.linspace(0.1, 1, 10)]
+    rows = [row(i, v, u2=v) for i, v in enumerate(values)]
+    chosen = [r["u2"] for r in BranchFigure(rows, (("value", "u2"),)).pictured]
+    assert max(np.diff(chosen)) < 0.25
+    assert (chosen[0], chosen[-1]) == (0, 1)
+
+
+def test_too_many_special_points_are_not_all_pictured():
+    rows = straight({i: "fold" for i in range(1, 60, 2)}, count=60)
+    chosen = BranchFigure(rows, (("value", "u2"),)).pictured
+    assert len(chosen) <= 12
+    assert sum(r["kind"] == "fold" for r in chosen) == 8
+
+
+def test_captions_name_number_kind_and_value(tmp_path, monkeypatch):
+    said = []
+    monkeypatch.setattr(
+        "ribbonopt.views.branch.plot_strip",
+        lambda _, captions: said.append(captions) or blank(1, 1),
+    )
+    rows = pitchfork()
+    subject = BranchFigure(rows, (("value", "u2"),))
+    save_branch_figures(subject, {4: None, rows[-1]["number"]: None}, tmp_path)
+    ((first, last),) = said
+    assert first == "4  branch point\nparameters.load = 1"
+    assert last == f"{rows[-1]['number']}\nparameters.load = 2\nbranch 2"
+
+
+def test_mirror_images_are_both_seen():
+    rows = [r | {"energy": abs(r["u2"])} for r in pitchfork()]
+    one, other = plot_branch(rows, "value", "energy").axes[0].lines[2:4]
+    assert one.get_linewidth() > 2 * other.get_linewidth()
+    one, other = plot_branch(rows, "value", "u2").axes[0].lines[2:4]
+    assert one.get_linewidth() == other.get_linewidth()
+
+
+def test_a_branch_begins_at_the_nearest_crossing():
+    rows = [
+        row(i, float(i), kind="branch point" if i in (1, 3) else "point", u2=0.0) for i in range(5)
+    ]
+    rows += [row(5, 3.1, branch=1, u2=0.2), row(6, 4.0, branch=1, u2=1.0)]
+    rows += [row(7, 1.1, branch=2, u2=0.2), row(8, 2.0, branch=2, u2=1.0)]
+    drawn = [
+        line.get_xydata()[0].tolist()
+        for line in plot_branch(rows, "value", "u2").axes[0].lines
+        if line.get_color() in COLOURS[1:3]
+    ]
+    assert drawn == [[3, 0], [1, 0]]
+
+
+@pytest.mark.parametrize("si", [False, True])
+def test_axes_bear_units_where_they_are_known(si):
+    path = "boundary.end.position.z"
+    rows = [row(i, i, parameter=path, energy=i, tip=i) for i in range(3)]
+    pairs = (("value", "energy"), (path, "tip"), ("u2", "error"))
+    labels = [
+        (axes.get_xlabel(), axes.get_ylabel())
+        for axes in draw_branch(BranchFigure(rows, pairs, "arch", si=si), []).axes
+    ]
+    expected = [(f"{path} (m)", "energy (J)"), (f"{path} (m)", "tip")]
+    plain = [(path, "energy"), (path, "tip")]
+    assert labels[:2] == (expected if si else plain)
+
+
+def test_rounding_is_flat():
+    rows = [row(i, i, u2=(-1) ** i * 1e-31, m0x=3 + 1e-15 * i, m0y=0.0, m0z=0.0) for i in range(5)]
+    for name in ("u2", "m0x"):
+        (axes,) = plot_branch(rows, "value", name).axes
+        low, high = axes.get_ylim()
+        assert high - low > 1
+        assert low < rows[0][name] < high
+
+
+@pytest.mark.parametrize("branches", [1, 3, 7])
+def test_all_of_the_legend_is_in_the_figure(branches):
+    rows = straight({1: "fold", 2: "kink", 3: "branch point", 4: "buckling point", 5: "new"})
+    rows += [row(7 + b, 1.0, None, branch=b, u2=1.0, note="odd") for b in range(1, branches)]
+    figure = draw_branch(BranchFigure(rows, (("value", "u2"),)), [0])
+    figure.canvas.draw()
+    box = figure.legends[0].get_window_extent()
+    width, height = figure.canvas.get_width_height()
+    assert box.x0 >= 0 and box.y0 >= 0 and box.x1 <= width and box.y1 <= height
