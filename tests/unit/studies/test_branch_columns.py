@@ -107,7 +107,7 @@ def test_dotted_names_are_names_only_where_they_are_known() -> None:
     values = {"law.epsilon": np.array([2.0]), "r": np.array([[1.0, 5.0, 3.0]])}
     assert evaluate_formula("law.epsilon * r.y", values).tolist() == [10.0]
     assert evaluate_formula("law.epsilon**2", {**values, "r.y": np.array([7.0])}).tolist() == [4.0]
-    with pytest.raises(ValueError, match="unknown name 'law'|which no formula may hold"):
+    with pytest.raises(ValueError, match=r"unknown name 'law'|which no formula may hold"):
         evaluate_formula("law.delta", values)
 
 
