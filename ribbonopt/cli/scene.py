@@ -119,8 +119,11 @@ def plot(options: argparse.Namespace) -> int:
         raise SceneError(
             f"--plot: {result} is no branch and no batch, whose columns could be drawn"
         )
-    elif not result.exists() and (beside := Path(f"{result}-branch")).is_dir():
-        raise SceneError(f"{result}: no such folder; did you mean {beside}?")
+    elif not result.is_dir():
+        beside = Path(f"{result}-branch")
+        near = f"; did you mean {beside}?" if beside.is_dir() else ""
+        wanted = "expected one written by ribbonopt solve, continue or batch"
+        raise SceneError(f"{result}: no such folder; {wanted}{near}")
     else:
         solution = load_solution(result)
         paths, left_out = draw_figures(solution, picture_folder(options.out or result))

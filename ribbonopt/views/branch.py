@@ -17,7 +17,7 @@ import numpy as np
 from ribbonopt.plain import Row, Rows
 from ribbonopt.solution.solution import Solution
 
-from .branch_axes import dress, label, unit_of
+from .branch_axes import COUNTS, dress, label, unit_of
 from .branch_numbers import write_numbers
 from .branch_rows import KINK, POINT, BranchFigure, Piece, Plane
 from .branch_style import DOT, STYLES, UNKNOWN, mark_of, marks_of, state_of
@@ -149,7 +149,8 @@ def _curves(plane: Plane, piece: Piece) -> list[Array]:
     if len(piece.rows) == 1:
         return [points]
     rows = [*piece.beyond[::-1], *piece.rows]
-    corners = [i for i, row in enumerate(rows) if row["kind"] == KINK]
+    counts = any(name in COUNTS for name in plane.pair)
+    corners = [i for i, row in enumerate(rows) if row["kind"] == KINK or counts]
     found = curves_through(plane.scaled(plane.points(rows)), corners)
     curves = [plane.values(curve) for curve in found[len(piece.beyond) :]]
     for i, curve in enumerate(curves):

@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.axis import Axis
 
+COUNTS = ("number", "stage", "branch", "negative", "intervals", "iterations")  # nothing is between
 MARGIN = 0.08  # of the axes, beside what is drawn: room for numbers
 LABELS = {"number": "point", "negative": "negative directions", "error": "estimated error"}
 #: SI units of the columns of every row
@@ -51,7 +52,7 @@ def dress(axes: Axes, plane: Plane) -> None:
     for k in range(2):
         axis, name = (axes.xaxis, axes.yaxis)[k], plane.name(k)
         axis.set_label_text(label(name, plane.figure.si) + _stages(plane, k))
-        if name in ("number", "negative"):
+        if name in COUNTS:
             from matplotlib.ticker import MaxNLocator
 
             axis.set_major_locator(MaxNLocator("auto", integer=True))

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 Array = NDArray[np.float64]
 
 FINEST, COARSEST = 24, 2  # parts of a curve between two points
+STEEPEST = 3.0  # slope over that of the chord, at which cubic curves go one way still
 DENSE = 100.0  # parts per unit of length
 
 
@@ -19,6 +20,7 @@ def curves_through(points: Array, corners: Collection[int] = ()) -> list[Array]:
 
     Cubic Hermite curves in the chord length. The tangent at a point is that of the parabola through
     its neighbours and no longer than one: no curve leaves its chord by more than a quarter of it.
+    Along an axis that the points go along one way it does so too.
 
     Parameters
     ----------
@@ -60,4 +62,19 @@ def _tangents(towards: Array, chords: Array) -> Array:
     inner = (after * towards[:, :-1] + before * towards[:, 1:]) / (before + after)
     ends = 2 * towards[:, [0, -1]] - inner[:, [0, -1]]
     ends /= np.maximum(np.hypot(*ends), 1.0)
-    return np.column_stack([ends[:, 0], inner, ends[:, 1]])
+    found = np.column_stack([ends[:, 0], inner, ends[:, 1]])
+    return _one_way(found, towards)
+
+
+def _one_way(tangents: Array, towards: Array) -> Array:
+    """Return tangents (2, k) no steeper along an axis than curves that go one way there have.
+
+    That is three times the lesser slope (Fritsch and Carlson). Next to where points turn nothing is
+    asked: there it would flatten what is round.
+    """
+    sides = np.pad(towards, ((0, 0), (2, 2)), mode="edge")
+    around = np.stack([sides[:, i : i + tangents.shape[1]] for i in range(4)])
+    most = STEEPEST * np.abs(around[1:3]).min(axis=0)
+    up, down = (around > 0).all(axis=0), (around < 0).all(axis=0)
+    tangents = np.where(up, np.clip(tangents, 0, most), tangents)
+    return np.where(down, np.clip(tangents, -most, 0), tangents)

@@ -202,10 +202,11 @@ def test_fold_is_the_same_from_both_directions(configs: Path, snap: Run) -> None
     (fold,) = snap.special(FOLD)
     unstable = [row for row in snap.rows() if row["negative"] == 1]
     begin = min(unstable, key=lambda row: abs(value_of(row) - 20))
+    angle = value_of(begin)
     back = Run(
         configs / "snap.yaml",
         f"guess={{force: [{begin['n0x']}, 0, {begin['n0z']}], moment: [0, {begin['m0y']}, 0]}}",
-        f"continuation={{parameter: parameters.angle, from: {value_of(begin)}, to: 40, largest: 4}}",
+        f"continuation={{parameter: parameters.angle, from: {angle}, to: 40, largest: 4}}",
     )
     (again,) = back.special(FOLD)
     assert value_of(again.row) == pytest.approx(value_of(fold.row), rel=1e-8)

@@ -79,3 +79,15 @@ def test_points_that_coincide_are_no_obstacle(count: int) -> None:
     assert all((curve == 1).all() for curve in curves)
     mixed = whole(np.array([[0, 0, 1, 1, 2], [0, 0, 1, 1, 0]], float))
     assert np.isfinite(mixed).all()
+
+
+@pytest.mark.parametrize("seed", range(4))
+def test_what_goes_one_way_does_so_between(seed: int) -> None:
+    # steps of very different lengths, as of counts that change at once
+    rng = np.random.default_rng(seed)
+    points = np.cumsum(10 ** rng.uniform(-4, 0, (2, 30)), axis=1)
+    assert (np.diff(whole(points)) >= -1e-12).all()
+    points[1] = np.repeat([0.0, 1.0, 0.0], 10)
+    curve = whole(points)
+    assert (np.diff(curve[0]) >= -1e-12).all()
+    assert curve[1].min() > -0.2 and curve[1].max() < 1.2
