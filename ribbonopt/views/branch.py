@@ -125,7 +125,7 @@ def _panel(
 
 def _draw(axes: Axes, plane: Plane, numbered: Sequence[int]) -> None:
     """Draw curves, marks and numbers of a plane that has points."""
-    plain = {"ls": "-", "lw": 1.6} if _all_unknown(plane.figure) else {}
+    plain = _plain(plane.figure)
     curves = [_curves(plane, piece) for piece in plane.pieces]
     for i, (piece, found) in enumerate(zip(plane.pieces, curves, strict=True)):
         colour = COLOURS[piece.rows[-1]["branch"] % len(COLOURS)]
@@ -133,7 +133,7 @@ def _draw(axes: Axes, plane: Plane, numbered: Sequence[int]) -> None:
         for state, curve in _stretches(piece.rows, found):
             style = STYLES[state] | plain | (DOT if curve.shape[1] == 1 else {})
             style["lw"] *= wider
-            axes.plot(*curve, color=colour, label="_" if plain else state, **style)
+            axes.plot(*curve, color=colour, label=state, **style)
     for name, chosen in marks_of(plane).items():
         if chosen:
             axes.plot(*plane.points(chosen), label=name, **STYLES[name])
@@ -149,8 +149,8 @@ def _curves(plane: Plane, piece: Piece) -> list[Array]:
     if len(piece.rows) == 1:
         return [points]
     rows = [*piece.beyond[::-1], *piece.rows]
-    counts = any(name in COUNTS for name in plane.pair)
-    corners = [i for i, row in enumerate(rows) if row["kind"] == KINK or counts]
+    rough = any(name in (*COUNTS, "error") for name in plane.pair)  # nothing is between points
+    corners = [i for i, row in enumerate(rows) if row["kind"] == KINK or rough]
     found = curves_through(plane.scaled(plane.points(rows)), corners)
     curves = [plane.values(curve) for curve in found[len(piece.beyond) :]]
     for i, curve in enumerate(curves):
@@ -184,8 +184,10 @@ def _behind(plane: Plane, curves: Sequence[Array], later: Sequence[Sequence[Arra
     return False
 
 
-def _all_unknown(subject: BranchFigure) -> bool:
-    return all(state_of(row) == UNKNOWN for row in subject.rows)
+def _plain(subject: BranchFigure) -> dict[str, Any]:
+    """Return how curves are drawn where stability is known nowhere; nothing where it is."""
+    known = any(state_of(row) != UNKNOWN for row in subject.rows)
+    return {} if known else {"ls": "-", "lw": 1.6}
 
 
 def _caption(row: Row, subject: BranchFigure) -> str:
@@ -210,7 +212,8 @@ def _legend(figure: Figure, subject: BranchFigure, numbers: bool) -> None:
         entries[f"branch {branch}"] = {"color": COLOURS[branch % len(COLOURS)], "lw": 3}
     for name in (name for name in STYLES if name in names):
         count = sum(row["kind"] != POINT and mark_of(row) == name for row in drawn)
-        entries[name + (f" ({count})" if count else "")] = {"color": INK} | STYLES[name]
+        plain = _plain(subject) if name == UNKNOWN else {}
+        entries[name + (f" ({count})" if count else "")] = {"color": INK} | STYLES[name] | plain
     handles = [Line2D([], [], label=text, **style) for text, style in entries.items()]
     if numbers:
         handles.append(Line2D([], [], label="numbers: points in ribbons.png", color=INK, **DOT))

@@ -13,7 +13,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.axis import Axis
 
-COUNTS = ("number", "stage", "branch", "negative", "intervals", "iterations")  # nothing is between
+COUNTS = ("number", "stage", "branch", "negative", "intervals", "iterations")
 MARGIN = 0.08  # of the axes, beside what is drawn: room for numbers
 LABELS = {"number": "point", "negative": "negative directions", "error": "estimated error"}
 #: SI units of the columns of every row

@@ -31,6 +31,7 @@ from branches import (
 
 from ribbonopt.cli.progress import ProgressLine
 from ribbonopt.studies.continuation.recorded import value_of
+from ribbonopt.studies.continuation.walk.steps import JUMPED
 from ribbonopt.views.style import Drawn
 
 Run = Callable[..., Any]
@@ -226,6 +227,36 @@ def test_what_is_drawn(
     for row in rows:
         if row["number"] in ribbons:
             assert ribbons[row["number"]].energy == pytest.approx(row["energy"], abs=1e-12)
+
+
+def test_a_jump_that_is_noted_is_drawn_as_one(
+    run: Run, whole: Callable[[str], Whole], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    calls: list[tuple[Any, ...]] = []
+
+    def note(*arguments: Any, **_: Any) -> Drawn:
+        calls.append(arguments)
+        return Drawn([], [])
+
+    monkeypatch.setattr("ribbonopt.views.branch.save_branch_figures", note)
+    reference = whole("fold")
+    lines = [json.loads(line) for line in reference.lines]
+    for number, text in ((2, JUMPED), (4, "phases: m2 > 0"), (5, f"phases: m2 > 0; {JUMPED}")):
+        lines[number]["row"]["note"] = text
+    data = "".join(json.dumps(line) + "\n" for line in lines).encode()
+    assert run("plot", reference.cut(tmp_path / "o", data)).status == 0
+    ((figure, _, _),) = calls
+    assert list(figure.jumps) == [2, 5]
+
+
+@pytest.mark.parametrize("there", [True, False])
+def test_a_folder_that_is_not_there(run: Run, tmp_path: Path, there: bool) -> None:
+    if there:
+        (tmp_path / "results" / "snap-branch").mkdir(parents=True)
+    status, out, err = run("plot", "results/snap")
+    assert (status, out, err.count("\n")) == (2, "", 1)
+    assert "results/snap: no such folder; expected one written by" in err
+    assert ("did you mean results/snap-branch?" in err) == there
 
 
 # a terminal

@@ -152,10 +152,11 @@ def test_where_stability_changes_between_points_it_is_unknown():
 
 def test_without_any_stability_lines_are_plain():
     figure = plot_branch([row(i, i, None, u2=i) for i in range(3)], "value", "u2")
-    (line, *_) = figure.axes[0].lines
+    (line,) = lines_of(figure.axes[0], "stability unknown")
     assert not line.is_dashed()
     on_curve(line.get_xydata(), [[0, 0], [1, 1], [2, 2]])
-    assert legend_of(figure) == ["first point", "last point"]
+    assert legend_of(figure) == ["stability unknown", "first point", "last point"]
+    assert not figure.legends[0].get_lines()[0].is_dashed()
 
 
 @pytest.mark.parametrize("log", [True, ["law.epsilon"]])
