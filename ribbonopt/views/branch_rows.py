@@ -162,15 +162,16 @@ class Plane:
         begins = [self._origin(run) for run in self.runs]
         found = []
         for run, begin in zip(self.runs, begins, strict=True):
-            sides = [
-                r for r, b in zip(self.runs, begins, strict=True) if b is begin and r is not run
-            ]
             # Where two runs leave one point they are the halves of one curve through it.
+            others = ((r, b) for r, b in zip(self.runs, begins, strict=True) if r is not run)
+            sides = [r for r, b in others if b is begin]
+            # So are one that begins there and one that leaves it: the two ways from a start.
+            sides += [r[1:] for r in self.runs if r[0] is begin and r is not run]
             beyond = sides[0][:BEYOND] if begin is not None and len(sides) == 1 else []
             rows = [] if begin is None else [begin]
             for row in run:
-                if row["number"] in self.figure.jumps and rows:
-                    found.append(Piece(rows, beyond))
+                if row["number"] in self.figure.jumps:
+                    found += [Piece(rows, beyond)] if rows and rows[-1] is not begin else []
                     rows, beyond = [], []
                 rows.append(row)
             found.append(Piece(rows, beyond))
@@ -199,7 +200,12 @@ class Plane:
 
 
 def origin_of(first: Row, rows: Rows) -> Row | None:
-    """Return the crossing that a branch leaves: the nearest one found before its first point."""
+    """Return the point that a branch leaves, from its first one.
+
+    Where rows do not say (`origin`, a number) it is the nearest of the crossings found before.
+    """
+    if first.get("origin") is not None:
+        return next((row for row in rows if row["number"] == first["origin"]), None)
     crossings = [
         row
         for row in rows

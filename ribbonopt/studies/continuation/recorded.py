@@ -116,11 +116,10 @@ class Recorder:
         given = {path: value_at(scene, path) for path in self.parameters if path != stage.parameter}
         return {path: given.get(path, value) for path in self.parameters}
 
-    def stopped(self, row: Mapping[str, Any], stage: ContinuationStage) -> str:
-        """Return the condition of a stage that a row meets, "" if none."""
-        others = {VALUE: row.get(stage.parameter)}
-        others |= {name: row.get(path) for name, path in self.short.items()}
-        return stopped({**row, **others}, stage)
+    def named(self, row: Mapping[str, Any], stage: ContinuationStage) -> Row:
+        """Return a row of a stage with the numbers by all their names, as conditions may say."""
+        others = {name: row.get(path) for name, path in self.short.items()}
+        return {**row, VALUE: row.get(stage.parameter), **others}
 
 
 @dataclass(frozen=True, eq=False)
@@ -136,7 +135,8 @@ class StageRecords:
 
     def stopped(self, row: Mapping[str, Any]) -> str:
         """Return the condition of the stage that a row meets, "" if none."""
-        return self.recorder.stopped(row, self.curve.stage)
+        stage = self.curve.stage
+        return stopped(self.recorder.named(row, stage), stage)
 
 
 def value_of(row: Mapping[str, Any]) -> float:

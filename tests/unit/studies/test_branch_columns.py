@@ -10,7 +10,13 @@ from ribbonopt.scene import loads_scene
 from ribbonopt.scene.stages import words_of
 from ribbonopt.solution.sampling import evaluate_formula
 from ribbonopt.studies.continuation.columns import COLUMNS
-from ribbonopt.studies.continuation.recorded import NUMBERS, WORDS, Recorder, value_of
+from ribbonopt.studies.continuation.recorded import (
+    NUMBERS,
+    WORDS,
+    Recorder,
+    stopped,
+    value_of,
+)
 
 ROOT = Path(__file__).parents[3]
 SCENE = """\
@@ -69,7 +75,7 @@ def test_a_record_has_its_own_name() -> None:
     stage = loads_scene(
         SCENE.format(record="load: 'dot(r, ex)'", more=", stop: [load > 2, value > 4]")
     ).continuation[0]
-    assert found.stopped(row, stage) == "value > 4"
+    assert stopped(found.named(row, stage), stage) == "value > 4"
 
 
 @pytest.mark.parametrize(
@@ -84,10 +90,10 @@ def test_conditions_name_numbers_that_move(condition: str) -> None:
     found = recorder(more=more)
     stage = loads_scene(SCENE.format(record="", more=more)).continuation[0]
     row = {"parameter": "parameters.load", "parameters.load": 1.6, "law.epsilon": 0.1}
-    assert found.stopped(row, stage) == condition
+    assert stopped(found.named(row, stage), stage) == condition
     assert value_of(row) == 1.6
     none = row | {"parameters.load": 1.4, "law.epsilon": 1e-3}
-    assert found.stopped(none, stage) == (condition if "1e3" in condition else "")
+    assert stopped(found.named(none, stage), stage) == (condition if "1e3" in condition else "")
 
 
 @pytest.mark.parametrize("condition", ["law.delta > 1", "epsilon < 1", "r.x > 1", "load.x > 1"])

@@ -440,3 +440,36 @@ def test_all_of_the_legend_is_in_the_figure(branches):
     box = figure.legends[0].get_window_extent()
     width, height = figure.canvas.get_width_height()
     assert box.x0 >= 0 and box.y0 >= 0 and box.x1 <= width and box.y1 <= height
+
+
+def test_rows_may_say_where_a_branch_begins():
+    rows = [row(i, float(i), kind="branch point" if i == 3 else "point", u2=0.0) for i in range(5)]
+    rows += [row(5, 3.1, branch=1, u2=0.2, origin=1), row(6, 4.0, branch=1, u2=1.0, origin=1)]
+    (branch,) = (
+        line
+        for line in plot_branch(rows, "value", "u2").axes[0].lines
+        if line.get_color() == COLOURS[1]
+    )
+    assert branch.get_xydata()[0].tolist() == [1, 0]
+
+
+def test_the_two_ways_from_a_start_are_one_curve():
+    def there(x):
+        return (x - 0.3) ** 2
+
+    ways = [np.linspace(0, 1, 6), np.linspace(0, -1, 6)[1:]]
+    rows = [row(i, x, u2=there(x)) for i, x in enumerate(ways[0])]
+    rows += [row(6 + i, x, branch=1, origin=0, u2=there(x)) for i, x in enumerate(ways[1])]
+    lines = plot_branch(rows, "value", "u2").axes[0].lines
+    curve = next(line for line in lines if line.get_color() == COLOURS[1]).get_xydata()
+    assert curve[0].tolist() == [0, there(0)]
+    slope = (curve[1, 1] - curve[0, 1]) / (curve[1, 0] - curve[0, 0])
+    assert slope == pytest.approx(-0.6, abs=0.06)
+
+
+def test_a_branch_that_begins_with_a_jump_is_not_joined():
+    rows = pitchfork()
+    first = next(r["number"] for r in rows if r["branch"] == 1)
+    axes = draw_branch(BranchFigure(rows, (("value", "u2"),), jumps=[first]), []).axes[0]
+    drawn = [line for line in axes.lines if line.get_color() == COLOURS[1]]
+    assert [line.get_xydata()[0].tolist() for line in drawn] == [[1.25, 0.5]]
