@@ -36,7 +36,7 @@ def _place(row: Row, digits: str) -> str:
     return f"{row['parameter']} = {value_of(row):{digits}}"
 
 
-def _more(row: Row, before: Row | None, switch: bool) -> str:
+def _more(row: Row, before: Row | None, switch: bool | int) -> str:
     """Say how to reach the ribbons that leave a special point, and what is noted of it alone."""
     told = _parts(before) if before else []
     note = "; ".join(part for part in _parts(row) if part not in told)
