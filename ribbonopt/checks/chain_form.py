@@ -6,7 +6,7 @@ B_e y_e and conditions C (x_0, x_N) = 0; independent are x_0 and all y.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -37,6 +37,15 @@ class ChainForm:
     ends: Array
     C: Array
     mass: Array
+
+    def gauged(self, number: float) -> ChainForm:
+        """Return the same form, `number` |x|^2 / 2 at every node passed on to the next element."""
+        nx = self.A.shape[1]
+        step = np.concatenate([self.A, self.B], axis=2)
+        Q = self.Q + number * step.swapaxes(1, 2) @ step
+        Q[:, :nx, :nx] -= number * np.eye(nx)
+        ends = self.ends + number * np.diag(np.repeat([1.0, -1.0], nx))
+        return replace(self, Q=Q, ends=ends)
 
     def nodes(self, x0: Array, y: Array) -> Array:
         """States (N + 1, nx) from x_0 and the own variables (N, m)."""

@@ -8,8 +8,11 @@ variables y are eliminated is a function of the state before and the costate beh
 and two that follow each other are one such function again once what lies between them, (x, p), is
 eliminated. Neighbours are joined in pairs, then the pairs, all of one level at once. By Sylvester's
 and Haynsworth's theorems the negative eigenvalues of all pivots together, less one for each
-multiplier, are the negative directions of the form under its conditions. A pivot is singular where
-a part of the chain, held at one end and free at the other, is critical: then others are joined.
+multiplier, are the negative directions of the form under its conditions.
+
+A pivot is singular where a part of the chain, held at one end and free at the other, is critical.
+Then its ends are put on springs, which neighbours give to each other: g |x|^2 / 2 behind the one is
+as much less before the other, and changes nothing of the whole.
 """
 
 from __future__ import annotations
@@ -19,19 +22,21 @@ from typing import NamedTuple
 import numpy as np
 
 from ribbonopt.arrays import Array
-from ribbonopt.transcription.layout import Index
 
 from .chain_form import ChainForm
 
 SINGULAR = 1e-6  # eigenvalue of a pivot, over the largest, from which on rounding is magnified
-ARRANGEMENTS = 4  # ways to join neighbours that are tried
+LEAST = 1e-15  # the same: is zero
+SPRINGS = (0.0, 1.0, -0.6, 2.7)  # that are tried, over the impedance of the elements
 
 
 def factored(form: ChainForm, shift: float) -> Elimination:
     """Return the elimination of a form plus `shift` times its metric."""
-    tried = []
-    for arrangement in range(ARRANGEMENTS):
-        tried.append(Elimination(form, shift, arrangement))
+    tried: list[Elimination] = []
+    for spring in SPRINGS:
+        # A stiffness, as the root of stiffness over compliance.
+        number = spring * tried[0].impedance if tried else 0.0
+        tried.append(Elimination(form.gauged(number) if number else form, shift))
         if tried[-1].least > SINGULAR:
             return tried[-1]
     return max(tried, key=lambda each: each.least)
@@ -44,17 +49,10 @@ class Segments(NamedTuple):
     A: Array
     Y: Array
 
-    def at(self, rows: Index) -> Segments:
-        """Return some of them."""
-        return Segments(*(part[rows] for part in self))
-
 
 class _Level(NamedTuple):
-    """What joins pairs of segments: those before and behind, their pivots inverted, and corners."""
+    """What joins pairs of segments: the inverses of their pivots, and what these are coupled to."""
 
-    before: Index
-    behind: Index
-    kept: Index
     inverse: Array
     coupling: Array
 
@@ -66,14 +64,15 @@ class Elimination:
     nearest to zero, over the largest of that pivot or one.
     """
 
-    def __init__(self, form: ChainForm, shift: float, arrangement: int = 0) -> None:
+    def __init__(self, form: ChainForm, shift: float) -> None:
         self.form, self.nx = form, form.A.shape[1]
         self.negative, self.least = 0, np.inf
         segments = self._elements(shift)
+        P, Y = (max(float(np.abs(part).max()), LEAST) for part in (segments.P, segments.Y))
+        self.impedance = float(np.sqrt(P / Y))
         self.levels: list[_Level] = []
         while len(segments.P) > 1:
-            skip = (arrangement >> len(self.levels)) & 1 if len(segments.P) > 2 else 0
-            segments = self._joined(segments, skip)
+            segments = self._joined(segments)
         self._closed(segments, shift)
 
     def _elements(self, shift: float) -> Segments:
@@ -82,9 +81,9 @@ class Elimination:
         own = form.Q[:, nx:, nx:] + np.diag(shift * form.mass)
         try:
             np.linalg.cholesky(own)
+            self.own = np.linalg.inv(own)
         except np.linalg.LinAlgError:
-            self._count(np.asarray(np.linalg.eigvalsh(own)))
-        self.own = np.linalg.inv(own)
+            self.own = self._inverted(own)
         self.sides = np.concatenate([form.Q[:, nx:, :nx], form.B.swapaxes(1, 2)], axis=2)
         change = self.sides.swapaxes(1, 2) @ self.own @ self.sides
         return Segments(
@@ -93,27 +92,23 @@ class Elimination:
             change[:, nx:, nx:],
         )
 
-    def _joined(self, segments: Segments, skip: int) -> Segments:
-        """Join neighbours in pairs, all but the first `skip`, and maybe the last."""
-        count, nx = len(segments.P), self.nx
-        before = np.arange(skip, count - 1, 2)
-        kept = np.setdiff1d(np.arange(count), np.concatenate([before, before + 1]))
-        a, b = segments.at(before), segments.at(before + 1)
-        values, vectors, scale = _eigen(_pivots(b.P, a.Y))
-        self._count(values)
-        self.negative -= nx * len(before)
-        scaled = vectors * scale[..., None]
-        inverse = (scaled / values[:, None]) @ scaled.swapaxes(1, 2)
-        coupling = np.zeros((len(before), 2 * nx, 2 * nx))
+    def _joined(self, segments: Segments) -> Segments:
+        """Join neighbours in pairs; the last one may be left."""
+        nx, count = self.nx, len(segments.P) // 2
+        a, b, rest = (
+            Segments(*parts)
+            for parts in zip(*(_pairs(part, count) for part in segments), strict=True)
+        )
+        inverse = self._inverted(_pivots(b.P, a.Y))
+        self.negative -= nx * count
+        coupling = np.zeros((count, 2 * nx, 2 * nx))
         coupling[:, :nx, nx:], coupling[:, nx:, :nx] = b.A.swapaxes(1, 2), a.A
         change = coupling.swapaxes(1, 2) @ inverse @ coupling
         joined = Segments(
             a.P - change[:, :nx, :nx], -change[:, nx:, :nx], b.Y + change[:, nx:, nx:]
         )
-        self.levels.append(_Level(before, before + 1, kept, inverse, coupling))
-        order = np.argsort(np.concatenate([kept, before]), kind="stable")
-        parts = zip(segments.at(kept), joined, strict=True)
-        return Segments(*(np.concatenate(part)[order] for part in parts))
+        self.levels.append(_Level(inverse, coupling))
+        return Segments(*(np.concatenate(both) for both in zip(joined, rest, strict=True)))
 
     def _closed(self, whole: Segments, shift: float) -> None:
         """Eliminate the rest: (x_0, x_N, p_N) and the multipliers of the conditions."""
@@ -125,46 +120,56 @@ class Elimination:
         K[2 * nx : 3 * nx, 2 * nx : 3 * nx] = -Y
         K[3 * nx :, : 2 * nx] = C
         K = np.tril(K) + np.tril(K, -1).T
-        values, vectors, scale = _eigen(K[None])
-        self.negative += int((values < 0).sum()) - nx - len(C)
-        scaled = vectors[0] * scale[0][:, None]
-        self.last = (scaled / values[0]) @ scaled.T
+        least = self.least
+        self.last = self._inverted(K[None])[0]
+        self.negative -= nx + len(C)
+        self.least = least  # where the whole is critical it is what was asked
 
-    def _count(self, values: Array) -> None:
+    def _inverted(self, matrices: Array) -> Array:
+        """Inverses of symmetric pivots (n, k, k), whose inertia is counted."""
+        values, vectors, scale = _eigen(matrices)
         sizes = np.abs(values)
+        largest = np.maximum(sizes.max(axis=1), 1.0)[:, None]
         self.negative += int((values < 0).sum())
-        relative = sizes.min(axis=1) / np.maximum(sizes.max(axis=1), 1.0)
-        self.least = min(self.least, float(relative.min()))
+        self.least = min(self.least, float((sizes / largest).min()))
+        values = np.where(sizes < LEAST * largest, LEAST * largest, values)
+        scaled = vectors * scale[..., None]
+        inverse: Array = (scaled / values[:, None]) @ scaled.swapaxes(1, 2)
+        return inverse
 
     def solve(self, f0: Array, f: Array) -> tuple[Array, Array]:
         """Return x_0 and y (N, m) where the form less f_0 . x_0 + f . y is stationary."""
         nx = self.nx
+        # A line (state before; costate behind) for every segment, and those between pairs.
         lines = (self.sides.swapaxes(1, 2) @ (self.own @ f[..., None]))[..., 0]
-        # A line (state before; costate behind) for every segment; what is eliminated is kept.
-        inner: list[tuple[Index, Array]] = []
-        nodes: Index = np.arange(len(f) + 1)
+        inner = []
         for level in self.levels:
-            a, b = lines[level.before], lines[level.behind]
+            a, b, rest = _pairs(lines, len(level.inverse))
             between = np.concatenate([b[:, :nx], a[:, nx:]], axis=1)
             outer = np.concatenate([a[:, :nx], b[:, nx:]], axis=1)
             change = level.coupling.swapaxes(1, 2) @ (level.inverse @ between[..., None])
-            inner.append((nodes, between))
-            order = np.argsort(np.concatenate([level.kept, level.before]), kind="stable")
-            lines = np.concatenate([lines[level.kept], outer - change[..., 0]])[order]
-            nodes = np.delete(nodes, level.behind)
+            inner.append(between)
+            lines = np.concatenate([outer - change[..., 0], rest])
         side = np.zeros(len(self.last))
         side[:nx], side[2 * nx : 3 * nx] = lines[0, :nx] - f0, lines[0, nx:]
         found = -self.last @ side
-        x, p = np.empty((len(f) + 1, nx)), np.empty((len(f) + 1, nx))
-        x[0], p[-1] = found[:nx], found[2 * nx : 3 * nx]
-        for level, (at, between) in zip(reversed(self.levels), reversed(inner), strict=True):
-            outer = np.concatenate([x[at[level.before]], p[at[level.behind + 1]]], axis=1)
-            total = (level.coupling @ outer[..., None])[..., 0] + between
-            value = -(level.inverse @ total[..., None])[..., 0]
-            middle = at[level.behind]
-            x[middle], p[middle] = value[:, :nx], value[:, nx:]
-        outer = np.concatenate([x[:-1], p[1:]], axis=1)
-        return x[0], (self.own @ (f - (self.sides @ outer[..., None])[..., 0])[..., None])[..., 0]
+        # State before and costate behind every segment.
+        outer = np.concatenate([found[:nx], found[2 * nx : 3 * nx]])[None]
+        for level, between in zip(reversed(self.levels), reversed(inner), strict=True):
+            joined, rest = np.split(outer, [len(between)])
+            total = (level.coupling @ joined[..., None])[..., 0] + between
+            middle = -(level.inverse @ total[..., None])[..., 0]
+            before = np.concatenate([joined[:, :nx], middle[:, nx:]], axis=1)
+            behind = np.concatenate([middle[:, :nx], joined[:, nx:]], axis=1)
+            both = np.stack([before, behind], axis=1).reshape(-1, 2 * nx)
+            outer = np.concatenate([both, rest])
+        own = self.own @ (f - (self.sides @ outer[..., None])[..., 0])[..., None]
+        return outer[0, :nx], own[..., 0]
+
+
+def _pairs(parts: Array, count: int) -> tuple[Array, Array, Array]:
+    """Return the first and the second ones of pairs, and what is left behind them."""
+    return parts[: 2 * count : 2], parts[1 : 2 * count : 2], parts[2 * count :]
 
 
 def _pivots(P: Array, Y: Array) -> Array:

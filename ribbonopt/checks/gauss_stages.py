@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
@@ -13,6 +14,7 @@ from ribbonopt.mechanics.section import RodFields
 from ribbonopt.problem import Ribbon
 from ribbonopt.solution.solution import Solution
 from ribbonopt.transcription import Tableau, gauss
+from ribbonopt.transcription.tableaus import MAX_DEGREE
 
 from .zero_moment import lacks_linearisation
 
@@ -41,6 +43,8 @@ class GaussStages:
         Elements that begin at a switch.
     x_switch, z_switch : (k, nx), (k, nz) arrays
         States and moments there.
+    switching : (N K,) array
+        What changes its sign where the law switches.
     error : float
         Relative error of the shape as estimated; zero where it shows elsewhere.
     """
@@ -54,6 +58,7 @@ class GaussStages:
     firsts: NDArray[np.intp]
     x_switch: Array
     z_switch: Array
+    switching: Array
     error: float
 
 
@@ -66,41 +71,29 @@ def gauss_stages(solution: Solution, ribbon: Ribbon) -> GaussStages:
     """
     trajectory, degree = solution.trajectory, solution.dense.blocks.degree
     widths, parts = np.diff(trajectory.nodes), 1
-    places, own = _places(widths, degree), trajectory.stages[1]
-    error = None
-    if own.shape == places.shape and np.abs(own - places).max() < SAME:
-        error = _known_error(solution)
+    own, error = trajectory.stages[1], None
+    if len(own) == len(widths) * degree and degree <= MAX_DEGREE:
+        places = _places(widths, degree)
+        if np.abs(own - places).max() < SAME:
+            error = _known_error(solution)
     if error is not None:
-        o = trajectory.at_stages
-        r, n, m = o["r"], o["n"], o["m"]
-        fields = RodFields(r, np.stack([o["d1"], o["d2"], o["d3"]], axis=2), n, m)
+        along = trajectory.at_stages
     else:
         parts = -(-LEAST_ELEMENTS // len(widths))
         widths = np.repeat(widths / parts, parts)
         degree = min(degree, max(4, STAGES // len(widths)), HIGHEST_DEGREE)
         places = _places(widths, degree)
-        fields = solution.fields(places)
+        along = trajectory.outputs(places)
     lengths = np.array(trajectory.dense.blocks.layout.elements)
     firsts = parts * np.cumsum(lengths)[:-1]
+    points = {k: v[[0, *(firsts // parts), -1]] for k, v in trajectory.at_nodes.items()}
     # Packed together, in order, for quaternions that do not change their sign.
     at = np.concatenate([[0], degree * firsts, [len(places)]])
-    o = {name: value[[0, *(firsts // parts), -1]] for name, value in trajectory.at_nodes.items()}
-    frames = np.stack([o["d1"], o["d2"], o["d3"]], axis=2)
-    points = RodFields(o["r"], frames, o["n"], o["m"])
-    every = RodFields(
-        *(
-            np.insert(a, at, b, axis=0)
-            for a, b in (
-                (fields.r, points.r),
-                (fields.frames, points.frames),
-                (fields.n, points.n),
-                (fields.m, points.m),
-            )
-        )
-    )
+    pairs = zip(_fields(along), _fields(points), strict=True)
+    fields = RodFields(*(np.insert(a, at, b, axis=0) for a, b in pairs))
     # Any point of reference will do: it is for constants, which the energy does without.
-    x, _ = ribbon.model.pack(every, every.r[0])
-    z = np.einsum("ki,kij->kj", every.m, every.frames)[:, list(ribbon.law.components)]
+    x, _ = ribbon.model.pack(fields, fields.r[0])
+    z = np.einsum("ki,kij->kj", fields.m, fields.frames)[:, list(ribbon.law.components)]
     rows = at + np.arange(len(at))
     inside = np.delete(np.arange(len(x)), rows)
     between = rows[1:-1]
@@ -114,6 +107,7 @@ def gauss_stages(solution: Solution, ribbon: Ribbon) -> GaussStages:
         firsts,
         x[between],
         z[between],
+        along["switching"],
         error or 0.0,
     )
 
@@ -123,6 +117,11 @@ def _places(widths: Array, degree: int) -> Array:
     starts = np.append(0.0, np.cumsum(widths)[:-1])
     places: Array = (starts[:, None] + widths[:, None] * gauss(degree).nodes).ravel()
     return places
+
+
+def _fields(o: Mapping[str, Array]) -> tuple[Array, Array, Array, Array]:
+    """Return r, frames, n and m of named outputs, in the order of `RodFields`."""
+    return o["r"], np.stack([o["d1"], o["d2"], o["d3"]], axis=2), o["n"], o["m"]
 
 
 def _known_error(solution: Solution) -> float | None:

@@ -2,8 +2,8 @@
 
 Eigenvalues are those of the second variation over the integral of the squared moments along the
 ribbon, as fractions of its length, units Dw = L = 1: compliances. They go through zero at folds and
-branch points. The smallest is enclosed by counting those below a shift, and found by inverse
-iteration next to it.
+branch points. The smallest is found by inverse iteration from shifts that approach it from below,
+as the count of those below the shift shows.
 """
 
 from __future__ import annotations
@@ -21,8 +21,10 @@ from .elimination import factored
 from .stability import variation_of
 from .variation import Variation
 
-NARROW, EXACT = 1e-2, 1e-13  # of the largest eigenvalue: width of the enclosure, and standstill
-MOST = 60  # shifts, and steps of the inverse iteration
+EXACT = 1e-7  # of the largest eigenvalue: width of the enclosure at which the shift is near
+MOST, STEPS = 40, 3  # shifts, and steps of the inverse iteration with each
+STILL = 1e-9  # largest displacement over the largest rotation: nothing moves
+NEARER = 0.05  # distance of the next shift from the eigenvalue, over that of the last
 
 
 @dataclass(frozen=True, eq=False)
@@ -55,9 +57,9 @@ def softest(solution: Solution) -> Softest | str:
     start, end = solution.scene.interval
     places = np.concatenate([[0.0], variation.stages.places, [1.0]])
     displacement, rotation = _shape(variation, x0, own)
-    size = max(np.linalg.norm(part, axis=1).max() for part in (displacement,))
-    if size <= EXACT * np.linalg.norm(rotation, axis=1).max():
-        size = np.linalg.norm(rotation, axis=1).max()
+    size, turn = (float(np.linalg.norm(v, axis=1).max()) for v in (displacement, rotation))
+    if size <= STILL * turn:
+        size = turn
     s = start + (end - start) * places
     return Softest(eigenvalue, s, displacement / size, rotation / size)
 
@@ -65,30 +67,28 @@ def softest(solution: Solution) -> Softest | str:
 def _smallest(form: ChainForm, largest: float) -> tuple[float, Array, Array]:
     """Smallest eigenvalue, with x_0 (nx,) and own variables (N, m) of its mode."""
     N, nx, m = form.B.shape
-    below, above = -largest, largest
-    while factored(form, -below).negative:
-        above, below = below, 4 * below
-    for _ in range(MOST):
-        if above - below <= NARROW * max(abs(above), abs(below), NARROW * largest):
-            break
-        middle = (below + above) / 2
-        if factored(form, -middle).negative:
-            above = middle
-        else:
-            below = middle
-    factors = factored(form, -below)
+    below, above = -largest, np.inf
+    while (factors := factored(form, -below)).negative:
+        below *= 4
     phase = np.arange(nx + N * m) ** 2 % 7 + 1.0
-    x0, own, last = phase[:nx], phase[nx:].reshape(N, m) * form.mass, np.inf
+    x0, own = phase[:nx], phase[nx:].reshape(N, m)
     for _ in range(MOST):
-        size = np.sqrt(x0 @ x0 + (form.mass * own**2).sum())
-        x0, own = x0 / size, own / size
-        before = x0, form.mass * own
-        x0, own = factors.solve(*before)
-        # 1 / (eigenvalue - shift), by the quotient of both.
+        for _ in range(STEPS):
+            x0, own = x0, form.mass * own
+            size = np.sqrt(x0 @ x0 + (own**2).sum())
+            before = x0 / size, own / size
+            x0, own = factors.solve(*before)
+        # Never below the eigenvalue: a quotient of the inverse, the shift being below it.
         found = below + 1 / float(x0 @ before[0] + (own * before[1]).sum())
-        if abs(found - last) <= EXACT * largest:
+        above = min(above, found)
+        if above - below <= EXACT * largest:
             break
-        last = found
+        nearer = above - NEARER * (above - below)
+        tried = factored(form, -nearer)
+        if tried.negative:
+            above = nearer
+        else:
+            below, factors = nearer, tried
     return found, x0, own
 
 

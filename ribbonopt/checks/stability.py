@@ -22,9 +22,9 @@ from .elimination import factored
 from .variation import Energy, Variation
 from .zero_moment import unbent_share
 
-STATIONARY = 1e-3  # largest relative error, or part of the gradient that no multipliers balance
 # Neutral directions (a loop that slides along itself) have eigenvalues of the order of the error.
-NEUTRAL, ROUNDING = 10.0, 1e-9  # times the error, at least; of the largest eigenvalue
+ROUNDING = 1e-9  # of the largest eigenvalue: error of the others, at least,
+MOST = 1e-2  # and at most
 
 NO_EQUILIBRIUM = "this is no equilibrium"
 
@@ -34,7 +34,7 @@ class SecondVariation:
     """Second variation of the energy on the directions that keep the conditions.
 
     `negative` is the number of its clearly negative eigenvalues, those below -`neutral`. `error` is
-    that of the discretisation, relative, `largest` about the largest eigenvalue. Units Dw = L = 1.
+    that of eigenvalues, over the largest, which is about `largest`. Units Dw = L = 1.
     """
 
     negative: int
@@ -73,7 +73,7 @@ def _judged(variation: Variation | str) -> SecondVariation | str:
     if isinstance(variation, str):
         return variation
     largest, error = variation.largest, variation.error
-    neutral = max(NEUTRAL * error, ROUNDING) * largest
+    neutral = max(error, ROUNDING) * largest
     negative = factored(variation.form, neutral).negative
     return SecondVariation(negative, neutral, error, largest)
 
@@ -99,10 +99,12 @@ def variation_of(solution: Solution) -> Variation | str:
     if refused is not None:
         return refused.reason
     found = energy.variation(solution, posed.values)
-    if found.error < STATIONARY:
+    if found.error < MOST:
         return found
+    if found.residual < found.stages.error:
+        return f"the shape is known to {found.stages.error:.1e} only: the mesh is too coarse"
     return (
-        f"the energy is not stationary (the part {found.error:.1e} of its gradient is left): "
+        f"the energy is not stationary (the part {found.residual:.1e} of its gradient is left): "
         "loads that are prescribed do work, or the mesh is too coarse"
     )
 
@@ -111,12 +113,14 @@ def _on_the_kink(solution: Solution) -> str:
     """Say where a solution of a kinked law is not clearly on one side of it; empty if nowhere."""
     if 0 in solution.sheets:
         return "in a mixture of both sheets, where m2 stays zero"
-    o, scale = (
-        solution.trajectory.at_stages,
-        float(np.abs(solution.trajectory.at_stages["m"]).max()),
-    )
-    near = (np.abs(o["switching"]) <= NEGLIGIBLE * scale) & (o["leap"] > NEGLIGIBLE * scale)
-    if not solution.sheets and (near.any() or len(sign_changes(solution).kinds) > 1):
+    o = solution.trajectory.at_stages
+    value, small = o["switching"], NEGLIGIBLE * float(np.abs(o["m"]).max())
+    if solution.sheets:
+        kinds = np.array(solution.sheets)[solution.trajectory.stages[3]]
+        wrong = kinds * value < -small
+        return "where it is taken beyond them, m2 having the wrong sign" if wrong.any() else ""
+    near = (np.abs(value) <= small) & (o["leap"] > small)
+    if near.any() or len(sign_changes(solution).kinds) > 1:
         return "where m2 changes its sign, and no phases meet there (switching: auto finds them)"
     return ""
 

@@ -37,21 +37,27 @@ from .moving_switch import MovingSwitches
 
 FLAT = 1e-8  # gradient below which the ribbon bears nothing
 DEPENDENT = 1e-9  # of the largest singular value of the conditions
-POWERS = 4  # of the form: its largest eigenvalue is wanted to a factor
+MAGNIFIED = 10.0  # error of eigenvalues over the part of the gradient that is left
+POWERS = 8  # of the form: its largest eigenvalue is wanted to a factor
 
 
 class Variation(NamedTuple):
     """A second variation as a quadratic form.
 
-    `error` is that of the shape or of the discretisation, relative; `largest` about the largest
-    eigenvalue; `chain` gives states from independent variables.
+    `residual` is the part of the gradient of the energy that no multipliers balance; `largest`
+    about the largest eigenvalue; `chain` gives states from independent variables.
     """
 
     form: ChainForm
-    error: float
+    residual: float
     largest: float
     stages: GaussStages
     chain: LinearisedChain
+
+    @property
+    def error(self) -> float:
+        """Error of the eigenvalues, over the largest."""
+        return max(MAGNIFIED * self.residual, self.stages.error)
 
 
 class Side(NamedTuple):
@@ -142,7 +148,7 @@ class Energy:
         form = ChainForm(Q, A, own, bent.reshape(2 * nx, 2 * nx), C, mass)
         stiff = float(np.abs(np.linalg.eigvalsh(H[..., nx:, nx:])).max())
         largest = max(stiff, _largest(form, right))
-        return Variation(form, max(float(residual), at.error), largest, at, chain)
+        return Variation(form, float(residual), largest, at, chain)
 
     def _kinds(self, solution: Solution, at: GaussStages) -> NDArray[np.intp]:
         """Side of the law (N K,) at every stage: of its phase, or by the sign of the switch."""
@@ -150,8 +156,7 @@ class Energy:
             return np.zeros(len(at.places), np.intp)
         if solution.sheets:
             return np.array(solution.sheets)[solution.trajectory.phase_of(at.places)]
-        value = solution.trajectory.outputs(at.places)["switching"]
-        return np.where(value >= 0, 1, -1)
+        return np.where(at.switching >= 0, 1, -1)
 
     def _by_side(
         self,
