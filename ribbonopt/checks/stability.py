@@ -8,12 +8,14 @@ second variation (`variation`) is a quadratic form along the ribbon, whose inert
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import dataclass, replace
+from typing import TypeVar
 
 import numpy as np
 
 from ribbonopt.mechanics.laws.catalogue import capabilities
-from ribbonopt.problem import BoundaryValueProblem, Posed
+from ribbonopt.problem import BoundaryValueProblem, Ribbon
 from ribbonopt.problem.energy import refusal
 from ribbonopt.solution.solution import Solution
 
@@ -21,6 +23,8 @@ from .arcs import NEGLIGIBLE, sign_changes
 from .elimination import factored
 from .variation import Energy, Variation
 from .zero_moment import unbent_share
+
+T = TypeVar("T")
 
 # Neutral directions (a loop that slides along itself) have eigenvalues of the order of the error.
 ROUNDING = 1e-9  # of the largest eigenvalue: error of the others, at least,
@@ -93,11 +97,12 @@ def variation_of(solution: Solution) -> Variation | str:
         if kinked:
             return f"{none} {kinked}"
     posed = solution.posed.under(formulation="energy", states="reduced")
-    energy = _energy_of(solution, posed)
+    ribbon = _once(solution.problem.kept(_ribbons), lambda: Ribbon.of(posed))
     # With the conditions of this very scene: whether they are zero decides.
-    refused = refusal(replace(energy.ribbon, conditions=posed.conditions), posed)
+    refused = refusal(replace(ribbon, conditions=posed.conditions), posed)
     if refused is not None:
         return refused.reason
+    energy = _once(solution.problem.kept(_energies), lambda: Energy.of(ribbon))
     found = energy.variation(solution, posed.values)
     if found.error < MOST:
         return found
@@ -125,12 +130,16 @@ def _on_the_kink(solution: Solution) -> str:
     return ""
 
 
-def _energy_of(solution: Solution, posed: Posed) -> Energy:
-    """Return the problem of least energy of a solution's structure, built once for its problem."""
-    store = solution.problem.kept(_energies)
+def _once(store: list[T], make: Callable[[], T]) -> T:
+    """Return what is in store; made where there is nothing."""
     if not store:
-        store.append(Energy.of(posed))
+        store.append(make())
     return store[0]
+
+
+def _ribbons(problem: BoundaryValueProblem) -> list[Ribbon]:
+    """Return the place where a problem keeps the mechanics of its energy."""
+    return []
 
 
 def _energies(problem: BoundaryValueProblem) -> list[Energy]:

@@ -24,7 +24,7 @@ from numpy.typing import NDArray
 
 from ribbonopt.arrays import Array
 from ribbonopt.mechanics.laws.law import ConstitutiveLaw
-from ribbonopt.problem import BoundaryValueProblem, Posed, Ribbon
+from ribbonopt.problem import BoundaryValueProblem, Ribbon
 from ribbonopt.problem.energy import minimum
 from ribbonopt.solution.solution import Solution
 from ribbonopt.transcription.buffered import Buffered, Mapped
@@ -94,9 +94,8 @@ class Energy:
     bent: Buffered
 
     @classmethod
-    def of(cls, posed: Posed) -> Energy:
-        """Build for the structure of a scene."""
-        ribbon = Ribbon.of(posed)
+    def of(cls, ribbon: Ribbon) -> Energy:
+        """Build for the mechanics of a structure of scenes, stated as a minimum of the energy."""
         law, switches = ribbon.law, None
         problems = {0: minimum(ribbon)} if law.smooth else _sides(ribbon)
         if not law.smooth:

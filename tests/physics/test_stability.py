@@ -140,11 +140,13 @@ def test_the_mesh_does_not_matter(solved: Solved, name: str, law: str) -> None:
     ]
     expected = int(name == "elastica_clamped")
     first = eigenvalues(found[0])
+    # Isolated ones: beyond them is a continuous spectrum, one value for each place of the ribbon.
+    isolated = 1 if name == "clamped_loop" else 2
     for each in found:
         assert negative_directions(each) == expected
         values = eigenvalues(each)
         # The eigenvalues themselves are those of the continuous problem.
-        np.testing.assert_allclose(values[:2], first[:2], atol=2e-3)
+        np.testing.assert_allclose(values[:isolated], first[:isolated], atol=2e-3)
         judged, lowest = second_variation(each), softest(each)
         assert not isinstance(judged, str) and not isinstance(lowest, str)
         assert 0.4 < judged.largest / np.abs(values).max() < 1.01
