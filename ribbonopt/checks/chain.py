@@ -18,11 +18,18 @@ class LinearisedChain:
 
     `J` (N, K, nx, nx + nz) are the derivatives of the rates at the stages, `slopes`
     (N, K, nx + nz) of the cost, `jumps` (N, nx) of the states at the start of each element.
-    Controls are scaled so that the sum of their squares is an integral along the chain.
+    Controls are scaled so that the sum of their squares is an integral along the chain, the
+    elements of which have `widths` (N,), fractions of its `length`.
     """
 
     def __init__(
-        self, J: Array, slopes: Array, widths: Array, tableau: Tableau, jumps: Array | None = None
+        self,
+        J: Array,
+        slopes: Array,
+        widths: Array,
+        tableau: Tableau,
+        length: float = 1.0,
+        jumps: Array | None = None,
     ) -> None:
         (N, K, nv), nx = slopes.shape, J.shape[2]
         nz = nv - nx
@@ -35,7 +42,7 @@ class LinearisedChain:
         # Stages [x; z] (N, K, nx + nz, nx + m) from the variables of their element.
         stages = np.zeros((N, K, nv, nx + nz * K + (jumps is not None)))
         controls = slice(nx, nx + nz * K)
-        scale = 1 / np.sqrt(self.weight)[..., None, None]
+        scale = 1 / np.sqrt(length * self.weight)[..., None, None]
         for j in range(K):
             stages[:, j, nx:, nx + nz * j : nx + nz * (j + 1)] = scale[:, j] * np.eye(nz)
         sides = np.einsum("eij,ejxc->eixjc", self.integral, scale * J[..., nx:])

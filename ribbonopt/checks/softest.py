@@ -1,9 +1,8 @@
 """The softest disturbance of an equilibrium: smallest eigenvalue of its second variation, and mode.
 
 Eigenvalues are those of the second variation over the integral of the squared moments along the
-ribbon, as fractions of its length, units Dw = L = 1: compliances. They go through zero at folds and
-branch points. The smallest is found by inverse iteration from shifts that approach it from below,
-as the count of those below the shift shows.
+ribbon: compliances. They go through zero at folds and branch points. The smallest is found by
+inverse iteration from shifts that approach it from below, as the count of those below tells.
 """
 
 from __future__ import annotations
@@ -34,7 +33,8 @@ class Softest:
     Attributes
     ----------
     eigenvalue : float
-        Negative where the equilibrium is unstable; about zero where a loop slides along itself.
+        One over a moment and a length, in the units of the scene. Negative where the equilibrium is
+        unstable; about zero where a loop slides along itself.
     s : (k,) array
         Arclengths of the stages and the ends, in the units of the scene.
     displacement, rotation : (k, 3) arrays
@@ -61,6 +61,7 @@ def softest(solution: Solution) -> Softest | str:
     if size <= STILL * turn:
         size = turn
     s = start + (end - start) * places
+    eigenvalue /= solution.units.moment * solution.units.length
     return Softest(eigenvalue, s, displacement / size, rotation / size)
 
 

@@ -124,7 +124,8 @@ class Energy:
             moved = self.switches.at(solution, at, theta)
         jumps = None if moved is None else moved.jumps
         slopes = slopes.reshape(N, K, nv)
-        chain = LinearisedChain(J, slopes, at.widths, at.tableau, jumps)
+        length = solution.trajectory.length
+        chain = LinearisedChain(J, slopes, at.widths, at.tableau, length, jumps)
         b, B = self.conditions(at.ends, none, theta)
         B = B.reshape(2 * nx, len(b)).T
         left, singular, right = np.linalg.svd(B @ chain.ends, full_matrices=False)
@@ -145,7 +146,7 @@ class Energy:
         C = (left / singular).T @ B
         A, own = chain.step[..., :nx], chain.step[..., nx:]
         form = ChainForm(Q, A, own, bent.reshape(2 * nx, 2 * nx), C, mass)
-        stiff = float(np.abs(np.linalg.eigvalsh(H[..., nx:, nx:])).max())
+        stiff = float(np.abs(np.linalg.eigvalsh(H[..., nx:, nx:])).max()) / length
         largest = max(stiff, _largest(form, right))
         return Variation(form, float(residual), largest, at, chain)
 

@@ -7,9 +7,11 @@ import pytest
 
 from ribbonopt.checks.softest import Softest, softest
 from ribbonopt.checks.stability import negative_directions
+from ribbonopt.errors import ModelError
 from ribbonopt.pipeline.prepared import prepare
 from ribbonopt.scene import Scene, loads_scene
 from ribbonopt.solution.solution import Solution
+from ribbonopt.studies.continuation.continuation import Continuation
 
 FOLD = 0.564847083249  # of an arch a tenth shorter, one clamp turned against it, in radians
 PITCHFORK = 0.230279190221  # of the sheared arch a quarter shorter, B3 / B2 = 2
@@ -22,19 +24,21 @@ def lowest(solution: Solution) -> Softest:
     return found
 
 
+def snapping_text(turn: float) -> str:
+    return f"""
+name: snap
+law: {ROD}
+parameters: {{turn: {turn}}}
+boundary:
+  start: {{support: clamped, position: [0, 0, 0], directors: identity}}
+  end: {{support: clamped, position: [0, 0, 0.9], directors: {{turns: [{{y: turn}}]}}}}
+guess: {{force: [0, 0, -42], moment: [0, 4, 0]}}
+tolerance: 1e-11
+"""
+
+
 def snapping(turn: float) -> Scene:
-    return loads_scene(
-        f"""
-        name: snap
-        law: {ROD}
-        parameters: {{turn: {turn}}}
-        boundary:
-          start: {{support: clamped, position: [0, 0, 0], directors: identity}}
-          end: {{support: clamped, position: [0, 0, 0.9], directors: {{turns: [{{y: turn}}]}}}}
-        guess: {{force: [0, 0, -42], moment: [0, 4, 0]}}
-        tolerance: 1e-11
-        """
-    )
+    return loads_scene(snapping_text(turn))
 
 
 def sheared(shear: float) -> Scene:
@@ -134,6 +138,32 @@ def test_a_loop_that_slides_along_itself_has_a_neutral_mode(
     size = np.linalg.norm(exact, axis=1).max()
     sign = np.sign((exact * mode.displacement).sum())
     np.testing.assert_allclose(sign * mode.displacement, exact / size, atol=1e-4)
+
+
+def test_units_are_those_of_the_scene(solved: Callable[..., Solution]) -> None:
+    """A compliance is one over D w, a moment times a length."""
+    law = "law={type: variational, delta: 0.1}"
+    si, plain = (solved(name, law) for name in ("ribbon_si", "moebius_half"))
+    stiffness = si.units.moment * si.units.length
+    assert lowest(si).eigenvalue * stiffness == pytest.approx(lowest(plain).eigenvalue, rel=1e-6)
+    np.testing.assert_allclose(lowest(si).s[[0, -1]], si.scene.interval)
+
+
+def test_a_branch_records_it_where_a_stage_asks() -> None:
+    stage = "continuation: {parameter: parameters.turn, from: 0.4, to: 0.6, largest: 0.05,"
+    text = snapping_text(0.4) + f"{stage} stability: eigenvalue, stop: [softest < -0.05]}}"
+    continuation = Continuation(loads_scene(text))
+    rows = [dict(point.row) for point in continuation]
+    points = [row for row in rows if row["kind"] == "point"]
+    assert "softest < -0.05" in continuation.ending.reason
+    assert rows[-1]["softest"] < -0.05 and rows[0]["softest"] > 0.1
+    for row in points:
+        assert row["negative"] == int(row["softest"] < 0)
+    assert [row["softest"] for row in rows if row["kind"] == "fold"] == [None]
+    plain = Continuation(loads_scene(snapping_text(0.4) + f"{stage} points: 2}}"))
+    assert all("softest" not in point.row for point in plain)
+    with pytest.raises(ModelError, match="found 'softest', expected a recorded quantity"):
+        Continuation(loads_scene(snapping_text(0.4) + f"{stage} stop: [softest < 0]}}"))
 
 
 @pytest.mark.parametrize("law", ["{type: regularized, epsilon: 0.1}"])

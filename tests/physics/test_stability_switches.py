@@ -13,6 +13,7 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
+from scipy.spatial.transform import Rotation
 
 from ribbonopt.checks.softest import Softest, softest
 from ribbonopt.checks.stability import negative_directions, variation_of, why_not
@@ -117,6 +118,31 @@ def test_it_is_the_limit_of_the_smooth_law(shear: float, count: int) -> None:
         assert negative_directions(found) == count
         gaps.append(abs(lowest(found).eigenvalue - lowest(limit).eigenvalue))
     assert gaps[1] < gaps[0] / 2 and gaps[1] < 0.01
+
+
+@pytest.mark.parametrize("length", [1.0, 1000.0, 0.01])
+def test_neither_place_nor_size_matter(length: float) -> None:
+    plain = prepare(arch(SADOWSKY, 0.3, NEAR[0.3])).solve(arch(SADOWSKY, 0.3, NEAR[0.3]))
+    turn = Rotation.from_rotvec([0.3, 1.1, -2.0]).as_matrix()
+    force, moment = (turn @ np.array(load) for load in NEAR[0.3])
+    start = np.array([1.0, 2.0, -3.0]) * length
+    end = start + length * turn @ [0.0, 0.3, 0.6875]
+    frame = {f"d{i + 1}": turn[:, i].tolist() for i in range(3)}
+    scene = loads_scene(
+        f"""
+        name: elsewhere
+        law: {SADOWSKY}
+        interval: [0, {length}]
+        boundary:
+          start: {{support: clamped, position: {start.tolist()}, directors: {frame}}}
+          end: {{support: clamped, position: {end.tolist()}, directors: {frame}}}
+        guess: {{force: {(force / length**2).tolist()}, moment: {(moment / length).tolist()}}}
+        tolerance: 1e-8
+        """
+    )
+    found = prepare(scene).solve(scene)
+    assert negative_directions(found) == 1
+    assert lowest(found).eigenvalue == pytest.approx(lowest(plain).eigenvalue, rel=1e-6)
 
 
 # The energy itself, along a finite disturbance of the moments, integrated by DOP853.

@@ -26,6 +26,7 @@ NUMBERS = (
     *("value", "error", *ANSWERS),
     *("number", "stage", "branch", "negative", "intervals", "iterations"),
 )
+SOFTEST = "softest"  # a number of rows where a stage asks for it
 WORDS = ("parameter", "kind", "switches", "note")
 
 
@@ -41,8 +42,9 @@ class Recorder:
             If a condition of a stage names what is not recorded.
         """
         self.formulas = {name: parse_record(text, scene) for name, text in scene.record.items()}
+        self.measured = any(stage.measured for stage in stages_of(scene))
         for name in self.formulas:
-            if name in (*NUMBERS, *WORDS):
+            if name in (*NUMBERS, *WORDS, SOFTEST):
                 raise ModelError(
                     f"record.{name}: every row has {name!r} already; choose another name",
                     f"record.{name}",
@@ -56,7 +58,7 @@ class Recorder:
     @property
     def names(self) -> tuple[str, ...]:
         """Names of all numbers of a row."""
-        return (*NUMBERS, *self.formulas)
+        return (*NUMBERS, *([SOFTEST] if self.measured else []), *self.formulas)
 
     def known(self, words: Iterable[str], where: str, key: str = "") -> None:
         """Raise a ModelError where a word is none of the names of a row."""
@@ -84,6 +86,8 @@ class Recorder:
             **numbers_of(solution),
         }
         row |= sampled(solution, self.formulas)
+        if self.measured:
+            row[SOFTEST] = _softest(solution) if stage.measured and point.kind == POINT else None
         row["switches"] = solution.switch_points.tolist()
         row["intervals"] = solution.dense.blocks.layout.element_count
         row["iterations"] = solution.iterations
@@ -161,3 +165,10 @@ def _negative(solution: Solution) -> int | None:
     from ribbonopt.checks.stability import negative_directions  # builds second derivatives
 
     return negative_directions(solution)
+
+
+def _softest(solution: Solution) -> float | None:
+    from ribbonopt.checks.softest import softest  # builds second derivatives
+
+    found = softest(solution)
+    return None if isinstance(found, str) else found.eigenvalue
