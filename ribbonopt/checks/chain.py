@@ -37,20 +37,27 @@ class LinearisedChain:
         self.J, self.slopes = J, slopes
         self.integral = widths[:, None, None] * tableau.matrix
         self.weight = widths[:, None] * tableau.weights
-        M = -np.einsum("eij,ejxy->eixjy", self.integral, J[..., :nx]).reshape(N, K * nx, K * nx)
-        self.inverse = np.linalg.inv(M + np.eye(K * nx))
+        # States on which neither rates nor cost depend (positions) need no equations.
+        used = np.flatnonzero(J[..., :nx].any(axis=(0, 1, 2)) | slopes[..., :nx].any(axis=(0, 1)))
+        self.used, n = used, len(used)
+        between = J[:, :, used[:, None], used]
+        M = -np.einsum("eij,ejxy->eixjy", self.integral, between).reshape(N, K * n, K * n)
+        self.inverse = np.linalg.inv(M + np.eye(K * n))
         # Stages [x; z] (N, K, nx + nz, nx + m) from the variables of their element.
         stages = np.zeros((N, K, nv, nx + nz * K + (jumps is not None)))
         controls = slice(nx, nx + nz * K)
         scale = 1 / np.sqrt(length * self.weight)[..., None, None]
         for j in range(K):
             stages[:, j, nx:, nx + nz * j : nx + nz * (j + 1)] = scale[:, j] * np.eye(nz)
-        sides = np.einsum("eij,ejxc->eixjc", self.integral, scale * J[..., nx:])
-        starts = np.broadcast_to(np.eye(nx), (N, K, nx, nx))
-        sides = np.concatenate([starts, sides.reshape(N, K, nx, -1)], axis=3)
-        stages[:, :, :nx, : controls.stop] = (self.inverse @ sides.reshape(N, K * nx, -1)).reshape(
-            sides.shape
-        )
+        stages[:, :, :nx, :nx] = np.eye(nx)
+        sides = np.einsum("eij,ejxc->eixjc", self.integral, scale * J[:, :, used, nx:])
+        starts = stages[:, :, used, :nx]
+        sides = np.concatenate([starts, sides.reshape(N, K, n, -1)], axis=3)
+        solved = self.inverse @ sides.reshape(N, K * n, -1)
+        stages[:, :, used, : controls.stop] = solved.reshape(sides.shape)
+        rest = np.setdiff1d(np.arange(nx), used)
+        rates = (J[:, :, rest] @ stages).reshape(N, K, -1)
+        stages[:, :, rest] += (self.integral @ rates).reshape(N, K, len(rest), -1)
         self.stages = stages
         if jumps is not None:
             stages[..., -1] = (stages[..., :nx] @ jumps[:, None, :, None])[..., 0]
@@ -87,10 +94,12 @@ class LinearisedChain:
     def weights(self, costates: Array) -> Array:
         """Return d(Lagrangian)/d(rates, cost) (N, K, nx + 1), from the costates of the nodes."""
         after = costates[1:, None]
-        change = self.slopes[..., : self.nx] + (after[:, :, None] @ self.J[..., : self.nx])[:, :, 0]
+        used = self.used
+        change = self.slopes[..., used] + (after[:, :, None] @ self.J[..., used])[:, :, 0]
         change *= self.weight[..., None]
         change = (change.reshape(len(after), 1, -1) @ self.inverse).reshape(change.shape)
-        rates = self.weight[..., None] * after + self.integral.swapaxes(1, 2) @ change
+        rates = np.repeat(self.weight[..., None], self.nx, axis=2) * after
+        rates[..., used] += self.integral.swapaxes(1, 2) @ change
         return np.concatenate([rates, self.weight[..., None]], axis=2)
 
     def hessians(self, H: Array) -> Array:

@@ -174,8 +174,11 @@ def _pairs(parts: Array, count: int) -> tuple[Array, Array, Array]:
 
 def _pivots(P: Array, Y: Array) -> Array:
     """Second derivatives (n, 2 nx, 2 nx) in the state and costate between two segments."""
-    unit = np.broadcast_to(-np.eye(P.shape[1]), P.shape)
-    return np.block([[P, unit], [unit, -Y]])
+    count, nx = P.shape[:2]
+    found, i = np.zeros((count, 2 * nx, 2 * nx)), np.arange(nx)
+    found[:, :nx, :nx], found[:, nx:, nx:] = P, -Y
+    found[:, i, nx + i] = found[:, nx + i, i] = -1.0
+    return found
 
 
 def _eigen(matrices: Array) -> tuple[Array, Array, Array]:

@@ -38,7 +38,7 @@ from .moving_switch import MovingSwitches
 FLAT = 1e-8  # gradient below which the ribbon bears nothing
 DEPENDENT = 1e-9  # of the largest singular value of the conditions
 MAGNIFIED = 10.0  # error of eigenvalues over the part of the gradient that is left
-POWERS = 8  # of the form: its largest eigenvalue is wanted to a factor
+POWERS = 4  # of the form: its largest eigenvalue is wanted to a factor
 
 
 class Variation(NamedTuple):
@@ -197,7 +197,12 @@ def _largest(form: ChainForm, right: Array) -> float:
     N, nx, m = form.B.shape
     weight = np.concatenate([np.ones(nx), np.tile(form.mass, N)])
     right = right * weight
-    v, found = weight * np.cos(np.arange(len(weight)) ** 2), 0.0
+    v = weight * np.cos(np.arange(len(weight)) ** 2)
+    own = v[nx:].reshape(N, m)
+    for _ in range(POWERS):  # layers, where the ribbon bends easily, may be a stage wide
+        own = form.mass * (form.Q[:, nx:, nx:] @ own[..., None])[..., 0]
+    v[nx:] += own.ravel() * np.linalg.norm(v) / np.linalg.norm(own)
+    found = 0.0
     for _ in range(POWERS):
         v -= right.T @ (right @ v)
         v /= np.linalg.norm(v)
