@@ -275,3 +275,9 @@ def test_where_it_cannot_be_told_it_is_said() -> None:
     crossed = prepare(replace(off, switching="off")).solve(replace(off, switching="off"))
     assert negative_directions(crossed) is None
     assert "no phases meet there" in why_not(crossed)
+
+
+def test_neither_in_mixtures_nor_beyond_a_sheet() -> None:
+    found = prepare(arch(SADOWSKY, 0.1, NEAR[0.1])).solve(arch(SADOWSKY, 0.1, NEAR[0.1]))
+    for kinds, words in (((1, 0, 1), "mixture"), ((-1, 1, -1), "wrong sign")):
+        assert words in str(variation_of(replace(found, sheets=kinds)))
