@@ -18,9 +18,11 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ribbonopt.arrays import Array
-from ribbonopt.mechanics.laws.law import ConstitutiveLaw, Stress
+from ribbonopt.mechanics.laws.law import Stress
+from ribbonopt.problem import BoundaryValueProblem, Ribbon
 from ribbonopt.solution.solution import Solution
 from ribbonopt.transcription.buffered import Buffered
+from ribbonopt.transcription.functions import stage_functions
 
 from .gauss_stages import GaussStages
 
@@ -65,15 +67,18 @@ class MovingSwitches:
     leap: Buffered
 
     @classmethod
-    def of(cls, law: ConstitutiveLaw, rates: Mapping[int, ca.Function]) -> MovingSwitches:
-        """Build from a law and the rates of a stage (v, c, theta, place) on both its sides."""
-        inputs = [ca.SX.sym(name, rates[1].numel_in(i)) for i, name in enumerate("vctp")]
-        change = rates[1](*inputs) - rates[-1](*inputs)
+    def of(cls, ribbon: Ribbon, sides: Mapping[int, BoundaryValueProblem]) -> MovingSwitches:
+        """Build from the problems of least energy of both sides, +1 and -1."""
+        law, problem = ribbon.law, sides[1]
+        above, below = (stage_functions(sides[kind])[0] for kind in (1, -1))
+        inputs = list(above.inputs)
+        change = above.equations - below.values(*inputs)
         free = len(law.components)
         stress = Stress.of_moment(law.whole(inputs[0][-free:]))
         strains = law.branch(1).strain(stress) - law.branch(-1).strain(stress)
-        nx = inputs[0].numel() - free
-        jacobian = ca.jacobian(change, inputs[0])[:, :nx]
+        place = problem.start + inputs[3][0] * problem.phases[0].length
+        strains = ca.substitute(strains, ribbon.position, place)
+        jacobian = ca.jacobian(change, inputs[0])[:, :-free]
         outputs = [ca.densify(each) for each in (change, strains, jacobian)]
         return cls(Buffered(ca.Function("leap", inputs, outputs)))
 

@@ -89,6 +89,8 @@ def variation_of(solution: Solution) -> Variation | str:
     name, law = solution.scene.law.type, capabilities(solution.scene.law)
     if not law.variational:
         return f"the law {name} has no energy"
+    if law.states:
+        return f"the law {name} has states of its own, which its energy here does without"
     none = f"the energy of the law {name} has no second derivatives"
     if unbent_share(solution, law):
         return f"{none} where m2 = m3 = 0"

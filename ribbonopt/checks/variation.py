@@ -99,8 +99,7 @@ class Energy:
         law, switches = ribbon.law, None
         problems = {0: minimum(ribbon)} if law.smooth else _sides(ribbon)
         if not law.smooth:
-            rates = {kind: stage_functions(problem)[0].values for kind, problem in problems.items()}
-            switches = MovingSwitches.of(law, rates)
+            switches = MovingSwitches.of(ribbon, problems)
         ends = condition_functions(next(iter(problems.values())))
         bent = ca.densify(ca.triu2symm(ends.lagrangian_hessian))
         return cls(

@@ -86,10 +86,10 @@ class Recorder:
             **numbers_of(solution),
         }
         row |= sampled(solution, self.formulas)
-        if self.measured:
-            row[SOFTEST] = _softest(solution) if stage.measured and point.kind == POINT else None
         row["switches"] = solution.switch_points.tolist()
         row["intervals"] = solution.dense.blocks.layout.element_count
+        if self.measured:
+            row[SOFTEST] = _softest(solution) if stage.measured and point.kind == POINT else None
         row["iterations"] = solution.iterations
         told = (*unknown_of(solution), *solution.given_up, *solution.fell_back)
         row["note"] = "; ".join(filter(None, [point.note, *told]))
