@@ -41,7 +41,8 @@ class ContinuationStage:
     switch
         Whether the branches that cross are followed, in both directions.
     stability
-        Whether negative directions are counted where the scene is conservative.
+        Whether negative directions are counted where the scene is conservative; `eigenvalue` if the
+        smallest eigenvalue of the second variation is recorded besides, as `softest`.
     """
 
     parameter: str
@@ -56,4 +57,9 @@ class ContinuationStage:
     stop: tuple[str, ...] = ()
     special: bool = True
     switch: bool = False
-    stability: bool = True
+    stability: bool | Literal["eigenvalue"] = True
+
+    @property
+    def measured(self) -> bool:
+        """Whether the smallest eigenvalue of the second variation is recorded."""
+        return self.stability == "eigenvalue"

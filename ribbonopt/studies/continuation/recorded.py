@@ -28,6 +28,7 @@ NUMBERS = (
     *("error", *ANSWERS),
     *("number", "stage", "branch", "negative", "intervals", "iterations"),
 )
+SOFTEST = "softest"  # a number of rows where a stage asks for it
 WORDS = ("parameter", "kind", "switches", "note")
 VALUE = "value"  # stands for the parameter that a row's own stage moves
 PARAMETERS = "parameters."
@@ -46,8 +47,9 @@ class Recorder:
         """
         self.formulas = {name: parse_record(text, scene) for name, text in scene.record.items()}
         self.parameters = tuple(dict.fromkeys(stage.parameter for stage in stages_of(scene)))
+        self.measured = any(stage.measured for stage in stages_of(scene))
         for name in self.formulas:
-            if name in (*NUMBERS, *WORDS, VALUE, *self.parameters):
+            if name in (*NUMBERS, *WORDS, VALUE, SOFTEST, *self.parameters):
                 raise ModelError(
                     f"record.{name}: every row has {name!r} already; choose another name",
                     f"record.{name}",
@@ -61,7 +63,8 @@ class Recorder:
     @property
     def names(self) -> tuple[str, ...]:
         """Names of all numbers of a row."""
-        return (*self.parameters, *NUMBERS, *self.formulas)
+        softest = [SOFTEST] if self.measured else []
+        return (*self.parameters, *NUMBERS, *softest, *self.formulas)
 
     @property
     def short(self) -> dict[str, str]:
@@ -98,12 +101,14 @@ class Recorder:
             "kind": point.kind,
             "negative": _negative(solution) if stage.stability and point.kind == POINT else None,
             # At a fold the equations at a given parameter are singular: so is their estimate.
-            "error": error_of(solution) if point.kind == POINT else None,
+            "error": error_of(solution) if point.kind == POINT else curve.error_of(point),
             **numbers_of(solution),
         }
         row |= sampled(solution, self.formulas)
         row["switches"] = solution.switch_points.tolist()
         row["intervals"] = solution.dense.blocks.layout.element_count
+        if self.measured:
+            row[SOFTEST] = _softest(solution) if stage.measured and point.kind == POINT else None
         row["iterations"] = solution.iterations
         told = (*unknown_of(solution), *solution.given_up, *solution.fell_back)
         row["note"] = "; ".join(filter(None, [point.note, *told]))
@@ -197,3 +202,10 @@ def _negative(solution: Solution) -> int | None:
     from ribbonopt.checks.stability import negative_directions  # builds second derivatives
 
     return negative_directions(solution)
+
+
+def _softest(solution: Solution) -> float | None:
+    from ribbonopt.checks.softest import softest  # builds second derivatives
+
+    found = softest(solution)
+    return None if isinstance(found, str) else found.eigenvalue
