@@ -25,10 +25,13 @@ from ribbonopt.studies.buckling.twin import has_twin, twin_of, twin_scene
 from ribbonopt.studies.spare import SPARE
 
 from .buckled import StageBuckling
+from .coordinates import reduced, row_of
 from .curve import Curve
+from .passage import leaving, passage
+from .phases import one_sign, orientation
 from .walk.metric import Metric
 from .walk.points import BUCKLING, POINT, Point
-from .walk.protocol import Trial
+from .walk.protocol import Passage, Trial
 
 NEXT_TO_CROSSING = "next to where branches cross: the error is above the tolerance"
 
@@ -70,7 +73,8 @@ class RibbonEquations:
             # Conditions with slack keep a ribbon in its phases: their zeros are no branch points.
             return replace(found, sign=1.0)
         # Its determinant would be that of the law's guard.
-        return replace(found, sign=0.0) if unbent else found
+        sign = 0.0 if unbent else orientation(solution.sheets) * found.sign
+        return replace(found, sign=sign)
 
     def correct_at(self, origin: Solution, guess: Array) -> Trial[Solution]:
         """Correct at a position (natural continuation)."""
@@ -97,12 +101,40 @@ class RibbonEquations:
         line = self.curve.line(solution)
         row = row_of(solution, self.metric.dual(reduced(solution, direction)))
         value = float(row @ line.reduced(origin.unknowns)) + arc
+        return self.correct_with(solution, row, value, guess, enough)
+
+    def correct_with(
+        self, solution: Solution, row: Array, value: float, guess: Array, enough: float = 0.0
+    ) -> Trial[Solution]:
+        """Correct where a row of states at the points, constants and position has a value."""
+        line = self.curve.line(solution)
         system = ExtendedSystem(line, row, value)
-        nlp = self._beside(solution, origin.position).nlp
+        nlp = self._beside(solution, float(guess[-1])).nlp
         report = NewtonSolver(nlp).solve(guess, line.parameters(guess[-1]), None, enough, system)
         attempt = self._beside(solution, float(report.w[-1]))
         attempt.take(_without_last(report), check=False)
         return _trial(attempt, report.w[-1:])
+
+    def passed(self, point: Point[Solution], trial: Trial[Solution]) -> Passage[Solution] | None:
+        """Return where phases must change before a trial; LinAlgError if no others lead on."""
+        search = self.prepared.search(trial.solution.posed)
+        if not search.phases_help or self._unbent(trial.solution):
+            return None
+        if not point.solution.sheets:
+            kind = one_sign(point.solution)
+            if not kind or one_sign(trial.solution) == kind:
+                return None
+            attempt = self.prepared.search(point.solution.posed)
+            sheet = attempt.on_mesh((kind,), point.solution.mesh)
+            point = replace(point, solution=sheet.restored(point.unknowns[:-1]))
+            trial = self.correct_at(point.solution, trial.unknowns)
+            if not trial.converged:
+                raise np.linalg.LinAlgError(trial.message)
+        return passage(self, point, trial)
+
+    def leaving(self, point: Point[Solution]) -> list[Point[Solution]]:
+        """Return the first points on the branches that leave a kink, the main branch's first."""
+        return leaving(self, replace(point, kind=POINT))
 
     def crossings(self, a: Point[Solution], b: Point[Solution]) -> list[Point[Solution]]:
         """Return the buckling points between two points where m2 = m3 = 0 along the ribbon."""
@@ -157,14 +189,12 @@ class RibbonEquations:
             found = replace(found, status=Status.CONVERGED, message=Status.CONVERGED.value)
             note = "; ".join(filter(None, [note, NEXT_TO_CROSSING]))
         done = replace(_checked(trial, found), note=note)
-        if not done.converged and self.prepared.ribbon.law.kinked:
-            # Phases may have changed on the way.
-            return self._anew(origin.solution, float(trial.unknowns[-1])) or done
         return done
 
     def elsewhere(self, origin: Point[Solution], position: float) -> Trial[Solution] | None:
         """Solve at a position in other phases: one may have lost its length on the way."""
-        return self._anew(origin.solution, position) if origin.solution.sheets else None
+        helps = self.prepared.search(origin.solution.posed).phases_help
+        return self._anew(origin.solution, position) if helps else None
 
     def _anew(self, solution: Solution, position: float) -> Trial[Solution] | None:
         """Solve at a position with all that a single scene may need, from a solution near by."""
@@ -184,42 +214,6 @@ class RibbonEquations:
     def _needs_phases(self, solution: Solution) -> bool:
         search = self.prepared.search(solution.posed)
         return search.phases_help and search.changes_sign(solution)
-
-
-def reduced(solution: Solution, extended: Array) -> Array:
-    """Return states at both ends, constants of the rod and position, of a vector [w, l].
-
-    They determine the whole solution, and are the same in any layout.
-    """
-    layout = solution.dense.blocks.layout
-    nodes, _, c = layout.unpack(extended[:-1])
-    rod = layout.nc - len(layout.elements) + 1 - solution.problem.slack
-    return np.concatenate([nodes[0], nodes[-1], c[:rod], extended[-1:]])
-
-
-def row_of(solution: Solution, part: Array) -> Array:
-    """Put a vector of the form of `reduced` in the place of its entries among all points and c."""
-    layout = solution.dense.blocks.layout
-    nx, points = layout.nx, len(layout.point_elements)
-    row = np.zeros(points * nx + layout.nc + 1)
-    row[:nx], row[(points - 1) * nx : points * nx] = part[:nx], part[nx : 2 * nx]
-    rod = part[2 * nx : -1]
-    row[points * nx : points * nx + len(rod)] = rod
-    row[-1] = part[-1]
-    return row
-
-
-def metric_at(solution: Solution, curve: Curve) -> Metric:
-    """Return the metric of a stage that begins at a solution.
-
-    Loads and states count relative to their size there, the position relative to its span.
-    """
-    sizes = 1 + np.abs(reduced(solution, np.append(solution.dense.w, curve.start)))
-    # Loads together: one that vanishes by symmetry is as large as the others.
-    nx = solution.dense.blocks.layout.nx
-    sizes[2 * nx :] = sizes[2 * nx :].max(initial=1.0)
-    sizes[-1] = curve.span
-    return Metric(sizes)
 
 
 def _trial(attempt: Attempt, position: Array) -> Trial[Solution]:

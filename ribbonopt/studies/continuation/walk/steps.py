@@ -13,8 +13,8 @@ import numpy as np
 
 from ribbonopt.arrays import Array
 
-from .points import Point, S
-from .protocol import Equations, Range, Trial
+from .points import POINT, Point, S
+from .protocol import Equations, Passage, Range, Trial
 from .special import special_points
 from .tangents import near
 
@@ -56,13 +56,23 @@ class Stepper(Generic[S]):
     def step(self, point: Point[S], goal: float) -> Stride[S] | None:
         """Return the longest step towards a goal that succeeds; None where that is too short."""
         length = point.step
-        while True:
+        while length * self._size >= self.range.smallest:
             found = self._try(point, goal, length)
             if found is not None:
                 return found
             length *= SHRINK
-            if length * self._size < self.range.smallest:
-                return None
+        return self._elsewhere(point, goal)
+
+    def _elsewhere(self, point: Point[S], goal: float) -> Stride[S] | None:
+        """Return what is found, by other means, where the step would have led."""
+        trouble = self.trouble
+        prediction = self._predicted(point, goal, point.step)
+        position = float(prediction.unknowns[-1])
+        trial = self.equations.elsewhere(point, position)
+        self.trouble = trouble
+        if trial is None:
+            return None
+        return Stride(self._arrived(point, trial, self._told(point, prediction, trial)), [])
 
     def first_length(self, tangent: Array) -> float:
         """Arclength of the first step along a tangent."""
@@ -117,10 +127,7 @@ class Stepper(Generic[S]):
         equations = self.equations
         if not trial.converged:
             self.trouble = trial.message
-            again = equations.elsewhere(point, float(trial.unknowns[-1]))
-            if again is None:
-                return None
-            return Stride(self._arrived(point, again, self._told(point, prediction, again)), [])
+            return None
         metric, solution = equations.metric, trial.solution
         error = metric.length(equations.reduced(solution, trial.unknowns - prediction.unknowns))
         ahead = equations.reduced(solution, trial.unknowns - point.unknowns)
@@ -132,6 +139,13 @@ class Stepper(Generic[S]):
             self.trouble = "the branch bends too sharply"
             if prediction.arc * self._size > self.range.smallest:
                 return None
+        try:
+            passed = equations.passed(point, trial)
+        except np.linalg.LinAlgError as error:
+            self.trouble = str(error)
+            return None
+        if passed is not None:
+            return self._passed(passed, prediction)
         following = replace(
             point,
             solution=solution,
@@ -150,6 +164,14 @@ class Stepper(Generic[S]):
             return None
         told = self._told(point, prediction, final)
         return Stride(self._arrived(following, final, told), special)
+
+    def _passed(self, passed: Passage[S], prediction: Prediction) -> Stride[S]:
+        """Return the step up to the first point in another layout."""
+        special = []
+        if self.range.special:
+            special = special_points(self.equations, passed.begin, passed.event)
+            special += [passed.event] if passed.event.kind != POINT else []
+        return Stride(replace(passed.after, step=abs(prediction.arc)), special)
 
     def _told(self, point: Point[S], prediction: Prediction, final: Trial[S]) -> str:
         """Return the note of a trial; with a word on it where it is not what was predicted."""

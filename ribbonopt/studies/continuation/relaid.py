@@ -1,0 +1,90 @@
+"""A solution in other phases, at the point where these begin or end: the same ribbon.
+
+A phase without length is an element of the mesh as any other. So what is born at an end of the
+ribbon, or gone there, changes the vector of unknowns but not the state: the equations in the new
+phases can be linearised at once.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from itertools import pairwise
+
+import numpy as np
+
+from ribbonopt.arrays import Array
+from ribbonopt.attempt.attempt import Attempt
+from ribbonopt.attempt.structure import LEAST_IN_PHASE
+from ribbonopt.pipeline.search import Search
+from ribbonopt.solution.solution import Solution
+from ribbonopt.transcription import Mesh
+
+from .phases import Change, What
+
+
+def kinds_after(kinds: tuple[int, ...], changes: Iterable[Change]) -> tuple[int, ...]:
+    """Return the kinds of phases after changes at the ends of the ribbon."""
+    what = {change.what for change in changes}
+    if What.GONE_AT_START in what:
+        kinds = kinds[1:]
+    if What.GONE_AT_END in what:
+        kinds = kinds[:-1]
+    if What.BORN_AT_START in what:
+        kinds = (-kinds[0], *kinds)
+    if What.BORN_AT_END in what:
+        kinds = (*kinds, -kinds[-1])
+    return kinds
+
+
+def at_the_ends(
+    search: Search, solution: Solution, changes: Iterable[Change]
+) -> tuple[Attempt, Array]:
+    """Return the means to solve after changes at the ends, and the unknowns there (nw,)."""
+    changes = tuple(changes)
+    what = {change.what for change in changes}
+    layout = solution.dense.blocks.layout
+    nodes, stages, c = layout.unpack(solution.dense.w)
+    rod = layout.nc - len(layout.elements) + 1
+    lengths = np.diff(solution.trajectory.ends) * solution.trajectory.length
+    phases, constants = list(solution.mesh.phases), list(lengths)
+    born = np.full(LEAST_IN_PHASE, 1 / LEAST_IN_PHASE)
+    for first, gone, new in (
+        (True, What.GONE_AT_START, What.BORN_AT_START),
+        (False, What.GONE_AT_END, What.BORN_AT_END),
+    ):
+        at = 0 if first else -1
+        if gone in what:
+            count = len(phases.pop(at))
+            constants.pop(at)
+            kept = slice(count, None) if first else slice(None, len(stages) - count)
+            stages = stages[kept]
+            nodes = nodes[count:] if first else nodes[: len(nodes) - count]
+        if new in what:
+            place = 0 if first else len(phases)
+            phases.insert(place, born)
+            constants.insert(place, 0.0)
+            more = np.repeat(nodes[[at]], len(born), axis=0)
+            still = np.repeat(more[:, None], layout.stages, axis=1)
+            nodes = np.concatenate([more, nodes] if first else [nodes, more])
+            stages = np.concatenate([still, stages] if first else [stages, still])
+    kinds = kinds_after(solution.sheets, changes)
+    ends = np.cumsum(constants[:-1]) / sum(constants)
+    attempt = search.on_mesh(kinds, Mesh(tuple(phases)), ends)
+    everything = np.concatenate([c[:rod], constants[:-1]])
+    return attempt, attempt.nlp.layout.pack(nodes, stages, everything)
+
+
+def in_other_phases(
+    search: Search, source: Solution, kinds: tuple[int, ...], switches: Array
+) -> tuple[Attempt, Array]:
+    """Return the means to solve in phases that meet at fractions, and the unknowns of a source."""
+    old, nodes = np.append(source.trajectory.nodes[:-1], 1.0), [0.0, *switches, 1.0]
+    order = np.arange(len(old), dtype=float)
+    phases = []
+    for a, b in pairwise(nodes):
+        first, last = np.interp([a, b], old, order)
+        count = max(LEAST_IN_PHASE, round(last - first))
+        inner = np.interp(np.linspace(first, last, count + 1), order, old)
+        phases.append(np.diff(inner) / (inner[-1] - inner[0]))
+    attempt = search.on_mesh(kinds, Mesh(tuple(phases)), np.asarray(switches))
+    return attempt, attempt.unknowns(source)
