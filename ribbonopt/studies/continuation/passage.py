@@ -50,7 +50,7 @@ def passage(
     way = _Way(equations, a, trial)
     arcs = {change: way.root(change) for change in beyond if change not in inside}
     if inside and not any(arc < way.whole / 2 for arc in arcs.values()):
-        return _merged(equations, a, trial, inside)
+        return _merged(equations, a, float(trial.unknowns[-1]), inside)
     event = way.point(min(arcs.values()))
     ways = leaving(equations, event)
     if not ways:
@@ -59,6 +59,27 @@ def passage(
     crossed = len(ways) > 1 or ways[0].sign * event.sign < 0
     kind = KINK if crossed else POINT
     return Passage(a, replace(event, kind=kind), ways[0])
+
+
+def lost(
+    equations: RibbonEquations, a: Point[Solution], expected: Array
+) -> Passage[Solution] | None:
+    """Return what is behind a point where a phase is expected to lose its length, None for none.
+
+    Newton's method fails near where one does, as the equations are singular there.
+    """
+    solution, count = a.solution, len(a.solution.sheets) - 1
+    if count < 1:
+        return None
+    total = solution.trajectory.length
+    lengths = np.append(expected[-1 - count : -1], 0.0)
+    lengths[-1] = total - lengths.sum()
+    inside = [
+        change
+        for change in margins(solution)
+        if change.what is What.GONE_INSIDE and lengths[change.phase] < 0
+    ]
+    return _merged(equations, a, float(expected[-1]), inside) if inside else None
 
 
 def leaving(equations: RibbonEquations, event: Point[Solution]) -> list[Point[Solution]]:
@@ -114,36 +135,47 @@ def _along_tangent(
 def _split(
     equations: RibbonEquations, event: Point[Solution], changes: tuple[Change, ...], away: float
 ) -> Iterator[Trial[Solution]]:
-    """Yield what is found with short phases where the switch touches zero inside others."""
+    """Yield what is found with short phases where the switch touches zero inside others.
+
+    These are mixtures where both sides of the law drive the switch back to zero, or else of the
+    other side.
+    """
     if any(change.what is not What.BORN_INSIDE for change in changes):
         return  # as good as never at once
     solution, width = event.solution, SHORT * away / AWAY
-    kinds, switches, born = [], [], []
-    ends = solution.trajectory.ends
     touched = {change.phase for change in changes}
+    for mixed in (True, False):
+        kinds, switches, born = _with_born(solution, touched, width, mixed)
+        search = equations.prepared.search(equations.curve.posed_at(event.position))
+        attempt, w = in_other_phases(search, solution, kinds, switches)
+        there = attempt.restored(w)
+        layout = attempt.nlp.layout
+        row = np.zeros(len(layout.point_elements) * layout.nx + layout.nc + 1)
+        row[[len(row) - len(kinds) + i for i in born]] = 1.0
+        value = len(born) * width * solution.trajectory.length
+        trial = equations.correct_with(there, row, value, np.append(w, event.position))
+        if trial.converged:
+            yield trial
+
+
+def _with_born(
+    solution: Solution, touched: set[int], width: float, mixed: bool
+) -> tuple[tuple[int, ...], Array, list[int]]:
+    """Return kinds, switches and which phases are new, of phases born inside those touched."""
+    kinds: list[int] = []
+    switches: list[float] = []
+    born: list[int] = []
+    ends = solution.trajectory.ends
     for i, kind in enumerate(solution.sheets):
+        switches += [float(ends[i])] if kinds else []
         kinds.append(kind)
-        if i in touched:
-            for sigma, value in minima(solution, i, *profile(solution, i)):
-                if value > AT_ONCE:
-                    continue
+        for sigma, value in minima(solution, i, *profile(solution, i)) if i in touched else ():
+            if value <= AT_ONCE:
                 at = float(ends[i] + sigma * (ends[i + 1] - ends[i]))
                 switches += [at - width / 2, at + width / 2]
                 born.append(len(kinds))
-                kinds += [-kind, kind]
-        if i + 1 < len(solution.sheets):
-            switches.append(float(ends[i + 1]))
-    search = equations.prepared.search(equations.curve.posed_at(event.position))
-    attempt, w = in_other_phases(search, solution, tuple(kinds), np.array(switches))
-    there = attempt.restored(w)
-    layout = attempt.nlp.layout
-    row = np.zeros(len(layout.point_elements) * layout.nx + layout.nc + 1)
-    first = len(row) - 1 - (len(kinds) - 1)
-    row[[first + i for i in born]] = 1.0
-    value = len(born) * width * solution.trajectory.length
-    trial = equations.correct_with(there, row, value, np.append(w, event.position))
-    if trial.converged:
-        yield trial
+                kinds += [0 if mixed else -kind, kind]
+    return tuple(kinds), np.array(switches), born
 
 
 def _admitted(
@@ -168,15 +200,16 @@ def _admitted(
 def _merged(
     equations: RibbonEquations,
     a: Point[Solution],
-    trial: Trial[Solution],
+    position: float,
     inside: list[Change],
 ) -> Passage[Solution]:
-    """Return what is behind a point where phases between others of one kind lose their length."""
+    """Return what is behind a point where phases between others lose their length."""
     kinds, switches = list(a.solution.sheets), list(a.solution.trajectory.ends[1:-1])
     for change in sorted(inside, key=lambda change: -change.phase):
         i = change.phase
-        del kinds[i : i + 2], switches[i - 1 : i + 1]
-    position = float(trial.unknowns[-1])
+        # Its neighbours become one, unless it is a mixture between two sides of the law.
+        gone = 2 if kinds[i - 1] == kinds[i + 1] else 1
+        del kinds[i : i + gone], switches[i - 1 : i - 1 + gone]
     search = equations.prepared.search(equations.curve.posed_at(position))
     attempt, w = in_other_phases(search, a.solution, tuple(kinds), np.array(switches))
     there = attempt.restored(w)

@@ -48,7 +48,7 @@ def margins(solution: Solution) -> dict[Change, float]:
     kinds, found = solution.sheets, {}
     last, lengths = len(kinds) - 1, np.diff(solution.trajectory.ends)
     for i, kind in enumerate(kinds):
-        if last and not (kinds[i] == 0 or 0 in kinds[max(i - 1, 0) : i + 2]):
+        if last and _may_go(kinds, i):
             ends = {0: What.GONE_AT_START, last: What.GONE_AT_END}
             found[Change(ends.get(i, What.GONE_INSIDE), i)] = float(lengths[i])
         if kind == 0:
@@ -109,11 +109,20 @@ def orientation(kinds: tuple[int, ...]) -> float:
 
     The length of a phase is an unknown and the zero of the switch at its end a condition, whose
     derivative by that length has the sign of the phase that follows. Without these factors the
-    determinant is that of a ribbon whose phases end where they must: the same in any phases. The
-    lengths and conditions of mixtures stay.
+    determinant is that of a ribbon whose phases end where they must: the same in any phases. A
+    mixture that is born where the switch touches zero makes no difference, but one between two
+    sides of the law takes the place of a condition of either sign.
     """
     pairs = zip(kinds[:-1], kinds[1:], strict=True)
-    return float(np.prod([after for before, after in pairs if before and after]))
+    sign = float(np.prod([after for before, after in pairs if before and after]))
+    around = zip(kinds[:-2], kinds[1:-1], kinds[2:], strict=True)
+    return sign * float(np.prod([a * b for a, mixture, b in around if not mixture]))
+
+
+def _may_go(kinds: tuple[int, ...], i: int) -> bool:
+    """Whether the phases around one can meet; those at an end are none of mixtures."""
+    around = kinds[max(i - 1, 0) : i] + kinds[i + 1 : i + 2]
+    return len(around) == 2 or 0 not in (*around, kinds[i])
 
 
 def _lowest(

@@ -27,7 +27,7 @@ from ribbonopt.studies.spare import SPARE
 from .buckled import StageBuckling
 from .coordinates import reduced, row_of
 from .curve import Curve
-from .passage import leaving, passage
+from .passage import leaving, lost, passage
 from .phases import one_sign, orientation
 from .walk.metric import Metric
 from .walk.points import BUCKLING, POINT, Point
@@ -115,11 +115,15 @@ class RibbonEquations:
         attempt.take(_without_last(report), check=False)
         return _trial(attempt, report.w[-1:])
 
-    def passed(self, point: Point[Solution], trial: Trial[Solution]) -> Passage[Solution] | None:
+    def passed(
+        self, point: Point[Solution], trial: Trial[Solution], expected: Array
+    ) -> Passage[Solution] | None:
         """Return where phases must change before a trial; LinAlgError if no others lead on."""
         search = self.prepared.search(trial.solution.posed)
-        if not search.phases_help or self._unbent(trial.solution):
+        if not search.phases_help or self._unbent(point.solution):
             return None
+        if not trial.converged:
+            return lost(self, point, expected)
         if not point.solution.sheets:
             kind = one_sign(point.solution)
             if not kind or one_sign(trial.solution) == kind:

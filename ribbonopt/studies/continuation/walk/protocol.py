@@ -134,9 +134,10 @@ class Equations(Protocol[S]):
     def crossings(self, a: Point[S], b: Point[S]) -> list[Point[S]]:
         """Return where other branches cross between two points, if no determinant can tell it."""
 
-    def passed(self, point: Point[S], trial: Trial[S]) -> Passage[S] | None:
+    def passed(self, point: Point[S], trial: Trial[S], expected: Array) -> Passage[S] | None:
         """Return where the layout must change before a trial; None if it is right up to there.
 
+        `expected` (n + k,) was predicted of it, which tells where the trial has not converged.
         LinAlgError if no other layout leads on.
         """
 

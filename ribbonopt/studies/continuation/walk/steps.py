@@ -125,6 +125,13 @@ class Stepper(Generic[S]):
     ) -> Stride[S] | None:
         """Return the step if it is not too long, its point in the layout that it needs."""
         equations = self.equations
+        try:
+            passed = equations.passed(point, trial, prediction.unknowns)
+        except np.linalg.LinAlgError as error:
+            self.trouble = str(error)
+            return None
+        if passed is not None:
+            return self._passed(passed, prediction)
         if not trial.converged:
             self.trouble = trial.message
             return None
@@ -139,13 +146,6 @@ class Stepper(Generic[S]):
             self.trouble = "the branch bends too sharply"
             if prediction.arc * self._size > self.range.smallest:
                 return None
-        try:
-            passed = equations.passed(point, trial)
-        except np.linalg.LinAlgError as error:
-            self.trouble = str(error)
-            return None
-        if passed is not None:
-            return self._passed(passed, prediction)
         following = replace(
             point,
             solution=solution,
