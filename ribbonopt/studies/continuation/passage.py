@@ -29,11 +29,12 @@ if TYPE_CHECKING:
     from .ribbons import RibbonEquations
 
 ROUNDING = 1e-11  # a margin below minus that is negative
-AT_ONCE = 1e-7  # margins at a change of phases that vanish there too
+AT_ONCE = 1e-6  # margins at a change of phases that vanish there too
 MOST = 4  # phases that change at once
-AWAY, LEAST_AWAY = 0.02, 2e-5  # arclength of the first point behind a change of phases
+AWAY, LEAST_AWAY = 0.02, 2e-4  # arclength of the first point behind a change of phases
 SHORT = 0.02  # of the length: phase born inside, to begin with
 CLOSE, MOST_TRIALS = 1e-14, 60
+SPLITTING = (What.BORN_INSIDE, What.BORN_BETWEEN)
 
 
 def passage(
@@ -47,8 +48,15 @@ def passage(
     if not beyond:
         return None
     inside = [change for change in beyond if change.what is What.GONE_INSIDE]
+    between = {change.phase for change in beyond if change.what is What.BORN_BETWEEN}
     way = _Way(equations, a, trial)
-    arcs = {change: way.root(change) for change in beyond if change not in inside}
+    arcs = {
+        change: way.root(change)
+        for change in beyond
+        # Where a slope has changed sign there are minima next to it.
+        if change.what not in (What.GONE_INSIDE, What.BORN_INSIDE)
+        or (change.what is What.BORN_INSIDE and not between & {change.phase - 1, change.phase})
+    }
     if inside and not any(arc < way.whole / 2 for arc in arcs.values()):
         return _merged(equations, a, float(trial.unknowns[-1]), inside)
     event = way.point(min(arcs.values()))
@@ -100,8 +108,7 @@ def _entered(
     equations: RibbonEquations, event: Point[Solution], changes: tuple[Change, ...]
 ) -> Iterator[Point[Solution]]:
     """Yield the point behind an event on the branch where these phases change, if there is one."""
-    inside = [change for change in changes if change.what is What.BORN_INSIDE]
-    enter = _split if inside else _along_tangent
+    enter = _split if any(change.what in SPLITTING for change in changes) else _along_tangent
     away = AWAY
     while away > LEAST_AWAY:
         for trial in enter(equations, event, changes, away):
@@ -140,12 +147,12 @@ def _split(
     These are mixtures where both sides of the law drive the switch back to zero, or else of the
     other side.
     """
-    if any(change.what is not What.BORN_INSIDE for change in changes):
+    if any(change.what not in SPLITTING for change in changes):
         return  # as good as never at once
     solution, width = event.solution, SHORT * away / AWAY
-    touched = {change.phase for change in changes}
-    for mixed in (True, False):
-        kinds, switches, born = _with_born(solution, touched, width, mixed)
+    touched = any(change.what is What.BORN_INSIDE for change in changes)
+    for mixed in (True, False) if touched else (True,):
+        kinds, switches, born = _with_born(solution, changes, width, mixed)
         search = equations.prepared.search(equations.curve.posed_at(event.position))
         attempt, w = in_other_phases(search, solution, kinds, switches)
         there = attempt.restored(w)
@@ -159,15 +166,22 @@ def _split(
 
 
 def _with_born(
-    solution: Solution, touched: set[int], width: float, mixed: bool
+    solution: Solution, changes: tuple[Change, ...], width: float, mixed: bool
 ) -> tuple[tuple[int, ...], Array, list[int]]:
     """Return kinds, switches and which phases are new, of phases born inside those touched."""
     kinds: list[int] = []
     switches: list[float] = []
     born: list[int] = []
     ends = solution.trajectory.ends
+    touched = {change.phase for change in changes if change.what is What.BORN_INSIDE}
+    spread = {change.phase for change in changes if change.what is What.BORN_BETWEEN}
     for i, kind in enumerate(solution.sheets):
-        switches += [float(ends[i])] if kinds else []
+        if i - 1 in spread:
+            switches += [float(ends[i]) - width / 2, float(ends[i]) + width / 2]
+            born.append(len(kinds))
+            kinds.append(0)
+        elif kinds:
+            switches.append(float(ends[i]))
         kinds.append(kind)
         for sigma, value in minima(solution, i, *profile(solution, i)) if i in touched else ():
             if value <= AT_ONCE:

@@ -3,7 +3,7 @@
 In each phase the law is that of one side of its switch, continued beyond it; so a branch can be
 followed a little past the point where its phases stop being the right ones. What says so is a
 margin, which is positive before and negative behind: the switch at an end of the ribbon, the switch
-where it is nearest to zero inside a phase, and the length of a phase.
+where it is nearest to zero inside a phase, its slope where it changes sign, the length of a phase.
 """
 
 from __future__ import annotations
@@ -27,6 +27,7 @@ class What(Enum):
     BORN_AT_START = "a phase is born at the start"
     BORN_AT_END = "a phase is born at the end"
     BORN_INSIDE = "a phase is born inside"
+    BORN_BETWEEN = "a mixture is born at the end"
     GONE_AT_START = "the first phase has no length left"
     GONE_AT_END = "the last phase has no length left"
     GONE_INSIDE = "a phase inside has no length left"
@@ -61,6 +62,8 @@ def margins(solution: Solution) -> dict[Change, float]:
         lowest = [value for _, value in minima(solution, i, sigma, value)]
         if lowest:
             found[Change(What.BORN_INSIDE, i)] = min(lowest)
+        if i < last and kinds[i + 1]:
+            found[Change(What.BORN_BETWEEN, i)] = kinds[i + 1] * _slope_at_end(solution, i)
     return found
 
 
@@ -89,6 +92,17 @@ def minima(
         _lowest(solution, phase, *sigma[[j, j + 1, j + 2]], *value[[j, j + 1, j + 2]])
         for j in np.flatnonzero(inner)
     ]
+
+
+def _slope_at_end(solution: Solution, phase: int) -> float:
+    """Return the slope of the switch m2 at the end of a phase, over moment and length.
+
+    m2' = -n1 - u3 m1 by eqs. (2.2) and (2.7): exact there, as slopes of polynomials are not.
+    """
+    nodes, trajectory = solution.trajectory.at_nodes, solution.trajectory
+    at = solution.dense.blocks.layout.phase_slices[phase].stop
+    n1, m1, u3 = (float(nodes[name][at]) for name in ("n1", "m1", "u3"))
+    return -(n1 + u3 * m1) * trajectory.length / moment(solution)
 
 
 def moment(solution: Solution) -> float:

@@ -33,6 +33,7 @@ from .walk.metric import Metric
 from .walk.points import BUCKLING, POINT, Point
 from .walk.protocol import Passage, Trial
 
+MOST = 20  # iterations of Newton's method: a step that needs more is too long
 NEXT_TO_CROSSING = "next to where branches cross: the error is above the tolerance"
 
 
@@ -110,7 +111,8 @@ class RibbonEquations:
         line = self.curve.line(solution)
         system = ExtendedSystem(line, row, value)
         nlp = self._beside(solution, float(guess[-1])).nlp
-        report = NewtonSolver(nlp).solve(guess, line.parameters(guess[-1]), None, enough, system)
+        p, most = line.parameters(guess[-1]), MOST
+        report = NewtonSolver(nlp).solve(guess, p, None, enough, system, most=most)
         attempt = self._beside(solution, float(report.w[-1]))
         attempt.take(_without_last(report), check=False)
         return _trial(attempt, report.w[-1:])
