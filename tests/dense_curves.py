@@ -72,6 +72,12 @@ class Dense:
     def crossings(self, a: Point[Unit], b: Point[Unit]) -> list[Point[Unit]]:
         return []
 
+    def passed(self, point: Point[Unit], trial: Trial[Unit], expected: Array) -> None:
+        return None
+
+    def leaving(self, point: Point[Unit]) -> list[Point[Unit]]:
+        return []
+
     def departure(self, point: Point[Unit]) -> Array | None:
         return None
 

@@ -1,17 +1,13 @@
-"""Where phases change on a branch: the point itself, and the branches that leave there.
+"""Where phases change on a branch: the point itself, and what is behind it.
 
 The branch is followed in its phases past the point where a margin (`phases`) vanishes, and that is
-located there, where all is smooth. At it the ribbon is an equilibrium in other phases too. Each has
-a tangent of its own, of which one half at most has all margins positive: these half lines are the
-branches that meet at the point. Beside the one that led there it is one more, or, where several
-phases change at once, maybe more: then branches cross, and leave linearly.
+located there, where all is smooth. Behind it one of the branches that leave goes on (`leaving`).
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
-from dataclasses import dataclass, replace
-from itertools import combinations
+from collections.abc import Callable
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -19,8 +15,9 @@ import numpy as np
 from ribbonopt.arrays import Array
 from ribbonopt.solution.solution import Solution
 
-from .phases import Change, What, margins, minima, profile
-from .relaid import at_the_ends, in_other_phases
+from .leaving import admitted, leaving
+from .phases import Change, What, margins, one_sign
+from .relaid import in_other_phases
 from .walk.points import KINK, POINT, Point
 from .walk.protocol import Passage, Trial
 from .walk.tangents import near
@@ -29,24 +26,33 @@ if TYPE_CHECKING:
     from .ribbons import RibbonEquations
 
 ROUNDING = 1e-11  # a margin below minus that is negative
-AT_ONCE = 1e-6  # margins at a change of phases that vanish there too
-MOST = 4  # phases that change at once
-AWAY, LEAST_AWAY = 0.02, 2e-4  # arclength of the first point behind a change of phases
-SHORT = 0.02  # of the length: phase born inside, to begin with
 CLOSE, MOST_TRIALS = 1e-14, 60
-SPLITTING = (What.BORN_INSIDE, What.BORN_BETWEEN)
 
 
 def passage(
-    equations: RibbonEquations, a: Point[Solution], trial: Trial[Solution]
+    equations: RibbonEquations, point: Point[Solution], trial: Trial[Solution], expected: Array
 ) -> Passage[Solution] | None:
     """Return the first change of phases between a point and a trial in its phases, None for none.
 
-    LinAlgError where it cannot be passed.
+    Where the trial has not converged, what was expected of it tells. LinAlgError where a change
+    cannot be passed.
     """
+    if not point.solution.sheets:
+        kind = one_sign(point.solution)
+        if not kind or not trial.converged or one_sign(trial.solution) == kind:
+            return None
+        point, trial = _on_sheet(equations, point, trial, kind)
+    if not trial.converged:
+        inside = _lost(point.solution, expected)
+        return _merged(equations, point, float(expected[-1]), inside) if inside else None
     beyond = [c for c, value in margins(trial.solution).items() if value < -ROUNDING]
-    if not beyond:
-        return None
+    return _passed(equations, point, trial, beyond) if beyond else None
+
+
+def _passed(
+    equations: RibbonEquations, a: Point[Solution], trial: Trial[Solution], beyond: list[Change]
+) -> Passage[Solution]:
+    """Return the first of the changes that a trial is beyond."""
     inside = [change for change in beyond if change.what is What.GONE_INSIDE]
     between = {change.phase for change in beyond if change.what is What.BORN_BETWEEN}
     way = _Way(equations, a, trial)
@@ -62,153 +68,42 @@ def passage(
     event = way.point(min(arcs.values()))
     ways = leaving(equations, event)
     if not ways:
-        told = "; ".join(change.told(a.solution.sheets) for change in beyond)
-        raise np.linalg.LinAlgError(f"{told}: no equilibrium was found in other phases")
+        raise np.linalg.LinAlgError(_told(a.solution, beyond))
     crossed = len(ways) > 1 or ways[0].sign * event.sign < 0
-    kind = KINK if crossed else POINT
-    return Passage(a, replace(event, kind=kind), ways[0])
+    return Passage(a, replace(event, kind=KINK if crossed else POINT), ways[0])
 
 
-def lost(
-    equations: RibbonEquations, a: Point[Solution], expected: Array
-) -> Passage[Solution] | None:
-    """Return what is behind a point where a phase is expected to lose its length, None for none.
+def _on_sheet(
+    equations: RibbonEquations, point: Point[Solution], trial: Trial[Solution], kind: int
+) -> tuple[Point[Solution], Trial[Solution]]:
+    """Return a point, and a trial, on one side of the law, of which a point without phases is."""
+    search = equations.prepared.search(point.solution.posed)
+    attempt = search.on_mesh((kind,), point.solution.mesh)
+    point = replace(point, solution=attempt.restored(point.unknowns[:-1]))
+    return point, equations.correct_at(point.solution, trial.unknowns)
 
-    Newton's method fails near where one does, as the equations are singular there.
+
+def _lost(solution: Solution, expected: Array) -> list[Change]:
+    """Return what phases inside are expected to lose their length.
+
+    Near where one does Newton's method fails, as the equations are singular there.
     """
-    solution, count = a.solution, len(a.solution.sheets) - 1
+    count = len(solution.sheets) - 1
     if count < 1:
-        return None
-    total = solution.trajectory.length
+        return []
     lengths = np.append(expected[-1 - count : -1], 0.0)
-    lengths[-1] = total - lengths.sum()
-    inside = [
-        change
-        for change in margins(solution)
-        if change.what is What.GONE_INSIDE and lengths[change.phase] < 0
-    ]
-    return _merged(equations, a, float(expected[-1]), inside) if inside else None
+    lengths[-1] = solution.trajectory.length - lengths.sum()
+    gone = (change for change in margins(solution) if change.what is What.GONE_INSIDE)
+    return [change for change in gone if lengths[change.phase] < 0]
 
 
-def leaving(equations: RibbonEquations, event: Point[Solution]) -> list[Point[Solution]]:
-    """Return the first points on the branches that leave a change of phases, the straightest first.
-
-    `event` is in the phases of the branch that leads there, and its tangent that branch's.
-    """
-    known = margins(event.solution)
-    at_once = [change for change, value in known.items() if abs(value) <= AT_ONCE][:MOST]
-    found = []
-    for count in range(len(at_once), 0, -1):
-        for changes in combinations(at_once, count):
-            found += list(_entered(equations, event, changes))
-    return sorted(found, key=lambda way: -_cosine(equations, event, way))
-
-
-def _entered(
-    equations: RibbonEquations, event: Point[Solution], changes: tuple[Change, ...]
-) -> Iterator[Point[Solution]]:
-    """Yield the point behind an event on the branch where these phases change, if there is one."""
-    enter = _split if any(change.what in SPLITTING for change in changes) else _along_tangent
-    away = AWAY
-    while away > LEAST_AWAY:
-        for trial in enter(equations, event, changes, away):
-            way = _admitted(equations, event, trial)
-            if way is not None:
-                yield way
-                return
-        away /= 4
-
-
-def _along_tangent(
-    equations: RibbonEquations, event: Point[Solution], changes: tuple[Change, ...], away: float
-) -> Iterator[Trial[Solution]]:
-    """Yield what is found both ways along the tangent in other phases at the ends."""
-    search = equations.prepared.search(equations.curve.posed_at(event.position))
-    try:
-        attempt, w = at_the_ends(search, event.solution, changes)
-        there, unknowns = attempt.restored(w), np.append(w, event.position)
-        ahead = equations.reduced(event.solution, event.tangent)
-        found, tangent = near(equations, there, unknowns, ahead)
-    except np.linalg.LinAlgError:
-        return
-    origin = replace(event, solution=there, unknowns=unknowns, tangent=tangent, sign=found.sign)
-    for sign in (1, -1):
-        guess = unknowns + sign * away * tangent
-        trial = equations.correct_along(origin, sign * tangent, away, guess)
-        if trial.converged:
-            yield trial
-
-
-def _split(
-    equations: RibbonEquations, event: Point[Solution], changes: tuple[Change, ...], away: float
-) -> Iterator[Trial[Solution]]:
-    """Yield what is found with short phases where the switch touches zero inside others.
-
-    These are mixtures where both sides of the law drive the switch back to zero, or else of the
-    other side.
-    """
-    if any(change.what not in SPLITTING for change in changes):
-        return  # as good as never at once
-    solution, width = event.solution, SHORT * away / AWAY
-    touched = any(change.what is What.BORN_INSIDE for change in changes)
-    for mixed in (True, False) if touched else (True,):
-        kinds, switches, born = _with_born(solution, changes, width, mixed)
-        search = equations.prepared.search(equations.curve.posed_at(event.position))
-        attempt, w = in_other_phases(search, solution, kinds, switches)
-        there = attempt.restored(w)
-        layout = attempt.nlp.layout
-        row = np.zeros(len(layout.point_elements) * layout.nx + layout.nc + 1)
-        row[[len(row) - len(kinds) + i for i in born]] = 1.0
-        value = len(born) * width * solution.trajectory.length
-        trial = equations.correct_with(there, row, value, np.append(w, event.position))
-        if trial.converged:
-            yield trial
-
-
-def _with_born(
-    solution: Solution, changes: tuple[Change, ...], width: float, mixed: bool
-) -> tuple[tuple[int, ...], Array, list[int]]:
-    """Return kinds, switches and which phases are new, of phases born inside those touched."""
-    kinds: list[int] = []
-    switches: list[float] = []
-    born: list[int] = []
-    ends = solution.trajectory.ends
-    touched = {change.phase for change in changes if change.what is What.BORN_INSIDE}
-    spread = {change.phase for change in changes if change.what is What.BORN_BETWEEN}
-    for i, kind in enumerate(solution.sheets):
-        if i - 1 in spread:
-            switches += [float(ends[i]) - width / 2, float(ends[i]) + width / 2]
-            born.append(len(kinds))
-            kinds.append(0)
-        elif kinds:
-            switches.append(float(ends[i]))
-        kinds.append(kind)
-        for sigma, value in minima(solution, i, *profile(solution, i)) if i in touched else ():
-            if value <= AT_ONCE:
-                at = float(ends[i] + sigma * (ends[i + 1] - ends[i]))
-                switches += [at - width / 2, at + width / 2]
-                born.append(len(kinds))
-                kinds += [0 if mixed else -kind, kind]
-    return tuple(kinds), np.array(switches), born
-
-
-def _admitted(
-    equations: RibbonEquations, event: Point[Solution], trial: Trial[Solution]
-) -> Point[Solution] | None:
-    """Return the point that a trial behind an event is, None where it has no right to be one."""
-    if not all(value > 0 for value in margins(trial.solution).values()):
-        return None
-    there = equations.reduced(trial.solution, trial.unknowns)
-    ahead = there - equations.reduced(event.solution, event.unknowns)
-    final = equations.finished(event, trial)
-    if not final.converged:
-        return None
-    try:
-        found, tangent = near(equations, final.solution, final.unknowns, ahead)
-    except np.linalg.LinAlgError:
-        return None
-    parts = {"solution": final.solution, "unknowns": final.unknowns, "tangent": tangent}
-    return replace(event, **parts, sign=found.sign, kind=POINT, note=final.note)
+def _told(solution: Solution, changes: list[Change]) -> str:
+    """Say that no equilibrium was found behind changes of phases, and what to do."""
+    what = "; ".join(dict.fromkeys(change.told(solution.sheets) for change in changes))
+    return (
+        f"{what}, and no equilibrium was found in other phases: a smooth law needs none "
+        "(law: {type: variational, delta: 0.01}, or regularized)"
+    )
 
 
 def _merged(
@@ -228,17 +123,10 @@ def _merged(
     attempt, w = in_other_phases(search, a.solution, tuple(kinds), np.array(switches))
     there = attempt.restored(w)
     found = equations.correct_at(there, np.append(w, position))
-    way = _admitted(equations, a, found) if found.converged else None
+    way = admitted(equations, a, found) if found.converged else None
     if way is None:
-        told = "; ".join(change.told(a.solution.sheets) for change in inside)
-        raise np.linalg.LinAlgError(f"{told}: no equilibrium was found without")
+        raise np.linalg.LinAlgError(_told(a.solution, inside))
     return Passage(a, a, way)
-
-
-def _cosine(equations: RibbonEquations, a: Point[Solution], b: Point[Solution]) -> float:
-    """Cosine of the angle between the tangents of two points."""
-    first, second = (equations.reduced(p.solution, p.tangent) for p in (a, b))
-    return equations.metric.product(first, second)
 
 
 class _Way:
@@ -284,8 +172,14 @@ class _Way:
         solution, unknowns = self.at(arc)
         ahead = self.equations.reduced(solution, self.a.tangent)
         found, tangent = near(self.equations, solution, unknowns, ahead)
-        parts = {"solution": solution, "unknowns": unknowns, "tangent": tangent}
-        return replace(self.a, **parts, sign=found.sign, note="")
+        return replace(
+            self.a,
+            solution=solution,
+            unknowns=unknowns,
+            tangent=tangent,
+            sign=found.sign,
+            note="",
+        )
 
 
 def _root(f: Callable[[float], float], a: float, b: float) -> float:

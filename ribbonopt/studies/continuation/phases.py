@@ -9,6 +9,7 @@ where it is nearest to zero inside a phase, its slope where it changes sign, the
 from __future__ import annotations
 
 from enum import Enum
+from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
@@ -41,7 +42,7 @@ class Change(NamedTuple):
 
     def told(self, kinds: tuple[int, ...]) -> str:
         """Say it in words, for phases of these kinds."""
-        return f"{self.what.value} (phase {self.phase + 1} of {phase_words(kinds)})"
+        return f"{self.what.value} (of phase {self.phase + 1} among: {phase_words(kinds)})"
 
 
 def margins(solution: Solution) -> dict[Change, float]:
@@ -82,9 +83,7 @@ def profile(solution: Solution, phase: int) -> tuple[Array, Array]:
     return places[order], values
 
 
-def minima(
-    solution: Solution, phase: int, sigma: Array, value: Array
-) -> list[tuple[float, float]]:
+def minima(solution: Solution, phase: int, sigma: Array, value: Array) -> list[tuple[float, float]]:
     """Return the low minima inside a phase: where, and the value, from its profile."""
     low = NEAR * float(np.abs(value).max())
     inner = (value[1:-1] <= value[:-2]) & (value[1:-1] < value[2:]) & (value[1:-1] < low)
@@ -127,7 +126,7 @@ def orientation(kinds: tuple[int, ...]) -> float:
     mixture that is born where the switch touches zero makes no difference, but one between two
     sides of the law takes the place of a condition of either sign.
     """
-    pairs = zip(kinds[:-1], kinds[1:], strict=True)
+    pairs = pairwise(kinds)
     sign = float(np.prod([after for before, after in pairs if before and after]))
     around = zip(kinds[:-2], kinds[1:-1], kinds[2:], strict=True)
     return sign * float(np.prod([a * b for a, mixture, b in around if not mixture]))

@@ -19,7 +19,7 @@ from ribbonopt.pipeline.search import Search
 from ribbonopt.solution.solution import Solution
 from ribbonopt.transcription import Mesh
 
-from .phases import Change, What
+from .phases import Change, What, minima, profile
 
 
 def kinds_after(kinds: tuple[int, ...], changes: Iterable[Change]) -> tuple[int, ...]:
@@ -72,6 +72,33 @@ def at_the_ends(
     attempt = search.on_mesh(kinds, Mesh(tuple(phases)), ends)
     everything = np.concatenate([c[:rod], constants[:-1]])
     return attempt, attempt.nlp.layout.pack(nodes, stages, everything)
+
+
+def with_born(
+    solution: Solution, changes: tuple[Change, ...], width: float, mixed: bool, zero: float
+) -> tuple[tuple[int, ...], Array, list[int]]:
+    """Return kinds, switches and which phases are new, of phases born inside those touched."""
+    kinds: list[int] = []
+    switches: list[float] = []
+    born: list[int] = []
+    ends = solution.trajectory.ends
+    touched = {change.phase for change in changes if change.what is What.BORN_INSIDE}
+    spread = {change.phase for change in changes if change.what is What.BORN_BETWEEN}
+    for i, kind in enumerate(solution.sheets):
+        if i - 1 in spread:
+            switches += [float(ends[i]) - width / 2, float(ends[i]) + width / 2]
+            born.append(len(kinds))
+            kinds.append(0)
+        elif kinds:
+            switches.append(float(ends[i]))
+        kinds.append(kind)
+        for sigma, value in minima(solution, i, *profile(solution, i)) if i in touched else ():
+            if value <= zero:
+                at = float(ends[i] + sigma * (ends[i + 1] - ends[i]))
+                switches += [at - width / 2, at + width / 2]
+                born.append(len(kinds))
+                kinds += [0 if mixed else -kind, kind]
+    return tuple(kinds), np.array(switches), born
 
 
 def in_other_phases(

@@ -27,8 +27,9 @@ from ribbonopt.studies.spare import SPARE
 from .buckled import StageBuckling
 from .coordinates import reduced, row_of
 from .curve import Curve
-from .passage import leaving, lost, passage
-from .phases import one_sign, orientation
+from .leaving import leaving
+from .passage import passage
+from .phases import orientation
 from .walk.metric import Metric
 from .walk.points import BUCKLING, POINT, Point
 from .walk.protocol import Passage, Trial
@@ -124,19 +125,7 @@ class RibbonEquations:
         search = self.prepared.search(trial.solution.posed)
         if not search.phases_help or self._unbent(point.solution):
             return None
-        if not trial.converged:
-            return lost(self, point, expected)
-        if not point.solution.sheets:
-            kind = one_sign(point.solution)
-            if not kind or one_sign(trial.solution) == kind:
-                return None
-            attempt = self.prepared.search(point.solution.posed)
-            sheet = attempt.on_mesh((kind,), point.solution.mesh)
-            point = replace(point, solution=sheet.restored(point.unknowns[:-1]))
-            trial = self.correct_at(point.solution, trial.unknowns)
-            if not trial.converged:
-                raise np.linalg.LinAlgError(trial.message)
-        return passage(self, point, trial)
+        return passage(self, point, trial, expected)
 
     def leaving(self, point: Point[Solution]) -> list[Point[Solution]]:
         """Return the first points on the branches that leave a kink, the main branch's first."""

@@ -95,6 +95,12 @@ class FoldLocus:
     def crossings(self, a: Point[None], b: Point[None]) -> list[Point[None]]:
         return []
 
+    def passed(self, point: Point[None], trial: Trial[None], expected: Array) -> None:
+        return None
+
+    def leaving(self, point: Point[None]) -> list[Point[None]]:
+        return []
+
     def departure(self, point: Point[None]) -> None:
         return None
 

@@ -127,8 +127,8 @@ class Stepper(Generic[S]):
         equations = self.equations
         try:
             passed = equations.passed(point, trial, prediction.unknowns)
-        except np.linalg.LinAlgError as error:
-            self.trouble = str(error)
+        except np.linalg.LinAlgError as impassable:
+            self.trouble = str(impassable)
             return None
         if passed is not None:
             return self._passed(passed, prediction)
