@@ -65,14 +65,13 @@ class Stepper(Generic[S]):
 
     def _elsewhere(self, point: Point[S], goal: float) -> Stride[S] | None:
         """Return what is found, by other means, where the step would have led."""
-        trouble = self.trouble
-        prediction = self._predicted(point, goal, point.step)
-        position = float(prediction.unknowns[-1])
-        trial = self.equations.elsewhere(point, position)
-        self.trouble = trouble
+        length = self.first_length(point.tangent)
+        prediction = self._predicted(point, goal, length)
+        trial = self.equations.elsewhere(point, float(prediction.unknowns[-1]))
         if trial is None:
             return None
-        return Stride(self._arrived(point, trial, self._told(point, prediction, trial)), [])
+        arrived = self._arrived(point, trial, self._told(point, prediction, trial))
+        return Stride(replace(arrived, step=length), [])
 
     def first_length(self, tangent: Array) -> float:
         """Arclength of the first step along a tangent."""
