@@ -51,6 +51,9 @@ class Dense:
     unit_for: Callable[[Array], Unit] | None = None
     other: Callable[[float], Array] | None = None
 
+    def measured(self, solution: Unit) -> "Dense":
+        return self
+
     def reduced(self, solution: Unit, vector: Array) -> Array:
         return np.append(vector[:-1] * solution.size, vector[-1])
 
@@ -72,6 +75,9 @@ class Dense:
     def crossings(self, a: Point[Unit], b: Point[Unit]) -> list[Point[Unit]]:
         return []
 
+    def uncounted(self, a: Unit, b: Unit, changes: int) -> str:
+        return ""
+
     def passed(self, point: Point[Unit], trial: Trial[Unit], expected: Array) -> None:
         return None
 
@@ -80,6 +86,12 @@ class Dense:
 
     def departure(self, point: Point[Unit]) -> Array | None:
         return None
+
+    def finer(self, origin: Unit, unknowns: Array) -> None:
+        return None
+
+    def enough(self, error: float, position: float) -> bool:
+        return True
 
     def restored(self, origin: Unit, unknowns: Array) -> Unit:
         return origin

@@ -11,31 +11,30 @@ from functools import cached_property
 
 import numpy as np
 
-from ribbonopt.accuracy.estimate import relative_error
 from ribbonopt.arrays import Array
 from ribbonopt.attempt.attempt import Attempt, verified
-from ribbonopt.checks.arcs import changed_phases
+from ribbonopt.checks.stability import negative_directions
 from ribbonopt.checks.zero_moment import unbent_share
 from ribbonopt.pipeline.prepared import Prepared
 from ribbonopt.solution.solution import Solution
-from ribbonopt.solvers import SolveReport, Status
 from ribbonopt.solvers.extended import ExtendedSystem, Local, local
 from ribbonopt.solvers.newton import NewtonSolver
 from ribbonopt.studies.buckling.twin import has_twin, twin_of, twin_scene
-from ribbonopt.studies.spare import SPARE
+from ribbonopt.transcription import Mesh
 
 from .buckled import StageBuckling
-from .coordinates import reduced, row_of
+from .coordinates import metric_at, reduced, row_of
 from .curve import Curve
+from .finishing import STEEP, elsewhere, finished
 from .leaving import leaving
 from .passage import passage
 from .phases import orientation
+from .trials import checked, trial_of, without_last
 from .walk.metric import Metric
 from .walk.points import BUCKLING, POINT, Point
 from .walk.protocol import Passage, Trial
 
 MOST = 20  # iterations of Newton's method: a step that needs more is too long
-NEXT_TO_CROSSING = "next to where branches cross: the error is above the tolerance"
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,6 +55,10 @@ class RibbonEquations:
     curve: Curve
     metric: Metric
 
+    def measured(self, solution: Solution) -> RibbonEquations:
+        """Return the same with the metric that fits a solution."""
+        return replace(self, metric=metric_at(solution, self.curve))
+
     def reduced(self, solution: Solution, vector: Array) -> Array:
         """States at both ends, constants of the rod and position, of a vector [w, l]."""
         return reduced(solution, vector)
@@ -63,7 +66,7 @@ class RibbonEquations:
     def linearise(self, solution: Solution, unknowns: Array, ahead: Array) -> Local:
         """Linearise at a solution with a row along the branch."""
         row = row_of(solution, self.metric.dual(ahead))
-        there, unbent = (solution.dense.w, float(unknowns[-1])), self._unbent(solution)
+        there, unbent = (solution.dense.w, float(unknowns[-1])), self.unbent(solution)
         try:
             found = local(self.curve.line(solution), row, *there)
         except np.linalg.LinAlgError:
@@ -82,12 +85,12 @@ class RibbonEquations:
         """Correct at a position (natural continuation)."""
         attempt = self._beside(origin, float(guess[-1]))
         attempt.run_from(guess[:-1], quick=True, check=False)
-        trial = _trial(attempt, guess[-1:])
-        if trial.converged or not (self._unbent(origin) and self._rod):
+        trial = trial_of(attempt, guess[-1:])
+        if trial.converged or not (self.unbent(origin) and self._rod):
             return trial
         straight = self._rod.correct_at(origin, guess)
         found = attempt.restored(straight.unknowns[:-1])
-        same = straight.converged and self._unbent(found)
+        same = straight.converged and self.unbent(found)
         return replace(straight, solution=found) if same else trial
 
     def correct_along(
@@ -115,15 +118,15 @@ class RibbonEquations:
         p, most = line.parameters(guess[-1]), MOST
         report = NewtonSolver(nlp).solve(guess, p, None, enough, system, most=most)
         attempt = self._beside(solution, float(report.w[-1]))
-        attempt.take(_without_last(report), check=False)
-        return _trial(attempt, report.w[-1:])
+        attempt.take(without_last(report), check=False)
+        return trial_of(attempt, report.w[-1:])
 
     def passed(
         self, point: Point[Solution], trial: Trial[Solution], expected: Array
     ) -> Passage[Solution] | None:
         """Return where phases must change before a trial; LinAlgError if no others lead on."""
         search = self.prepared.search(trial.solution.posed)
-        if not search.phases_help or self._unbent(point.solution):
+        if not search.phases_help or self.unbent(point.solution):
             return None
         return passage(self, point, trial, expected)
 
@@ -133,9 +136,21 @@ class RibbonEquations:
 
     def crossings(self, a: Point[Solution], b: Point[Solution]) -> list[Point[Solution]]:
         """Return the buckling points between two points where m2 = m3 = 0 along the ribbon."""
-        if not (self._unbent(a.solution) and self._unbent(b.solution)):
+        if not (self.unbent(a.solution) and self.unbent(b.solution)):
             return []
         return self.buckling.between(self, a, b)
+
+    def uncounted(self, a: Solution, b: Solution, changes: int) -> str:
+        """Say what change of the count of negative directions no special point explains."""
+        if not self.curve.stage.stability:
+            return ""
+        before, after = negative_directions(a), negative_directions(b)
+        if before is None or after is None:
+            return ""
+        change = abs(after - before)
+        if change <= changes and (change - changes) % 2 == 0:
+            return ""
+        return f"a change of the count of negative directions from {before} to {after}"
 
     def departure(self, point: Point[Solution]) -> Array | None:
         """Return the infinitesimal deflection at a buckling point, None at others."""
@@ -158,80 +173,43 @@ class RibbonEquations:
         curve = Curve(twin_scene(self.curve.scene), self.curve.stage)
         return RibbonEquations(twin_of(curve.scene_at(curve.start)), curve, self.metric)
 
+    def finer(self, origin: Solution, unknowns: Array) -> tuple[Solution, Array] | None:
+        """Return a solution of known unknowns on halved elements, None without a tolerance."""
+        if self.curve.scene.tolerance is None:
+            return None
+        mesh = Mesh(tuple(np.repeat(widths / 2, 2) for widths in origin.mesh.phases))
+        search = self.prepared.search(self.curve.posed_at(float(unknowns[-1])))
+        found = self.restored(origin, unknowns)
+        attempt = search.on_mesh(origin.sheets, mesh, found.trajectory.ends[1:-1])
+        w = attempt.unknowns(found)
+        return attempt.restored(w), np.append(w, unknowns[-1])
+
+    def enough(self, error: float, position: float) -> bool:
+        """Whether the position of a special point is as exact as asked."""
+        tolerance = self.curve.scene.tolerance
+        return tolerance is None or error <= tolerance * max(abs(position), STEEP * self.curve.span)
+
     def restored(self, origin: Solution, unknowns: Array) -> Solution:
         """Return a solution of known unknowns on the mesh and in the phases of another."""
         return self._beside(origin, float(unknowns[-1])).restored(unknowns[:-1])
 
     def verified(self, trial: Trial[Solution]) -> Trial[Solution]:
         """Return a trial that converged, after the checks of a solution."""
-        return _checked(trial, verified(trial.solution, self.prepared.ribbon))
+        return checked(trial, verified(trial.solution, self.prepared.ribbon))
 
     def finished(self, origin: Point[Solution], trial: Trial[Solution]) -> Trial[Solution]:
         """Return a solution verified, to tolerance, in the phases it needs."""
-        found = trial.solution
-        tolerance = found.scene.tolerance
-        if not found.sheets and self._needs_phases(found):
-            found = self.prepared.solve(found.posed, guess=found, fallback=False)
-        elif self._unbent(found):  # no error can be told of it
-            found = verified(found, self.prepared.ribbon)
-        elif tolerance is not None and relative_error(found)[0] > tolerance:
-            found = self.prepared.refined(found, SPARE)
-        else:
-            found = verified(found, self.prepared.ribbon)
-        note = changed_phases(origin.solution.sheets, found.sheets)
-        if origin.kind != POINT and found.status in (Status.ROUNDED, Status.TOLERANCE_MISSED):
-            # Where branches cross rounding is magnified: the row says how exact it is.
-            found = replace(found, status=Status.CONVERGED, message=Status.CONVERGED.value)
-            note = "; ".join(filter(None, [note, NEXT_TO_CROSSING]))
-        done = replace(_checked(trial, found), note=note)
-        return done
+        return finished(self, origin, trial)
 
     def elsewhere(self, origin: Point[Solution], position: float) -> Trial[Solution] | None:
-        """Solve at a position in other phases: one may have lost its length on the way."""
-        helps = self.prepared.search(origin.solution.posed).phases_help
-        return self._anew(origin.solution, position) if helps else None
-
-    def _anew(self, solution: Solution, position: float) -> Trial[Solution] | None:
         """Solve at a position with all that a single scene may need, from a solution near by."""
-        found = self.prepared.solve(self.curve.posed_at(position), guess=solution, fallback=False)
-        unknowns = np.append(found.dense.w, position)
-        note = changed_phases(solution.sheets, found.sheets)
-        return Trial(found, unknowns, True, found.message, note) if found.verified else None
+        return elsewhere(self, origin.solution, position)
 
-    def _unbent(self, solution: Solution) -> bool:
+    def unbent(self, solution: Solution) -> bool:
+        """Whether m2 = m3 = 0 along a part of a solution."""
         return unbent_share(solution, self.prepared.ribbon.law) > 0
 
     def _beside(self, solution: Solution, position: float) -> Attempt:
         """Return the means to solve at a position, on the mesh and in the phases of a solution."""
         search = self.prepared.search(self.curve.posed_at(position))
         return search.on_mesh(solution.sheets, solution.mesh, solution.trajectory.ends[1:-1])
-
-    def _needs_phases(self, solution: Solution) -> bool:
-        search = self.prepared.search(solution.posed)
-        return search.phases_help and search.changes_sign(solution)
-
-
-def _trial(attempt: Attempt, position: Array) -> Trial[Solution]:
-    """Return what attempt at a position (1,) have come to."""
-    found = attempt.best
-    assert found is not None
-    unknowns = np.concatenate([found.dense.w, position])
-    return Trial(found, unknowns, found.verified, found.message)
-
-
-def _checked(trial: Trial[Solution], found: Solution) -> Trial[Solution]:
-    """Return a trial with another solution at its position; the same unknowns where these are."""
-    unknowns = trial.unknowns
-    if found.trajectory is not trial.solution.trajectory:
-        unknowns = np.append(found.dense.w, unknowns[-1])
-    return Trial(found, unknowns, found.verified, found.message)
-
-
-def _without_last(report: SolveReport) -> SolveReport:
-    """Return the report without the position and its equation."""
-    return replace(
-        report,
-        w=report.w[:-1],
-        residuals=report.residuals[:-1],
-        multipliers=report.multipliers[:-1],
-    )

@@ -73,6 +73,9 @@ class FoldLocus:
     def test(self, z: Array) -> float:
         return fold_test(self.line, self.row, z)
 
+    def measured(self, solution: None) -> "FoldLocus":
+        return self
+
     def reduced(self, solution: None, vector: Array) -> Array:
         return self.line.reduced(vector)
 
@@ -95,6 +98,9 @@ class FoldLocus:
     def crossings(self, a: Point[None], b: Point[None]) -> list[Point[None]]:
         return []
 
+    def uncounted(self, a: None, b: None, changes: int) -> str:
+        return ""
+
     def passed(self, point: Point[None], trial: Trial[None], expected: Array) -> None:
         return None
 
@@ -103,6 +109,12 @@ class FoldLocus:
 
     def departure(self, point: Point[None]) -> None:
         return None
+
+    def finer(self, origin: None, unknowns: Array) -> None:
+        return None
+
+    def enough(self, error: float, position: float) -> bool:
+        return True
 
     def restored(self, origin: None, unknowns: Array) -> None:
         return None

@@ -40,6 +40,8 @@ class Point(Generic[S]):
         What is recorded, by name.
     note : str
         What is to be told of it: how it is other than the continuation of the point before.
+    error : float or None
+        Of the position of a special point, a bound; None where it is not known.
     """
 
     solution: S
@@ -53,6 +55,7 @@ class Point(Generic[S]):
     kind: str = POINT
     row: Mapping[str, Any] = field(default_factory=dict)
     note: str = ""
+    error: float | None = None
 
     @property
     def position(self) -> float:

@@ -97,6 +97,9 @@ class Equations(Protocol[S]):
     def metric(self) -> Metric:
         """The arclength; its last size is the change of the position that counts as one."""
 
+    def measured(self, solution: S) -> Equations[S]:
+        """Return the same equations with the metric that fits a solution."""
+
     def reduced(self, solution: S, vector: Array) -> Array:
         """Coordinates (m,) of a vector (n + k,): the same in any layout, the position last."""
 
@@ -134,6 +137,9 @@ class Equations(Protocol[S]):
     def crossings(self, a: Point[S], b: Point[S]) -> list[Point[S]]:
         """Return where other branches cross between two points, if no determinant can tell it."""
 
+    def uncounted(self, a: S, b: S, changes: int) -> str:
+        """Say what so many changes of test functions between two points do not explain."""
+
     def passed(self, point: Point[S], trial: Trial[S], expected: Array) -> Passage[S] | None:
         """Return where the layout must change before a trial; None if it is right up to there.
 
@@ -146,6 +152,15 @@ class Equations(Protocol[S]):
 
     def departure(self, point: Point[S]) -> Array | None:
         """Direction (n + k,) of a branch that crosses there, None for the null direction."""
+
+    def finer(self, origin: S, unknowns: Array) -> tuple[S, Array] | None:
+        """Return a solution and its unknowns in a layout twice as fine, not corrected there.
+
+        None where there is none, or none is asked for.
+        """
+
+    def enough(self, error: float, position: float) -> bool:
+        """Whether the position of a special point is known well enough."""
 
     def restored(self, origin: S, unknowns: Array) -> S:
         """Return a solution of known unknowns in the layout of another."""
