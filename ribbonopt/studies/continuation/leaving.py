@@ -17,7 +17,7 @@ import numpy as np
 
 from ribbonopt.solution.solution import Solution
 
-from .phases import Change, What, margins
+from .phases import EMPTY, Change, What, margins
 from .relaid import at_the_ends, in_other_phases, with_born
 from .walk.points import POINT, Point
 from .walk.protocol import Trial
@@ -26,7 +26,7 @@ from .walk.tangents import near
 if TYPE_CHECKING:
     from .ribbons import RibbonEquations
 
-AT_ONCE = 1e-6  # margins at a change of phases that vanish there too
+AT_ONCE = EMPTY  # margins at a change of phases that vanish there too
 MOST = 4  # phases that change at once
 AWAY, LEAST_AWAY = 0.02, 2e-4  # arclength of the first point behind a change of phases
 SHORT = 0.02  # of the length: phase born inside, to begin with

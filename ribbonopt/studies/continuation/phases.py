@@ -18,6 +18,7 @@ from ribbonopt.arrays import Array
 from ribbonopt.checks.arcs import NEGLIGIBLE, phase_words
 from ribbonopt.solution.solution import Solution
 
+EMPTY = 1e-6  # of the length: at its ends the switch of such a phase says no more than that
 NEAR = 0.3  # of the largest value in a phase: a minimum above that is no touch to come
 ROUNDS = 12  # of the search for a minimum
 
@@ -56,9 +57,9 @@ def margins(solution: Solution) -> dict[Change, float]:
         if kind == 0:
             continue
         sigma, value = profile(solution, i)
-        if i == 0:
+        if i == 0 and (not last or lengths[i] > EMPTY):
             found[Change(What.BORN_AT_START, i)] = float(value[0])
-        if i == last:
+        if i == last and (not last or lengths[i] > EMPTY):
             found[Change(What.BORN_AT_END, i)] = float(value[-1])
         lowest = [value for _, value in minima(solution, i, sigma, value)]
         if lowest:
