@@ -32,7 +32,7 @@ Log = bool | Collection[str]
 
 COLOURS = (BENDING, TWIST, "#009e73", "#cc79a7", "#56b4e9", "#e69f00")  # one for each branch
 STABLE, UNSTABLE, UNKNOWN = "stable", "unstable", "stability unknown"
-FOLD, BRANCH, BUCKLING = "fold", "branch point", "buckling point"
+FOLD, BRANCH, BUCKLING, KINK = "fold", "branch point", "buckling point", "kink"
 FIRST, LAST = "first point", "last point"
 STYLES: dict[str, dict[str, Any]] = {
     STABLE: {"ls": "-", "lw": 2.0},
@@ -42,9 +42,10 @@ STYLES: dict[str, dict[str, Any]] = {
     LAST: {"ls": "", "marker": "x", "ms": 5.5, "color": FAINT, "mew": 1.2, "zorder": 4},
     FOLD: {"ls": "", "marker": "s", "ms": 6.5, "mfc": INK, "mec": "w", "mew": 0.8, "zorder": 5},
     BRANCH: {"ls": "", "marker": "o", "ms": 7.5, "mfc": "w", "mec": INK, "mew": 1.4, "zorder": 6},
+    KINK: {"ls": "", "marker": "^", "ms": 7.5, "mfc": "w", "mec": INK, "mew": 1.4, "zorder": 6},
     BUCKLING: {"ls": "", "marker": "D", "ms": 6.5, "mfc": "w", "mec": INK, "mew": 1.4, "zorder": 6},
 }
-SPECIAL = (FOLD, BRANCH, BUCKLING)
+SPECIAL = (FOLD, BRANCH, BUCKLING, KINK)
 DOT = {"marker": "o", "ms": 3.5, "zorder": 4.5}  # a point alone
 LABELS = {"number": "point", "negative": "negative directions", "error": "estimated error"}
 

@@ -117,10 +117,17 @@ class Stepper(Generic[S]):
             self.trouble = trial.message
             if not trial.converged:
                 return None
-            note = after.note
-            after, _ = self._placed(after, prediction, trial)
-            after = replace(after, note=note)
+            after = self._moved(after, trial)
         return Stride(after, special)
+
+    def _moved(self, point: Point[S], trial: Trial[S]) -> Point[S]:
+        """Return a trial next to a point in its place, facing the same way."""
+        solution, unknowns = trial.solution, trial.unknowns
+        ahead = self.equations.reduced(point.solution, point.tangent)
+        found, tangent = near(self.equations, solution, unknowns, ahead)
+        return replace(
+            point, solution=solution, unknowns=unknowns, tangent=tangent, sign=found.sign
+        )
 
     def _doubted(self) -> bool:
         """Whether a step in doubt is to be shortened once more."""
