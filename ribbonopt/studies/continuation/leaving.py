@@ -30,7 +30,7 @@ AT_ONCE = EMPTY  # margins at a change of phases that vanish there too
 MOST = 4  # phases that change at once
 AWAY, LEAST_AWAY = 0.02, 2e-4  # arclength of the first point behind a change of phases
 SHORT = 0.02  # of the length: phase born inside, to begin with
-SPLITTING = (What.BORN_INSIDE, What.BORN_BETWEEN)
+SPLITTING = (What.BORN_INSIDE, What.BORN_BETWEEN, What.LEFT)
 
 
 def leaving(equations: RibbonEquations, event: Point[Solution]) -> list[Point[Solution]]:
@@ -97,7 +97,10 @@ def _split(
     for mixed in (True, False) if touched else (True,):
         kinds, switches, born = with_born(solution, changes, width, mixed, AT_ONCE)
         search = equations.prepared.search(equations.curve.posed_at(event.position))
-        attempt, w = in_other_phases(search, solution, kinds, switches)
+        try:
+            attempt, w = in_other_phases(search, solution, kinds, switches)
+        except np.linalg.LinAlgError:
+            continue
         there = attempt.restored(w)
         layout = attempt.nlp.layout
         row = np.zeros(len(layout.point_elements) * layout.nx + layout.nc + 1)

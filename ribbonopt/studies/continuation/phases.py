@@ -30,6 +30,7 @@ class What(Enum):
     BORN_AT_END = "a phase is born at the end"
     BORN_INSIDE = "a phase is born inside"
     BORN_BETWEEN = "a mixture is born at the end"
+    LEFT = "the mixture is one no more at some place"
     GONE_AT_START = "the first phase has no length left"
     GONE_AT_END = "the last phase has no length left"
     GONE_INSIDE = "a phase inside has no length left"
@@ -55,6 +56,7 @@ def margins(solution: Solution) -> dict[Change, float]:
             ends = {0: What.GONE_AT_START, last: What.GONE_AT_END}
             found[Change(ends.get(i, What.GONE_INSIDE), i)] = float(lengths[i])
         if kind == 0:
+            found[Change(What.LEFT, i)] = min(share for _, share, _ in spares(solution, i))
             continue
         sigma, value = profile(solution, i)
         if i == 0 and (not last or lengths[i] > EMPTY):
@@ -92,6 +94,25 @@ def minima(solution: Solution, phase: int, sigma: Array, value: Array) -> list[t
         _lowest(solution, phase, *sigma[[j, j + 1, j + 2]], *value[[j, j + 1, j + 2]])
         for j in np.flatnonzero(inner)
     ]
+
+
+def spares(solution: Solution, phase: int) -> list[tuple[float, float, int]]:
+    """Return what a mixture has to spare where that is least: at either end, or inside.
+
+    Position in the phase, 0 to 1; by how much |u2| is below |u3|, relative to that; sign of u2.
+    """
+    degree, rows = solution.dense.blocks.layout.stages, solution.trajectory.stages[3] == phase
+    u = solution.trajectory.at_stages["u"][rows]
+    _, sigma, _ = solution.dense.stages(phase)
+    share = 1 - np.abs(u[:, 1] / u[:, 2])
+    first, last = (
+        float(np.linalg.solve(np.vander(sigma[part] - at), share[part])[-1])
+        for part, at in ((slice(None, degree), 0.0), (slice(-degree, None), 1.0))
+    )
+    signs = np.sign(u[:, 1]).astype(int)
+    lowest = 1 + np.flatnonzero((share[1:-1] <= share[:-2]) & (share[1:-1] < share[2:]))
+    inside = [(float(sigma[j]), float(share[j]), int(signs[j])) for j in lowest]
+    return [(0.0, first, int(signs[0])), *inside, (1.0, last, int(signs[-1]))]
 
 
 def _slope_at_end(solution: Solution, phase: int) -> float:

@@ -19,7 +19,7 @@ from ribbonopt.pipeline.search import Search
 from ribbonopt.solution.solution import Solution
 from ribbonopt.transcription import Mesh
 
-from .phases import Change, What, minima, profile
+from .phases import EMPTY, Change, What, minima, profile, spares
 
 
 def kinds_after(kinds: tuple[int, ...], changes: Iterable[Change]) -> tuple[int, ...]:
@@ -77,34 +77,60 @@ def at_the_ends(
 def with_born(
     solution: Solution, changes: tuple[Change, ...], width: float, mixed: bool, zero: float
 ) -> tuple[tuple[int, ...], Array, list[int]]:
-    """Return kinds, switches and which phases are new, of phases born inside those touched."""
-    kinds: list[int] = []
-    switches: list[float] = []
-    born: list[int] = []
-    ends = solution.trajectory.ends
-    touched = {change.phase for change in changes if change.what is What.BORN_INSIDE}
-    spread = {change.phase for change in changes if change.what is What.BORN_BETWEEN}
-    for i, kind in enumerate(solution.sheets):
-        if i - 1 in spread:
-            switches += [float(ends[i]) - width / 2, float(ends[i]) + width / 2]
-            born.append(len(kinds))
-            kinds.append(0)
-        elif kinds:
-            switches.append(float(ends[i]))
-        kinds.append(kind)
-        for sigma, value in minima(solution, i, *profile(solution, i)) if i in touched else ():
-            if value <= zero:
-                at = float(ends[i] + sigma * (ends[i + 1] - ends[i]))
-                switches += [at - width / 2, at + width / 2]
-                born.append(len(kinds))
-                kinds += [0 if mixed else -kind, kind]
-    return tuple(kinds), np.array(switches), born
+    """Return kinds, switches and which phases are new, of phases of a width born inside.
+
+    Margins count as zero up to `zero`. In a phase that the switch touches a mixture is born or,
+    not `mixed`, one of the other kind; between two phases a mixture; in a mixture the side of the
+    law that u2 has come to.
+    """
+    born: list[tuple[float, int, bool]] = []  # where, which kind, whether in the midst of a phase
+    ends, kinds = solution.trajectory.ends, solution.sheets
+    for change in changes:
+        i = change.phase
+        start, length = float(ends[i]), float(ends[i + 1] - ends[i])
+        if change.what is What.BORN_BETWEEN:
+            born.append((start + length, 0, False))
+        elif change.what is What.BORN_INSIDE:
+            places = minima(solution, i, *profile(solution, i))
+            kind = 0 if mixed else -kinds[i]
+            born += [(start + sigma * length, kind, True) for sigma, v in places if v <= zero]
+        else:
+            born += [
+                (start + sigma * length, sheet, 0 < sigma < 1)
+                for sigma, share, sheet in spares(solution, i)
+                if share <= zero
+            ]
+    result, switches, new = [kinds[0]], [], []
+    meetings = iter(enumerate(ends[1:-1].tolist(), start=1))
+    following = next(meetings, None)
+    for at, kind, midst in sorted(born):
+        while following is not None and following[1] < at - EMPTY:
+            switches.append(following[1])
+            result.append(kinds[following[0]])
+            following = next(meetings, None)
+        after = result[-1]
+        if not midst and following is not None:
+            after = kinds[following[0]]
+            following = next(meetings, None)
+        switches += [at - width / 2, at + width / 2]
+        new.append(len(result))
+        result += [kind, after]
+    while following is not None:
+        switches.append(following[1])
+        result.append(kinds[following[0]])
+        following = next(meetings, None)
+    return tuple(result), np.array(switches), new
 
 
 def in_other_phases(
     search: Search, source: Solution, kinds: tuple[int, ...], switches: Array
 ) -> tuple[Attempt, Array]:
-    """Return the means to solve in phases that meet at fractions, and the unknowns of a source."""
+    """Return the means to solve in phases that meet at fractions, and the unknowns of a source.
+
+    LinAlgError where the phases have no length.
+    """
+    if not (np.diff([0.0, *switches, 1.0]) > 0).all():
+        raise np.linalg.LinAlgError("phases do not follow each other")
     old, nodes = np.append(source.trajectory.nodes[:-1], 1.0), [0.0, *switches, 1.0]
     order = np.arange(len(old), dtype=float)
     phases = []
