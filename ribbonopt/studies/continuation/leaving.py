@@ -52,14 +52,19 @@ def _entered(
 ) -> Iterator[Point[Solution]]:
     """Yield the point behind an event on the branch where these phases change, if there is one."""
     enter = _split if any(change.what in SPLITTING for change in changes) else _along_tangent
-    away = AWAY
+    away, turned = AWAY, None
     while away > LEAST_AWAY:
         for trial in enter(equations, event, changes, away):
             way = admitted(equations, event, trial)
-            if way is not None:
+            if way is None:
+                continue
+            if (way.position - event.position) * way.tangent[-1] >= 0:
                 yield way
                 return
+            turned = way  # a fold is between: nearer by, it is still ahead
         away /= 4
+    if turned is not None:
+        yield turned
 
 
 def _along_tangent(

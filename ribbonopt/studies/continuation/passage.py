@@ -18,7 +18,7 @@ from ribbonopt.solution.solution import Solution
 from .leaving import admitted, leaving
 from .phases import Change, What, margins, one_sign
 from .relaid import in_other_phases
-from .walk.points import KINK, POINT, Point
+from .walk.points import FOLD, KINK, POINT, Point
 from .walk.protocol import Passage, Trial
 from .walk.tangents import near
 
@@ -69,8 +69,9 @@ def _passed(
     ways = leaving(equations, event)
     if not ways:
         raise np.linalg.LinAlgError(_told(a.solution, beyond))
+    kind = FOLD if event.tangent[-1] * ways[0].tangent[-1] < 0 else POINT
     crossed = len(ways) > 1 or ways[0].sign * event.sign < 0
-    return Passage(a, replace(event, kind=KINK if crossed else POINT), ways[0])
+    return Passage(a, replace(event, kind=KINK if crossed else kind), ways[0])
 
 
 def _on_sheet(

@@ -54,7 +54,7 @@ class Passage(Generic[S]):
     begin : Point
         The point that the step began with, in the layout that is left.
     event : Point
-        The last point in that layout; a KINK where other branches cross.
+        The last point in that layout; a KINK where other branches cross, a FOLD where it turns.
     after : Point
         The first point in the next layout, finished.
     """
