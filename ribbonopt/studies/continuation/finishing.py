@@ -23,6 +23,7 @@ from .walk.protocol import Trial
 if TYPE_CHECKING:
     from .ribbons import RibbonEquations
 
+GENTLE = 0.3  # share of the position in the tangent, from where on no fold is near
 STEEP = 0.1  # of the error at a given position: one along the branch that tells of a fold
 NEXT_TO_CROSSING = "next to where branches cross: the error is above the tolerance"
 
@@ -74,6 +75,8 @@ def _refined(
     solution, position = trial.solution, float(trial.unknowns[-1])
     prepared, curve = equations.prepared, equations.curve
     ahead = equations.metric.dual(equations.reduced(origin.solution, origin.tangent))
+    if abs(origin.tangent[-1]) > GENTLE * equations.metric.sizes[-1]:
+        return prepared.refined(solution, SPARE), ""
     for _ in range(2):
         error = error_along(solution, curve, position, row_of(solution, ahead))
         if error <= min(tolerance, STEEP * relative_error(solution)[0]):

@@ -11,6 +11,7 @@ import numpy as np
 from .beside import ENOUGH, Beside, Probe
 from .points import BRANCH_POINT, FOLD, Point, S
 from .protocol import Equations
+from .switching import named
 from .tangents import near
 
 ONE = 1e-6  # arclength within which a fold and a branch point are one: a pitchfork from its side
@@ -53,8 +54,10 @@ def special_points(equations: Equations[S], a: Point[S], b: Point[S]) -> Special
         note = FROM_THE_SIDE
     points = []
     for kind, arc in sorted(arcs.items(), key=lambda item: item[1]):
-        point = replace(_point(beside, kind, arc), note=note)
-        points.append(_on_finer_meshes(equations, beside, point, arc))
+        point = _on_finer_meshes(equations, beside, _point(beside, kind, arc), arc)
+        if kind == BRANCH_POINT:
+            point = replace(point, note=note or named(equations, point))
+        points.append(point)
     return Special(points, unresolved, len(kinds))
 
 
@@ -106,7 +109,7 @@ def _on_finer_meshes(
         if again is None:
             return point
         beside, arc = again
-        found = replace(_point(beside, point.kind, arc), note=point.note)
+        found = _point(beside, point.kind, arc)
         # Of the coarser of the two, and so a bound of that of the finer.
         error = abs(found.position - point.position)
         point = replace(found, error=error)
