@@ -78,6 +78,12 @@ class Dense:
     def uncounted(self, a: Unit, b: Unit, changes: int) -> str:
         return ""
 
+    def passed(self, point: Point[Unit], trial: Trial[Unit], expected: Array) -> None:
+        return None
+
+    def leaving(self, point: Point[Unit]) -> list[Point[Unit]]:
+        return []
+
     def departure(self, point: Point[Unit]) -> Array | None:
         return None
 

@@ -50,3 +50,11 @@ def random_data(nlp: NLP, elements: tuple[int, ...], seed: int = 0) -> tuple[Arr
     widths = [rng.uniform(0.5, 1.5, n) for n in elements]
     mesh = Mesh(tuple(w / w.sum() for w in widths))
     return rng.uniform(-1, 1, nlp.unknowns), np.concatenate([[0.3, 0.8], mesh.widths])
+
+
+def of_first_node(J: Array, nx: int, first: int) -> Array:
+    """Return the conditions, rows from the first, by the first node and constants alone."""
+    inner = slice(nx, nx + first)
+    outer = np.delete(np.arange(len(J)), np.arange(nx, nx + first))
+    follow = np.linalg.solve(J[:first, inner], J[:first, outer])
+    return np.asarray(J[first:, outer] - J[first:, inner] @ follow)

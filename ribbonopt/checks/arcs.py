@@ -64,12 +64,15 @@ def is_mixture(guess: Guess) -> bool:
 
 
 def sign_changes(solution: Solution) -> Arcs:
-    """Return the arcs between sign changes of the law's switch, as far as the stages can tell.
+    """Return the arcs between sign changes of the law's switch, as stages and ends tell.
 
     Where nothing leaps there (a planar ribbon) the law is smooth: such changes do not count.
     """
-    o, f = solution.at_stages, solution.trajectory.stages[1]
-    value, leap, scale = o["switching"], o["leap"], _scale(solution)
+    o, ends, scale = solution.at_stages, solution.at_nodes, _scale(solution)
+    value, leap = (
+        np.concatenate([ends[name][:1], o[name], ends[name][-1:]]) for name in ("switching", "leap")
+    )
+    f = np.concatenate([[0.0], solution.trajectory.stages[1], [1.0]])
     size = np.abs(value) > NEGLIGIBLE * scale
     # In the tail of a layer, which mesh and rounding may let change sign, nothing can be told.
     size &= np.maximum(np.abs(value), leap) > _faint(solution) * scale
@@ -200,18 +203,23 @@ def phase_problems(
     """
     problems = []
     v, fraction, _, phase = solution.trajectory.stages
-    nodes, theta = v[:, : len(ribbon.states)], solution.dense.theta
+    theta, at_nodes = solution.dense.theta, solution.dense.at_nodes
     scale, force = (float(np.abs(solution.trajectory.at_stages[v]).max()) for v in "mn")
     loads = max(scale, force)
-    s = solution.posed.scene.interval[0] + solution.posed.length * fraction
+    s, s_nodes = (
+        solution.posed.scene.interval[0] + solution.posed.length * at
+        for at in (fraction, solution.trajectory.nodes)
+    )
     start, end = solution.scene.interval
     ends = start + (end - start) * solution.trajectory.ends
     constants = solution.constants[: len(ribbon.constants)]
     for i, kind in enumerate(solution.sheets):
-        rows = phase == i
+        rows, part = phase == i, solution.dense.blocks.layout.phase_slices[i]
+        places = np.concatenate([s[rows], s_nodes[part.start : part.stop + 1]])
+        states = np.concatenate([v[rows], at_nodes[part.start : part.stop + 1]])
         where = f"between s = {ends[i]:.4g} and {ends[i + 1]:.4g}"
         names, count, margins = ribbon.kept(_margins)[kind]
-        (values,) = margins(nodes[rows], constants, theta, s[rows])
+        (values,) = margins(states[:, : len(ribbon.states)], constants, theta, places)
         least = values.reshape(-1, len(names)).min(axis=0)
         margin = min(MARGIN * scale, max(moments, ROUNDED * scale))
         allowed = np.where(np.arange(len(names)) < count, margin, accuracy * loads)

@@ -51,6 +51,17 @@ def verify(solution: Solution, ribbon: Ribbon) -> Verification:
         from .arcs import phase_problems  # few scenes have phases
 
         problems += phase_problems(solution, ribbon, TOLERANCE + residual, _moment_error(solution))
+    elif not ribbon.law.smooth and not solution.problem.recovered:
+        from .arcs import sign_changes
+
+        switches = sign_changes(solution).switches
+        if len(switches):
+            start, end = solution.scene.interval
+            where = ", ".join(f"{start + (end - start) * at:.4g}" for at in switches)
+            problems.append(
+                f"m2 changes sign at s = {where}, where the law's strains jump, without phases "
+                "that end there"
+            )
     if ribbon.law.bounds_eta and not solution.problem.recovered:
         eta = np.abs(nodes["eta"])
         if 0 in solution.sheets:

@@ -48,7 +48,8 @@ def switched(ribbon: Ribbon, kinds: Kinds, *, free: bool = False) -> BoundaryVal
         here = [unknowns.x, ribbon.position], [points[0], start]
         found = ca.substitute(list(zeros.values()), *here)
         asked = {f"start: {name}": value for name, value in zip(zeros, found, strict=True)}
-        conditions, slack = _with_slack(conditions | asked, len(asked))
+        if asked:
+            conditions, slack = _with_slack(conditions | asked, len(asked))
     return BoundaryValueProblem(
         position=ribbon.position,
         state=unknowns.x,

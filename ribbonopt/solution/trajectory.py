@@ -140,7 +140,8 @@ class Trajectory:
         """Phase and position in the phase of each fraction."""
         phase = self.phase_of(fraction)
         a, b = self.ends[phase], self.ends[phase + 1]
-        return phase, np.clip((fraction - a) / (b - a), 0.0, 1.0)
+        widths = np.where(b != a, b - a, 1.0)  # a phase may begin without length
+        return phase, np.clip((fraction - a) / widths, 0.0, 1.0)
 
     def _places(self, phase: int, fraction: Array, s: Array) -> Array:
         """Arclengths s (k,) at fractions in one phase, with the known fields there after each."""

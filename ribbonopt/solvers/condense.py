@@ -114,10 +114,15 @@ class CondensedSystem:
 
     @property
     def determinant(self) -> tuple[float, float]:
-        """Sign and logarithm of the determinant; the sign up to a factor of the layout's."""
-        parts = [self._elements.determinant]
+        """Sign and logarithm of the determinant, all nodes but the first eliminated.
+
+        That is the determinant of the conditions by the first node and the constants, as single
+        shooting has it: the same number on every mesh, to the accuracy of the mesh.
+        """
         sign, log = np.linalg.slogdet(self._final_inverse)
-        parts.append((float(sign), -float(log)))
+        # The first node's columns go behind those of the nodes that are left; each that is not has
+        # gone to the front already, past an odd number of rows and columns of blocks.
+        parts = [(float(sign), -float(log)), ((-1.0) ** (self._layout.nx * self._ends[-1]), 0.0)]
         for chain in self._chains:
             for level in chain.levels:
                 triangles = np.diagonal(level.R_inverse, axis1=1, axis2=2)

@@ -26,10 +26,6 @@ class Elimination(Protocol):
     """Elements reduced to their nodes: A_e x_e + B_e x_{e+1} + C_e c = d_e."""
 
     @property
-    def determinant(self) -> tuple[float, float]:
-        """Sign and logarithm of the determinant of what was eliminated, (1, 0) for nothing."""
-
-    @property
     def relations(self) -> tuple[Array, Array, Array]:
         """A (N, nx, nx), B (N, nx, nx) and C (N, nx, nc)."""
 

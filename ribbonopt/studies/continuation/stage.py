@@ -12,9 +12,10 @@ from ribbonopt.pipeline.prepared import Prepared
 from ribbonopt.problem import BoundaryValueProblem
 from ribbonopt.solution.solution import Solution
 
+from .coordinates import metric_at
 from .curve import Curve
 from .recorded import Recorder, StageRecords
-from .ribbons import RibbonEquations, metric_at
+from .ribbons import RibbonEquations
 
 
 @dataclass(frozen=True, eq=False)

@@ -50,19 +50,13 @@ class StageElimination:
             sides[..., -1] = -only.stages
             solved = np.asarray(np.linalg.solve(matrix, sides.reshape(N, K * nv, -1)), dtype=float)
         self._to_node, self._to_constants = solved[:, :, :nx], solved[:, :, nx:-1]
-        self._share, self._only, self._matrix = solved[:, :, -1], only, matrix
+        self._share, self._only = solved[:, :, -1], only
         # x_{e+1} = x_e + h sum b_j (dF_j . stages + dF_j/dc . c).
         weighted = t.weights[:, None, None] * dynamic
         self._step = weighted[..., :nv].swapaxes(1, 2).reshape(N, nx, K * nv)
         A = -(np.eye(nx) + self._step @ self._to_node)
         C = -(weighted[..., nv:].sum(axis=1) + self._step @ self._to_constants)
         self._relations = A, _identities(N, nx), C
-
-    @property
-    def determinant(self) -> tuple[float, float]:
-        """Sign and logarithm of the determinant of the stages' equations."""
-        signs, logs = np.linalg.slogdet(self._matrix)
-        return float(np.prod(signs)), float(np.sum(logs))
 
     @property
     def relations(self) -> tuple[Array, Array, Array]:
@@ -89,7 +83,6 @@ class NothingToEliminate:
     """Shooting: x_{e+1} - Phi_e(x_e, c) relates neighbouring nodes already."""
 
     derivatives: Derivatives
-    determinant: tuple[float, float] = (1.0, 0.0)
 
     @property
     def relations(self) -> tuple[Array, Array, Array]:

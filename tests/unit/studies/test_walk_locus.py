@@ -101,6 +101,12 @@ class FoldLocus:
     def uncounted(self, a: None, b: None, changes: int) -> str:
         return ""
 
+    def passed(self, point: Point[None], trial: Trial[None], expected: Array) -> None:
+        return None
+
+    def leaving(self, point: Point[None]) -> list[Point[None]]:
+        return []
+
     def departure(self, point: Point[None]) -> None:
         return None
 

@@ -9,7 +9,9 @@ from typing import Any, Generic, TypeVar
 from ribbonopt.arrays import Array
 
 POINT, FOLD, BRANCH_POINT, BUCKLING = "point", "fold", "branch point", "buckling point"
-CROSSINGS = (BRANCH_POINT, BUCKLING)  # where other branches cross; the latter without a derivative
+KINK = "kink"  # branches meet at an angle where the equations change, as phases begin or end
+# Where other branches cross; at the last two without a derivative.
+CROSSINGS = (BRANCH_POINT, BUCKLING, KINK)
 
 S = TypeVar("S")  # what a solution is, is the business of the equations
 
@@ -27,13 +29,13 @@ class Point(Generic[S]):
     tangent : (n + k,) array
         Their derivatives by the arclength, see `Metric`.
     sign : float
-        Sign of the bordered determinant, comparable within one layout.
+        Sign of the bordered determinant, comparable between layouts.
     step : float
         Arclength to try next.
     number, stage, branch : int
         Place in the whole continuation; branch 0 is the first.
     kind : str
-        POINT, FOLD, BRANCH_POINT or BUCKLING.
+        POINT, FOLD, BRANCH_POINT, BUCKLING or KINK.
     row : mapping
         What is recorded, by name.
     note : str

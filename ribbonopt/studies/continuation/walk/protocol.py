@@ -45,6 +45,25 @@ class Trial(Generic[S]):
     note: str = ""
 
 
+@dataclass(frozen=True, eq=False)
+class Passage(Generic[S]):
+    """Where a step leaves the layout that it was made in, because that is right no further.
+
+    Attributes
+    ----------
+    begin : Point
+        The point that the step began with, in the layout that is left.
+    event : Point
+        The last point in that layout; a KINK where other branches cross, a FOLD where it turns.
+    after : Point
+        The first point in the next layout, finished.
+    """
+
+    begin: Point[S]
+    event: Point[S]
+    after: Point[S]
+
+
 class Linearised(Protocol):
     """The equations linearised at a solution, bordered by a row along the curve."""
 
@@ -56,7 +75,7 @@ class Linearised(Protocol):
     def sign(self) -> float:
         """Sign of the bordered determinant, which vanishes at branch points, not at folds.
 
-        Comparable within one layout, for rows that point the same way along the curve; 0 where the
+        Comparable for rows that point the same way along the curve, in any layout; 0 where the
         equations have no derivative, so that it tells nothing.
         """
 
@@ -120,6 +139,16 @@ class Equations(Protocol[S]):
 
     def uncounted(self, a: S, b: S, changes: int) -> str:
         """Say what so many changes of test functions between two points do not explain."""
+
+    def passed(self, point: Point[S], trial: Trial[S], expected: Array) -> Passage[S] | None:
+        """Return where the layout must change before a trial; None if it is right up to there.
+
+        `expected` (n + k,) was predicted of it, which tells where the trial has not converged.
+        LinAlgError if no other layout leads on.
+        """
+
+    def leaving(self, point: Point[S]) -> list[Point[S]]:
+        """Return the first points on the branches that leave a KINK, the main branch's first."""
 
     def departure(self, point: Point[S]) -> Array | None:
         """Direction (n + k,) of a branch that crosses there, None for the null direction."""

@@ -7,7 +7,7 @@ measured anew at each point, so that steps follow the growth of the unknowns.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Generic
 
 import numpy as np
@@ -15,9 +15,10 @@ import numpy as np
 from ribbonopt.arrays import Array
 
 from .course import Course, joined, leaving
-from .points import FOLD, Point, S
-from .protocol import Equations, Range, Trial
+from .points import FOLD, POINT, Point, S
+from .protocol import Equations, Passage, Range, Trial
 from .special import Special, special_points
+from .strides import Prediction, Stride
 from .tangents import near, renewed
 
 NATURAL = 0.1  # least share of the position in the tangent for natural continuation
@@ -27,23 +28,6 @@ DIGITS = 1e-12  # of a position, relative to the span
 DOUBTS = 3  # times that a step is shortened because something on it was not resolved
 JUMPED = "not where the branch was going: it may have changed to another equilibrium"
 UNRESOLVED = "not resolved: {} on the way from the point before"
-
-
-@dataclass(frozen=True, eq=False)
-class Stride(Generic[S]):
-    """An accepted step: the next point, and the special points before it."""
-
-    following: Point[S]
-    special: list[Point[S]]
-
-
-@dataclass(frozen=True, eq=False)
-class Prediction:
-    """Unknowns at an arclength ahead; `position` is to be met exactly, unless the arclength is."""
-
-    unknowns: Array
-    arc: float
-    position: float | None
 
 
 class Stepper(Generic[S]):
@@ -66,7 +50,16 @@ class Stepper(Generic[S]):
                 return found
             length *= SHRINK
             if length * self._size < self.range.smallest:
-                return None
+                return self._elsewhere(point, goal)
+
+    def _elsewhere(self, point: Point[S], goal: float) -> Stride[S] | None:
+        """Return what is found by other means where a first step would lead."""
+        prediction = self._predicted(point, goal, self.first_length(point.tangent))
+        trial = self.equations.elsewhere(point, float(prediction.unknowns[-1]))
+        if trial is None:
+            return None
+        placed = self._placed(point, prediction, trial)
+        return self._arrived(point, trial, placed, Special([]), True)
 
     def first_length(self, tangent: Array) -> float:
         """Arclength of the first step along a tangent."""
@@ -82,16 +75,20 @@ class Stepper(Generic[S]):
             prediction = Prediction(point.unknowns + arc * point.tangent, arc, None)
             trial, prediction = self._corrected(point, goal, prediction)
         least = abs(prediction.arc) * self._size * SHRINK < self.range.smallest
+        if trial.converged:
+            placed = following, course = self._placed(point, prediction, trial)
+            if not (course.same or least):
+                self.trouble = course.trouble
+                return None
+        try:
+            passed = self.equations.passed(point, trial, prediction.unknowns)
+        except np.linalg.LinAlgError as impassable:
+            self.trouble = str(impassable)
+            return None
+        if passed is not None:
+            return self._passed(passed, prediction, goal)
         if not trial.converged:
             self.trouble = trial.message
-            again = self.equations.elsewhere(point, float(trial.unknowns[-1]))
-            if again is None:
-                return None
-            placed = self._placed(point, prediction, again)
-            return self._arrived(point, again, placed, Special([]), least)
-        placed = following, course = self._placed(point, prediction, trial)
-        if not (course.same or least):
-            self.trouble = course.trouble
             return None
         special = self._special(point, following, goal)
         if special.unresolved and not least and self._doubted():
@@ -106,6 +103,31 @@ class Stepper(Generic[S]):
         else:
             placed = self._placed(point, prediction, final)
         return self._arrived(point, final, placed, special, least)
+
+    def _passed(self, passed: Passage[S], prediction: Prediction, goal: float) -> Stride[S] | None:
+        """Return the step up to the first point in another layout, or to the goal before that."""
+        special = self._special(passed.begin, passed.event, goal).points
+        if self.range.special and passed.event.kind != POINT:
+            special.append(passed.event)
+        after = replace(passed.after, step=abs(prediction.arc))
+        if (after.position - goal) * (passed.begin.position - goal) < 0:
+            guess = np.append(after.unknowns[:-1], goal)
+            trial = self.equations.correct_at(after.solution, guess)
+            trial = self.equations.finished(after, trial) if trial.converged else trial
+            self.trouble = trial.message
+            if not trial.converged:
+                return None
+            after = self._moved(after, trial)
+        return Stride(after, special)
+
+    def _moved(self, point: Point[S], trial: Trial[S]) -> Point[S]:
+        """Return a trial next to a point in its place, facing the same way."""
+        solution, unknowns = trial.solution, trial.unknowns
+        ahead = self.equations.reduced(point.solution, point.tangent)
+        found, tangent = near(self.equations, solution, unknowns, ahead)
+        return replace(
+            point, solution=solution, unknowns=unknowns, tangent=tangent, sign=found.sign
+        )
 
     def _doubted(self) -> bool:
         """Whether a step in doubt is to be shortened once more."""

@@ -8,7 +8,7 @@ import numpy as np
 
 from ribbonopt.arrays import Array
 
-from .points import POINT, Point, S
+from .points import KINK, POINT, Point, S
 from .protocol import Equations
 from .tangents import near, renewed
 
@@ -23,6 +23,8 @@ def switched(equations: Equations[S], point: Point[S], sign: int) -> Point[S]:
     """Return the first point on the branch that crosses at a branch point; LinAlgError for none."""
     equations = equations.measured(point.solution)
     point = renewed(equations, point)
+    if point.kind == KINK:
+        return _left(equations, point, sign)
     known = equations.departure(point)
     direction = sign * (null_direction(equations, point) if known is None else known)
     away = AWAY
@@ -52,6 +54,15 @@ def switched(equations: Equations[S], point: Point[S], sign: int) -> Point[S]:
             )
         away /= 2
     raise np.linalg.LinAlgError("no point was found on the branch that crosses")
+
+
+def _left(equations: Equations[S], point: Point[S], sign: int) -> Point[S]:
+    """Return the first point on one of two branches that leave a kink beside the main one."""
+    others = equations.leaving(point)[1:]
+    which = (1 - sign) // 2
+    if which >= len(others):
+        raise np.linalg.LinAlgError("no more branches leave the kink than were followed")
+    return replace(others[which], kind=POINT)
 
 
 def named(equations: Equations[S], point: Point[S]) -> str:

@@ -1,0 +1,201 @@
+"""Where phases change on a branch: the point itself, and what is behind it.
+
+The branch is followed in its phases past the point where a margin (`phases`) vanishes, and that is
+located there, where all is smooth. Behind it one of the branches that leave goes on (`leaving`).
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ribbonopt.arrays import Array
+from ribbonopt.solution.solution import Solution
+
+from .leaving import admitted, leaving
+from .phases import Change, What, margins, one_sign
+from .relaid import in_other_phases
+from .walk.points import FOLD, KINK, POINT, Point
+from .walk.protocol import Passage, Trial
+from .walk.tangents import near
+
+if TYPE_CHECKING:
+    from .ribbons import RibbonEquations
+
+ROUNDING = 1e-11  # a margin below minus that is negative
+CLOSE, MOST_TRIALS = 1e-14, 60
+
+
+def passage(
+    equations: RibbonEquations, point: Point[Solution], trial: Trial[Solution], expected: Array
+) -> Passage[Solution] | None:
+    """Return the first change of phases between a point and a trial in its phases, None for none.
+
+    Where the trial has not converged, what was expected of it tells. LinAlgError where a change
+    cannot be passed.
+    """
+    if not point.solution.sheets:
+        kind = one_sign(point.solution)
+        if not kind or not trial.converged or one_sign(trial.solution) == kind:
+            return None
+        point, trial = _on_sheet(equations, point, trial, kind)
+    if not trial.converged:
+        inside = _lost(point.solution, expected)
+        return _merged(equations, point, float(expected[-1]), inside) if inside else None
+    beyond = [c for c, value in margins(trial.solution).items() if value < -ROUNDING]
+    return _passed(equations, point, trial, beyond) if beyond else None
+
+
+def _passed(
+    equations: RibbonEquations, a: Point[Solution], trial: Trial[Solution], beyond: list[Change]
+) -> Passage[Solution]:
+    """Return the first of the changes that a trial is beyond."""
+    inside = [change for change in beyond if change.what is What.GONE_INSIDE]
+    between = {change.phase for change in beyond if change.what is What.BORN_BETWEEN}
+    way = _Way(equations, a, trial)
+    arcs = {
+        change: way.root(change)
+        for change in beyond
+        # Where a slope has changed sign there are minima next to it.
+        if change.what not in (What.GONE_INSIDE, What.BORN_INSIDE)
+        or (change.what is What.BORN_INSIDE and not between & {change.phase - 1, change.phase})
+    }
+    if inside and not any(arc < way.whole / 2 for arc in arcs.values()):
+        return _merged(equations, a, float(trial.unknowns[-1]), inside)
+    event = way.point(min(arcs.values()))
+    ways = leaving(equations, event)
+    if not ways:
+        raise np.linalg.LinAlgError(_told(a.solution, beyond))
+    kind = FOLD if event.tangent[-1] * ways[0].tangent[-1] < 0 else POINT
+    crossed = len(ways) > 1 or ways[0].sign * event.sign < 0
+    return Passage(a, replace(event, kind=KINK if crossed else kind), ways[0])
+
+
+def _on_sheet(
+    equations: RibbonEquations, point: Point[Solution], trial: Trial[Solution], kind: int
+) -> tuple[Point[Solution], Trial[Solution]]:
+    """Return a point, and a trial, on one side of the law, of which a point without phases is."""
+    search = equations.prepared.search(point.solution.posed)
+    attempt = search.on_mesh((kind,), point.solution.mesh)
+    point = replace(point, solution=attempt.restored(point.unknowns[:-1]))
+    return point, equations.correct_at(point.solution, trial.unknowns)
+
+
+def _lost(solution: Solution, expected: Array) -> list[Change]:
+    """Return what phases inside are expected to lose their length.
+
+    Near where one does Newton's method fails, as the equations are singular there.
+    """
+    count = len(solution.sheets) - 1
+    if count < 1:
+        return []
+    lengths = np.append(expected[-1 - count : -1], 0.0)
+    lengths[-1] = solution.trajectory.length - lengths.sum()
+    gone = (change for change in margins(solution) if change.what is What.GONE_INSIDE)
+    return [change for change in gone if lengths[change.phase] < 0]
+
+
+def _told(solution: Solution, changes: list[Change]) -> str:
+    """Say that no equilibrium was found behind changes of phases, and what to do."""
+    what = "; ".join(dict.fromkeys(change.told(solution.sheets) for change in changes))
+    return (
+        f"{what}, and no equilibrium was found in other phases: a smooth law needs none "
+        "(law: {type: variational, delta: 0.01}, or regularized)"
+    )
+
+
+def _merged(
+    equations: RibbonEquations,
+    a: Point[Solution],
+    position: float,
+    inside: list[Change],
+) -> Passage[Solution]:
+    """Return what is behind a point where phases between others lose their length."""
+    kinds, switches = list(a.solution.sheets), list(a.solution.trajectory.ends[1:-1])
+    for change in sorted(inside, key=lambda change: -change.phase):
+        i = change.phase
+        # Its neighbours become one, unless it is a mixture between two sides of the law.
+        gone = 2 if kinds[i - 1] == kinds[i + 1] else 1
+        del kinds[i : i + gone], switches[i - 1 : i - 1 + gone]
+    search = equations.prepared.search(equations.curve.posed_at(position))
+    attempt, w = in_other_phases(search, a.solution, tuple(kinds), np.array(switches))
+    there = attempt.restored(w)
+    found = equations.correct_at(there, np.append(w, position))
+    way = admitted(equations, a, found) if found.converged else None
+    if way is None:
+        raise np.linalg.LinAlgError(_told(a.solution, inside))
+    return Passage(a, a, way)
+
+
+class _Way:
+    """The branch between a point and a trial in its phases, by arclength along the tangent."""
+
+    def __init__(
+        self, equations: RibbonEquations, a: Point[Solution], trial: Trial[Solution]
+    ) -> None:
+        self.equations, self.a = equations, a
+        gap = equations.reduced(a.solution, trial.unknowns - a.unknowns)
+        along = equations.reduced(a.solution, a.tangent)
+        self.whole = equations.metric.product(gap, along)
+        self.known: dict[float, tuple[Solution, Array]] = {
+            0.0: (a.solution, a.unknowns),
+            self.whole: (trial.solution, trial.unknowns),
+        }
+
+    def at(self, arc: float) -> tuple[Solution, Array]:
+        """Return the branch at an arclength, from what is known of it near there."""
+        if arc not in self.known:
+            nearest = sorted(self.known, key=lambda s: abs(s - arc))[:4]
+            guess = np.zeros_like(self.a.unknowns)
+            for s in nearest:
+                others = [other for other in nearest if other != s]
+                weight = float(np.prod([(arc - other) / (s - other) for other in others]))
+                guess += weight * self.known[s][1]
+            found = self.equations.correct_along(self.a, self.a.tangent, arc, guess)
+            if not found.converged:
+                raise np.linalg.LinAlgError(f"no point where phases change: {found.message}")
+            self.known[arc] = found.solution, found.unknowns
+        return self.known[arc]
+
+    def root(self, change: Change) -> float:
+        """Return the arclength where a margin vanishes that is negative at the trial."""
+
+        def margin(arc: float) -> float:
+            return margins(self.at(arc)[0]).get(change, 1.0)
+
+        return _root(margin, 0.0, self.whole)
+
+    def point(self, arc: float) -> Point[Solution]:
+        """Return the point at an arclength."""
+        solution, unknowns = self.at(arc)
+        ahead = self.equations.reduced(solution, self.a.tangent)
+        found, tangent = near(self.equations, solution, unknowns, ahead)
+        return replace(
+            self.a,
+            solution=solution,
+            unknowns=unknowns,
+            tangent=tangent,
+            sign=found.sign,
+            note="",
+        )
+
+
+def _root(f: Callable[[float], float], a: float, b: float) -> float:
+    """Return a root by false position with halved weights (Illinois)."""
+    fa, fb, whole = f(a), f(b), abs(b - a)
+    if fa <= 0:
+        return a
+    for _ in range(MOST_TRIALS):
+        if abs(fb) <= CLOSE or abs(b - a) <= CLOSE * whole:
+            break
+        c = (a * fb - b * fa) / (fb - fa)
+        fc = f(c)
+        if fc * fb < 0:
+            a, fa = b, fb
+        else:
+            fa /= 2
+        b, fb = c, fc
+    return b

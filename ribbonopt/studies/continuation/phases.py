@@ -1,0 +1,183 @@
+"""How near a ribbon is to a change of its phases, as numbers that are smooth along a branch.
+
+In each phase the law is that of one side of its switch, continued beyond it; so a branch can be
+followed a little past the point where its phases stop being the right ones. What says so is a
+margin, which is positive before and negative behind: the switch at an end of the ribbon, the switch
+where it is nearest to zero inside a phase, its slope where it changes sign, the length of a phase.
+"""
+
+from __future__ import annotations
+
+from enum import Enum
+from itertools import pairwise
+from typing import NamedTuple
+
+import numpy as np
+
+from ribbonopt.arrays import Array
+from ribbonopt.checks.arcs import NEGLIGIBLE, phase_words
+from ribbonopt.solution.solution import Solution
+
+EMPTY = 1e-6  # of the length: at its ends the switch of such a phase says no more than that
+NEAR = 0.3  # of the largest value in a phase: a minimum above that is no touch to come
+ROUNDS = 12  # of the search for a minimum
+
+
+class What(Enum):
+    """What happens to a phase."""
+
+    BORN_AT_START = "a phase is born at the start"
+    BORN_AT_END = "a phase is born at the end"
+    BORN_INSIDE = "a phase is born inside"
+    BORN_BETWEEN = "a mixture is born at the end"
+    LEFT = "the mixture is one no more at some place"
+    GONE_AT_START = "the first phase has no length left"
+    GONE_AT_END = "the last phase has no length left"
+    GONE_INSIDE = "a phase inside has no length left"
+
+
+class Change(NamedTuple):
+    """A change of phases, and the phase whose margin tells it."""
+
+    what: What
+    phase: int
+
+    def told(self, kinds: tuple[int, ...]) -> str:
+        """Say it in words, for phases of these kinds."""
+        return f"{self.what.value} (of phase {self.phase + 1} among: {phase_words(kinds)})"
+
+
+def margins(solution: Solution) -> dict[Change, float]:
+    """Return the margins of a solution in phases, relative to its largest moment or its length."""
+    kinds, found = solution.sheets, {}
+    last, lengths = len(kinds) - 1, np.diff(solution.trajectory.ends)
+    for i, kind in enumerate(kinds):
+        if last and _may_go(kinds, i):
+            ends = {0: What.GONE_AT_START, last: What.GONE_AT_END}
+            found[Change(ends.get(i, What.GONE_INSIDE), i)] = float(lengths[i])
+        if kind == 0:
+            found[Change(What.LEFT, i)] = min(share for _, share, _ in spares(solution, i))
+            continue
+        sigma, value = profile(solution, i)
+        if i == 0 and (not last or lengths[i] > EMPTY):
+            found[Change(What.BORN_AT_START, i)] = float(value[0])
+        if i == last and (not last or lengths[i] > EMPTY):
+            found[Change(What.BORN_AT_END, i)] = float(value[-1])
+        lowest = [value for _, value in minima(solution, i, sigma, value)]
+        if lowest:
+            found[Change(What.BORN_INSIDE, i)] = min(lowest)
+        if i < last and kinds[i + 1]:
+            found[Change(What.BORN_BETWEEN, i)] = kinds[i + 1] * _slope_at_end(solution, i)
+    return found
+
+
+def profile(solution: Solution, phase: int) -> tuple[Array, Array]:
+    """Return positions in a phase (k,), 0 to 1, and there the switch times the phase's kind."""
+    dense, scale = solution.dense, moment(solution)
+    s = dense.blocks.layout.phase_slices[phase]
+    _, stages, _ = dense.blocks.layout.unpack(dense.w)
+    positions = dense.blocks.stage_positions(dense.p)[s].ravel()
+    rows = solution.trajectory.stages[3] == phase
+    nodes = solution.trajectory.at_nodes["switching"][s.start : s.stop + 1]
+    places = np.concatenate([dense.nodes(phase), positions if stages.size else []])
+    inner = solution.trajectory.at_stages["switching"][rows] if stages.size else np.empty(0)
+    order = np.argsort(places, kind="stable")
+    values = np.concatenate([nodes, inner])[order] * solution.sheets[phase] / scale
+    return places[order], values
+
+
+def minima(solution: Solution, phase: int, sigma: Array, value: Array) -> list[tuple[float, float]]:
+    """Return the low minima inside a phase: where, and the value, from its profile."""
+    low = NEAR * float(np.abs(value).max())
+    inner = (value[1:-1] <= value[:-2]) & (value[1:-1] < value[2:]) & (value[1:-1] < low)
+    return [
+        _lowest(solution, phase, *sigma[[j, j + 1, j + 2]], *value[[j, j + 1, j + 2]])
+        for j in np.flatnonzero(inner)
+    ]
+
+
+def spares(solution: Solution, phase: int) -> list[tuple[float, float, int]]:
+    """Return what a mixture has to spare where that is least: at either end, or inside.
+
+    Position in the phase, 0 to 1; by how much |u2| is below |u3|, relative to that; sign of u2.
+    """
+    degree, rows = solution.dense.blocks.layout.stages, solution.trajectory.stages[3] == phase
+    u = solution.trajectory.at_stages["u"][rows]
+    _, sigma, _ = solution.dense.stages(phase)
+    share = 1 - np.abs(u[:, 1] / u[:, 2])
+    first, last = (
+        float(np.linalg.solve(np.vander(sigma[part] - at), share[part])[-1])
+        for part, at in ((slice(None, degree), 0.0), (slice(-degree, None), 1.0))
+    )
+    signs = np.sign(u[:, 1]).astype(int)
+    lowest = 1 + np.flatnonzero((share[1:-1] <= share[:-2]) & (share[1:-1] < share[2:]))
+    inside = [(float(sigma[j]), float(share[j]), int(signs[j])) for j in lowest]
+    return [(0.0, first, int(signs[0])), *inside, (1.0, last, int(signs[-1]))]
+
+
+def _slope_at_end(solution: Solution, phase: int) -> float:
+    """Return the slope of the switch m2 at the end of a phase, over moment and length.
+
+    m2' = -n1 - u3 m1 by eqs. (2.2) and (2.7): exact there, as slopes of polynomials are not.
+    """
+    nodes, trajectory = solution.trajectory.at_nodes, solution.trajectory
+    at = solution.dense.blocks.layout.phase_slices[phase].stop
+    n1, m1, u3 = (float(nodes[name][at]) for name in ("n1", "m1", "u3"))
+    return -(n1 + u3 * m1) * trajectory.length / moment(solution)
+
+
+def moment(solution: Solution) -> float:
+    """Largest component of the moment along a solution, units Dw = L = 1."""
+    return float(np.abs(solution.trajectory.at_nodes["m"]).max())
+
+
+def one_sign(solution: Solution) -> int:
+    """Return the sign that the law's switch has all along a solution; 0 if it changes."""
+    trajectory, least = solution.trajectory, NEGLIGIBLE * moment(solution)
+    both = (trajectory.at_nodes["switching"], trajectory.at_stages["switching"])
+    below, above = (min(v.min() for v in both) < -least, max(v.max() for v in both) > least)
+    return int(above) - int(below)
+
+
+def orientation(kinds: tuple[int, ...]) -> float:
+    """Return the sign by which phases change that of the determinant of the equations.
+
+    The length of a phase is an unknown and the zero of the switch at its end a condition, whose
+    derivative by that length has the sign of the phase that follows. Without these factors the
+    determinant is that of a ribbon whose phases end where they must: the same in any phases. A
+    mixture that is born where the switch touches zero makes no difference, but one between two
+    sides of the law takes the place of a condition of either sign.
+    """
+    pairs = pairwise(kinds)
+    sign = float(np.prod([after for before, after in pairs if before and after]))
+    around = zip(kinds[:-2], kinds[1:-1], kinds[2:], strict=True)
+    return sign * float(np.prod([a * b for a, mixture, b in around if not mixture]))
+
+
+def _may_go(kinds: tuple[int, ...], i: int) -> bool:
+    """Whether the phases around one can meet; those at an end are none of mixtures."""
+    around = kinds[max(i - 1, 0) : i] + kinds[i + 1 : i + 2]
+    return len(around) == 2 or 0 not in (*around, kinds[i])
+
+
+def _lowest(
+    solution: Solution, phase: int, a: float, b: float, c: float, fa: float, fb: float, fc: float
+) -> tuple[float, float]:
+    """Return the minimum between a < b < c by parabolas through the nearest three places."""
+    sheet, scale = solution.sheets[phase], moment(solution)
+    ends = solution.trajectory.ends[phase : phase + 2]
+    for _ in range(ROUNDS):
+        bend = ((fc - fb) / (c - b) - (fb - fa) / (b - a)) / (c - a)
+        if not bend > 0:
+            break
+        place = (a + b) / 2 - (fb - fa) / (b - a) / bend / 2
+        if not a < place < c or abs(place - b) <= 1e-9 * (c - a):
+            break
+        at = np.array([ends[0] + (ends[1] - ends[0]) * place])
+        f = float(solution.trajectory.outputs(at)["switching"][0]) * sheet / scale
+        if f > fb:
+            break
+        left = place < b
+        a, fa, c, fc = (a, fa, b, fb) if left else (b, fb, c, fc)
+        b, fb = place, f
+    return float(b), float(fb)
