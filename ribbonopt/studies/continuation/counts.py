@@ -1,4 +1,4 @@
-"""The count of negative directions as a witness: what special points do not explain of its change."""
+"""The count of negative directions as a witness: what of its change no special point explains."""
 
 from __future__ import annotations
 

@@ -24,7 +24,7 @@ from ribbonopt.transcription import Mesh
 from .buckled import StageBuckling
 from .coordinates import metric_at, reduced, row_of
 from .curve import Curve
-from .finishing import STEEP, elsewhere, finished
+from .finishing import elsewhere, finished
 from .leaving import leaving
 from .passage import passage
 from .phases import orientation
