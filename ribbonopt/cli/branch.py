@@ -143,7 +143,7 @@ def _report(folder: BranchFolder, continuation: Continuation) -> str:
     return "\n".join([*lines, f"  written: {folder.folder}: {names}"])
 
 
-def _how_on(row: Mapping[str, Any], switch: bool) -> str:
+def _how_on(row: Mapping[str, Any], switch: bool | int) -> str:
     """Say how to reach the ribbons that leave a straight one where it buckles."""
     if row["kind"] != "buckling point" or switch:
         return ""
@@ -204,15 +204,17 @@ def _shown(
 
 
 def _progress(point: Point[Solution], continuation: Continuation) -> str:
+    from ribbonopt.scene.stages import ends_of
+
     row, stage = point.row, continuation.stages[point.stage]
-    bar = _bar(row, stage.from_, stage.values[-1] if stage.values else stage.to)
+    ends = ends_of(stage)
+    bar = _bar(row, stage.from_, ends[min(point.branch, len(ends) - 1)])
     line = f"{bar} {row['parameter']} = {row['value']:.6g}  step {point.step:.2g}"
     return line if row["error"] is None else f"{line}  error {row['error']:.0e}"
 
 
-def _bar(row: Mapping[str, Any], begin: float | None, end: float | None) -> str:
+def _bar(row: Mapping[str, Any], begin: float | None, end: float) -> str:
     assert begin is not None
-    assert end is not None
     share = (row["value"] - begin) / (end - begin)
     if row["value"] > 0 and begin > 0 and end > 0 and max(begin, end) > 50 * min(begin, end):
         from math import log

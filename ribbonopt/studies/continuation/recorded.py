@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -12,13 +13,13 @@ from ribbonopt.accuracy.estimate import analyse, relative_error
 from ribbonopt.checks.zero_moment import lacks_linearisation, unknown_of
 from ribbonopt.errors import ModelError
 from ribbonopt.plain import Row, finite
-from ribbonopt.scene import ContinuationStage, Scene
+from ribbonopt.scene import Scene
 from ribbonopt.scene.quantities import ANSWERS, START_VECTORS
-from ribbonopt.scene.stages import parse_record, parse_stop, stages_of, words_of
-from ribbonopt.solution.sampling import evaluate_formula
+from ribbonopt.scene.stages import parse_record, stages_of, words_of
 from ribbonopt.solution.solution import Solution
 
 from .curve import Curve
+from .stops import Stops, conditions_of
 from .walk.points import POINT, Point
 
 #: numbers that every row has, besides what the scene records
@@ -26,7 +27,7 @@ NUMBERS = (
     *("value", "error", *ANSWERS),
     *("number", "stage", "branch", "negative", "intervals", "iterations"),
 )
-WORDS = ("parameter", "kind", "switches", "note")
+WORDS = ("parameter", "kind", "origin", "switches", "note")
 
 
 class Recorder:
@@ -48,8 +49,7 @@ class Recorder:
                     f"record.{name}",
                 )
         for stage in stages_of(scene):
-            for text in stage.stop:
-                left, _, right = parse_stop(text)
+            for text, left, _, right in conditions_of(stage):
                 for side in (left, right):
                     self.known(words_of(side), f"continuation.stop: {text!r}", "continuation")
 
@@ -75,21 +75,26 @@ class Recorder:
             "number": point.number,
             "stage": point.stage,
             "branch": point.branch,
+            "origin": point.origin,
             "parameter": stage.parameter,
             "value": curve.value(point.position),
             "kind": point.kind,
             "negative": _negative(solution) if stage.stability and point.kind == POINT else None,
             # At a fold the equations at a given parameter are singular: so is their estimate.
             "error": error_of(solution) if point.kind == POINT else None,
-            **numbers_of(solution),
         }
-        row |= sampled(solution, self.formulas)
+        row |= self.varying(point, curve)
         row["switches"] = solution.switch_points.tolist()
         row["intervals"] = solution.dense.blocks.layout.element_count
         row["iterations"] = solution.iterations
         told = (*unknown_of(solution), *solution.given_up, *solution.fell_back)
         row["note"] = "; ".join(filter(None, [point.note, *told]))
         return row
+
+    def varying(self, point: Point[Solution], curve: Curve) -> dict[str, float | None]:
+        """Return the numbers of a row that vary along a branch, in the units of the scene."""
+        found = sampled(point.solution, self.formulas)
+        return {"value": curve.value(point.position), **numbers_of(point.solution), **found}
 
 
 @dataclass(frozen=True, eq=False)
@@ -103,9 +108,27 @@ class StageRecords:
         """Return what is recorded of a point."""
         return self.recorder.row(point, self.curve)
 
+    @cached_property
+    def stops(self) -> Stops:
+        """What ends the stage."""
+        return Stops(self.curve.stage)
+
     def stopped(self, row: Mapping[str, Any]) -> str:
         """Return the condition of the stage that a row meets, "" if none."""
-        return stopped(row, self.curve.stage)
+        return self.stops.met(row)
+
+    def stopped_at(self, kind: str, count: int) -> str:
+        """Return what ends the stage at the special point of a kind and number, "" if nothing."""
+        return self.stops.met_at(kind, count)
+
+    def margins(self, point: Point[Solution]) -> dict[str, float]:
+        """Return how far a point is beyond the conditions on what varies along the branch.
+
+        Counts jump, and bounds of the error are none: conditions on them are met as they come.
+        """
+        if not self.stops.conditions:
+            return {}
+        return self.stops.margins(self.recorder.varying(point, self.curve))
 
 
 def error_of(solution: Solution) -> float | None:
@@ -137,24 +160,6 @@ def numbers_of(solution: Solution) -> dict[str, float]:
     for names, vector in zip(START_VECTORS, (solution.n0, solution.m0, solution.u0), strict=True):
         row |= {name: float(value) for name, value in zip(names, vector, strict=True)}
     return row
-
-
-def stopped(row: Mapping[str, Any], stage: ContinuationStage) -> str:
-    """Return the condition of a stage that a row meets, "" if none."""
-    values = {
-        name: np.array([float(value)])
-        for name, value in row.items()
-        if isinstance(value, int | float)
-    }
-    for text in stage.stop:
-        left, sign, right = parse_stop(text)
-        if any(word not in values for word in (*words_of(left), *words_of(right))):
-            continue  # not known here
-        with np.errstate(all="ignore"):  # what is not a number meets no condition
-            a, b = (float(evaluate_formula(side, values)[0]) for side in (left, right))
-        if a > b if sign == ">" else a < b:
-            return text
-    return ""
 
 
 def _negative(solution: Solution) -> int | None:

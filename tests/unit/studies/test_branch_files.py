@@ -66,8 +66,8 @@ continuation:
 )
 SCENES = {"branches and stages": COLUMN, "phases and meshes": MOEBIUS, "stopped": STOPPED}
 HEAD = [
-    *("number", "stage", "branch", "parameter", "value", "kind", "negative", "error", "energy"),
-    *("H0", "n0x", "n0y", "n0z", "m0x", "m0y", "m0z", "u1", "u2", "u3"),
+    *("number", "stage", "branch", "origin", "parameter", "value", "kind", "negative", "error"),
+    *("energy", "H0", "n0x", "n0y", "n0z", "m0x", "m0y", "m0z", "u1", "u2", "u3"),
 ]
 TAIL = ["switches", "intervals", "iterations", "note"]
 

@@ -10,6 +10,7 @@ from ribbonopt.arrays import Array
 
 POINT, FOLD, BRANCH_POINT, BUCKLING = "point", "fold", "branch point", "buckling point"
 CROSSINGS = (BRANCH_POINT, BUCKLING)  # where other branches cross; the latter without a derivative
+SPECIAL = (FOLD, *CROSSINGS)
 
 S = TypeVar("S")  # what a solution is, is the business of the equations
 
@@ -38,6 +39,8 @@ class Point(Generic[S]):
         What is recorded, by name.
     note : str
         What is to be told of it: how it is other than the continuation of the point before.
+    origin : int or None
+        Number of the point where its branch leaves another; None on the first branch.
     """
 
     solution: S
@@ -51,6 +54,7 @@ class Point(Generic[S]):
     kind: str = POINT
     row: Mapping[str, Any] = field(default_factory=dict)
     note: str = ""
+    origin: int | None = None
 
     @property
     def position(self) -> float:
