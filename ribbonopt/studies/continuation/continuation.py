@@ -14,6 +14,7 @@ from dataclasses import replace
 
 from ribbonopt.errors import ModelError
 from ribbonopt.pipeline.prepared import Prepared, prepare
+from ribbonopt.problem.wellposed.reach import refuse_far_goals
 from ribbonopt.scene import Scene
 from ribbonopt.scene.lens import value_at
 from ribbonopt.scene.stages import ends_of, stages_of
@@ -52,6 +53,7 @@ class Continuation:
                 "continuation: the scene has none; add for example "
                 "'continuation: {parameter: law.epsilon, to: 1e-4, scale: log}'"
             )
+        refuse_far_goals(scene)
         first, before = Curve(scene, self.stages[0]), scene
         self.prepared = prepared or prepare(first.scene_at(first.begin))
         # The same along all stages, however long or stiff the ribbon becomes.
