@@ -91,9 +91,7 @@ def _way(stage: ContinuationStage, begin: float, end: float) -> Array:
     return np.array([begin, *between(begin, end, PLACES)[1:-1], end])
 
 
-def _with_dips(
-    values: Array, found: Array, slack: Callable[[float], float]
-) -> tuple[Array, Array]:
+def _with_dips(values: Array, found: Array, slack: Callable[[float], float]) -> tuple[Array, Array]:
     """Return values and what is left there, with the least between them where it may be less."""
     dips = 1 + np.flatnonzero((found[1:-1] <= found[:-2]) & (found[1:-1] <= found[2:]))
     for i in [int(i) for i in dips if found[i] >= 0]:
