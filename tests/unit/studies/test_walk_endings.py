@@ -194,9 +194,10 @@ def test_a_closed_curve_is_followed_one_way() -> None:
 # branches of branches, each once
 
 
-@pytest.fixture(scope="module")
-def ring() -> Run:
-    return run([stage(RING, Straight(-2, (2,), 0.15), [0, -2], switch=2)])
+@pytest.fixture(scope="module", params=[0.05, 0.15, 0.3, 0.32, 0.48, 0.9])
+def ring(request: pytest.FixtureRequest) -> Run:
+    range_ = Straight(-2, (2,), request.param, first=request.param)
+    return run([stage(RING, range_, [0, -2], switch=2)])
 
 
 def test_a_branch_that_connects_two_branch_points_is_followed_once(ring: Run) -> None:

@@ -18,6 +18,8 @@ from ribbonopt.arrays import Array
 
 from .points import CROSSINGS, POINT, Point, S
 from .protocol import Equations
+from .steps import COSINE
+from .tangents import near
 
 SAME = 1e-4  # arclength between a place and where a branch passes it, if it does
 MET = 1e-3  # arclength between two estimates of one point where branches cross
@@ -99,10 +101,15 @@ class Atlas(Generic[S]):
         guess = point.unknowns + arc * point.tangent
         try:
             trial = equations.correct_along(point, point.tangent, arc, guess)
+            if not trial.converged:
+                return False
+            _, tangent = near(equations, trial.solution, trial.unknowns, along)
         except np.linalg.LinAlgError:
             return False
         found = equations.reduced(trial.solution, trial.unknowns)
-        return trial.converged and metric.length(found - place) < SAME
+        # Where branches cross, the other one may be found: it goes another way.
+        ahead = metric.product(equations.reduced(trial.solution, tangent), along)
+        return ahead > COSINE and metric.length(found - place) < SAME
 
     def _pieces(self, trace: Trace) -> Iterator[tuple[Array, Array]]:
         """Yield the ends of the pieces of a branch; the last may lead to where branches cross."""
