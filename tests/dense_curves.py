@@ -51,6 +51,9 @@ class Dense:
     unit_for: Callable[[Array], Unit] | None = None
     other: Callable[[float], Array] | None = None
 
+    def measured(self, solution: Unit) -> "Dense":
+        return self
+
     def reduced(self, solution: Unit, vector: Array) -> Array:
         return np.append(vector[:-1] * solution.size, vector[-1])
 
@@ -71,6 +74,9 @@ class Dense:
 
     def crossings(self, a: Point[Unit], b: Point[Unit]) -> list[Point[Unit]]:
         return []
+
+    def uncounted(self, a: Unit, b: Unit, changes: int) -> str:
+        return ""
 
     def departure(self, point: Point[Unit]) -> Array | None:
         return None

@@ -22,6 +22,7 @@ from ribbonopt.arrays import Array
 from ribbonopt.solution.solution import Solution
 from ribbonopt.solution.trajectory import Trajectory
 from ribbonopt.solvers.condense import CondensedSystem
+from ribbonopt.solvers.protocols import Factors
 
 from .gaps import LEAST, RESOLVED, gaps_at_nodes, gaps_between
 from .layers import Layers, clear_of, layers, overlooked
@@ -57,7 +58,7 @@ class Analysis:
         Whether errors are known: not where schemes overlook so much that this is a mere guess.
     layers : tuple of Layers
         Singularities of the law near each phase.
-    factors : CondensedSystem or None
+    factors : Factors or None
         Factors of the better scheme, if they were to be kept.
     """
 
@@ -69,12 +70,10 @@ class Analysis:
     more: float
     known: bool
     layers: tuple[Layers, ...]
-    factors: CondensedSystem | None = None
+    factors: Factors | None = None
 
 
-def analyse(
-    solution: Solution, near: CondensedSystem | None = None, *, keep: bool = False
-) -> Analysis:
+def analyse(solution: Solution, near: Factors | None = None, *, keep: bool = False) -> Analysis:
     """Analyse a solution of a square problem; LinAlgError if its equations are singular.
 
     `near` are factors kept from a solution on the same mesh, so near that with its own factors
@@ -127,14 +126,14 @@ def _worst(errors: Mapping[str, float], sizes: Mapping[str, float]) -> tuple[flo
     return relative[worst], worst
 
 
-def _analysed(solution: Solution, near: CondensedSystem | None, keep: bool) -> Analysis:
+def _analysed(solution: Solution, near: Factors | None, keep: bool) -> Analysis:
     trajectory, tolerance = solution.trajectory, solution.posed.scene.tolerance or USUAL
     dense = trajectory.dense
     finer, split = dense.refined()
     blocks, w, p = finer.blocks, finer.w, finer.p
     if near is None:
         residuals, derivatives = blocks.linearize(w, p)
-        factors = CondensedSystem(blocks, derivatives, p, only=None if keep else residuals)
+        factors: Factors = CondensedSystem(blocks, derivatives, p, only=None if keep else residuals)
         growth = blocks.growth(derivatives, p).reshape(-1, split).sum(axis=1)
     else:
         residuals, factors, keep, growth = blocks.residuals(w, p), near, True, dense.growth

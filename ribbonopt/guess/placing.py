@@ -84,7 +84,7 @@ def _frame(ribbon: Ribbon, end: EndName) -> Array | None:
     at_end = [c for c in ribbon.conditions if getattr(c, "end", None) == end]
     for condition in at_end:
         if isinstance(condition, Frame):
-            return np.reshape(condition.matrix, (3, 3))
+            return condition.frame
     for condition in at_end:
         if isinstance(condition, Direction):
             index = ("d1", "d2", "d3").index(condition.director)

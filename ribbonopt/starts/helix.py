@@ -74,7 +74,7 @@ def clamps_of(posed: Posed) -> tuple[Place, Place] | None:
     frames, places = {}, {}
     for c in posed.conditions:
         if isinstance(c, Frame):
-            frames[c.end] = np.reshape(c.matrix, (3, 3))
+            frames[c.end] = c.frame
         elif isinstance(c, Component) and c.quantity == "position" and c.axis in "xyz":
             places[c.end, c.axis] = c.value
         else:

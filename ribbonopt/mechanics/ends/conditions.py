@@ -16,12 +16,16 @@ from typing import Literal
 import casadi as ca
 import numpy as np
 
+from ribbonopt.arrays import Array
 from ribbonopt.mechanics.model import RodModel
-from ribbonopt.mechanics.rotations import directors_of, quaternions_from
+from ribbonopt.mechanics.rotations import directors_of, matrix_of, quaternions_from
 from ribbonopt.mechanics.section import Section
 
 EndName = Literal["start", "end"]
 Named = dict[str, ca.SX]
+
+#: an orthonormal frame (rows) that is askew to all that scenes have
+_ASKEW = np.array([[0.48, 0.64, 0.6], [-0.8, 0.6, 0.0], [-0.36, -0.48, 0.8]])
 
 
 @dataclass(frozen=True, eq=False)
@@ -100,10 +104,24 @@ class Component(Condition):
 
 @dataclass(frozen=True, eq=False)
 class Frame(Condition):
-    """All three directors: three equations, because the rest is orthonormality."""
+    """All three directors, those of a unit quaternion (4,) of either sign.
+
+    Three equations, because the rest is orthonormality. Where the frame moves with a parameter, so
+    must the quaternion, without a jump of sign: the sign of the equations is that of q.
+    """
 
     end: EndName
-    matrix: tuple[float, ...]  # nine numbers, rows x, y, z; columns d1, d2, d3
+    quaternion: Array
+
+    @classmethod
+    def of(cls, end: EndName, frame: Array) -> Frame:
+        """Return the condition of a frame (3, 3) that does not move."""
+        return cls(end, quaternions_from(frame[None])[0])
+
+    @property
+    def frame(self) -> Array:
+        """The frame (3, 3), columns d1, d2, d3."""
+        return matrix_of(self.quaternion)
 
     @property
     def name(self) -> str:
@@ -111,8 +129,7 @@ class Frame(Condition):
         return f"boundary.{self.end}.directors"
 
     def theta(self) -> dict[str, float]:
-        q = quaternions_from(np.reshape(self.matrix, (1, 3, 3)))[0]
-        return {f"{self.name}.q{i}": float(q[i]) for i in range(4)}
+        return {f"{self.name}.q{i}": float(self.quaternion[i]) for i in range(4)}
 
     def residuals(self, context: Context) -> Named:
         section = context.ends[self.end]
@@ -147,8 +164,7 @@ class Direction(Condition):
 
     def theta(self) -> dict[str, float]:
         target = np.array(self.target)
-        # Two directions across the target: the null space of its transpose.
-        across = np.linalg.svd(target[None])[2][1:]
+        across = _across(target)
         vectors = {"across0": across[0], "across1": across[1], "target": target}
         return {
             f"{self.name}.{key}.{axis}": float(v[i])
@@ -170,6 +186,18 @@ class Direction(Condition):
 
     def _vector(self, context: Context, key: str) -> ca.SX:
         return ca.vertcat(*(context.theta(f"{self.name}.{key}.{axis}") for axis in "xyz"))
+
+
+def _across(target: Array) -> Array:
+    """Two unit vectors (2, 3) across a unit vector (3,) and each other, that move smoothly with it.
+
+    The mirror that takes a fixed direction to the target takes what is across the one to what is
+    across the other. That direction is none that a scene is likely to point against.
+    """
+    mirrored = target - _ASKEW[0]
+    normal = mirrored / max(float(np.linalg.norm(mirrored)), 1e-300)
+    across: Array = _ASKEW[1:] - 2 * np.outer(_ASKEW[1:] @ normal, normal)
+    return across
 
 
 @dataclass(frozen=True, eq=False)

@@ -7,8 +7,8 @@ from typing import Any
 
 import numpy as np
 
-from ribbonopt.mechanics.rotations import matrix_of, turns_about
-from ribbonopt.scene import Directors, End, Quaternion, Turn, Turns, Value
+from ribbonopt.mechanics.rotations import matrix_of, product, quaternions_from
+from ribbonopt.scene import Directors, End, Quaternion, Turns, Value
 
 DIRECTORS = ("d1", "d2", "d3")
 Parameters = dict[str, float]
@@ -43,21 +43,34 @@ def unit(vector: Any, parameters: Parameters) -> np.ndarray:
 def frame_of(end: End, parameters: Parameters) -> np.ndarray | None:
     """Frame (3, 3) of an end whose directors are prescribed as a whole, or None."""
     rotation = end.directors
-    if rotation == "identity":
-        return np.eye(3)
     if rotation is None or isinstance(rotation, Directors):
         return _of_directors(end if rotation is None else rotation, parameters)
+    q = quaternion_of(end, parameters)
+    return None if q is None else matrix_of(q)
+
+
+def quaternion_of(end: End, parameters: Parameters) -> np.ndarray | None:
+    """Return the unit quaternion (4,) of an end whose directors are prescribed whole, or None.
+
+    Rotations follow their angles without a jump of sign: after a whole turn it is the negative.
+    """
+    rotation = end.directors
+    if rotation is None or isinstance(rotation, Directors):
+        frame = frame_of(end, parameters)
+        return None if frame is None else quaternions_from(frame[None])[0]
     if isinstance(rotation, Quaternion):
-        return matrix_of(np.array([number(v, parameters) for v in rotation.quaternion]))
+        given = np.array([number(v, parameters) for v in rotation.quaternion])
+        return np.asarray(given / np.linalg.norm(given))
+    q = np.array([1.0, 0.0, 0.0, 0.0])
     if isinstance(rotation, Turns):
-        frame = np.eye(3)
         for turn in rotation.turns:
-            frame = _turned(frame, turn, parameters)
-        return frame
-    assert not isinstance(rotation, str)
-    return np.asarray(
-        turns_about(np.array([[number(v, parameters) for v in rotation.rotation_vector]]))[0]
-    )
+            ((axis, angle),) = components(turn, parameters).items()
+            names = DIRECTORS if axis in DIRECTORS else ("x", "y", "z")
+            by = _by(angle * np.eye(3)[names.index(axis)])
+            q = np.array(product(q, by) if names is DIRECTORS else product(by, q))
+    elif not isinstance(rotation, str):  # which is the identity
+        q = _by(np.array([number(v, parameters) for v in rotation.rotation_vector]))
+    return q
 
 
 def _of_directors(source: End | Directors, parameters: Parameters) -> np.ndarray | None:
@@ -74,8 +87,7 @@ def _of_directors(source: End | Directors, parameters: Parameters) -> np.ndarray
     return np.asarray(left @ right)
 
 
-def _turned(frame: np.ndarray, turn: Turn, parameters: Parameters) -> np.ndarray:
-    ((axis, angle),) = components(turn, parameters).items()
-    names = DIRECTORS if axis in DIRECTORS else ("x", "y", "z")
-    matrix = turns_about(angle * np.eye(3)[[names.index(axis)]])[0]
-    return np.asarray(frame @ matrix if names is DIRECTORS else matrix @ frame)
+def _by(vector: np.ndarray) -> np.ndarray:
+    """Quaternion (4,) of the rotation by |v| about v (3,)."""
+    half = float(np.linalg.norm(vector)) / 2
+    return np.append(np.cos(half), np.sinc(half / np.pi) * vector / 2)

@@ -37,7 +37,7 @@ def loop_conditions(
     frame = np.eye(3) if frame is None else frame
     conditions: list[Condition] = [
         *(Component("start", "position", axis, value) for axis, value in place.items()),
-        Frame("start", _flat(frame)),
+        Frame.of("start", frame),
     ]
     if loop.piece == "half":
         return [*conditions, *_half(loop.half_twists, tuple(place.values()), frame)]
@@ -45,7 +45,7 @@ def loop_conditions(
     conditions += [Closed(f"d{i + 1}", _vector(frame[:, i])) for i in across]
     if not closed:
         conditions.append(Component("start", "force", "d1", 0.0))
-    return [*conditions, Frame("end", _flat(frame @ end_turn(loop.half_twists)))]
+    return [*conditions, Frame.of("end", frame @ end_turn(loop.half_twists))]
 
 
 def end_turn(half_twists: int) -> np.ndarray:
@@ -91,10 +91,6 @@ def _fundamental(loop: Loop) -> list[Condition]:
         Component("end", "force", director, 0.0),
         Component("end", "moment", director, 0.0),
     ]
-
-
-def _flat(frame: np.ndarray) -> tuple[float, ...]:
-    return tuple(frame.ravel().tolist())
 
 
 def _vector(values: np.ndarray) -> Vector:

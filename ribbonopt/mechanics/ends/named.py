@@ -5,7 +5,7 @@ from __future__ import annotations
 from ribbonopt.scene import End
 
 from .conditions import Component, Condition, Direction, EndName, Frame
-from .frames import DIRECTORS, Parameters, components, frame_of
+from .frames import DIRECTORS, Parameters, components, quaternion_of
 
 
 def named_at(name: EndName, end: End, parameters: Parameters) -> list[Condition]:
@@ -20,15 +20,15 @@ def named_at(name: EndName, end: End, parameters: Parameters) -> list[Condition]
 
 def directors_at(name: EndName, end: End, parameters: Parameters) -> list[Condition]:
     """Return the conditions on the directors of an end."""
-    frame = frame_of(end, parameters)
+    whole = quaternion_of(end, parameters)
     result: list[Condition] = []
-    if frame is not None:
-        result.append(Frame(name, tuple(frame.ravel().tolist())))
+    if whole is not None:
+        result.append(Frame(name, whole))
     for director in DIRECTORS:
         prescribed = components(getattr(end, director), parameters)
         if len(prescribed) < 3:
             result += [Component(name, director, a, v) for a, v in prescribed.items()]
-        elif frame is None:
+        elif whole is None:
             x, y, z = (prescribed[axis] for axis in "xyz")
             result.append(Direction(name, director, (x, y, z)))
     return result

@@ -18,7 +18,6 @@ from ribbonopt.pipeline.prepared import Prepared
 from ribbonopt.problem import Posed
 from ribbonopt.scene import Scene
 from ribbonopt.solution.solution import Solution
-from ribbonopt.solvers.condense import CondensedSystem
 from ribbonopt.solvers.protocols import Factors
 from ribbonopt.studies.spare import SPARE
 
@@ -44,7 +43,7 @@ class Neighbour:
     prepared: Prepared
     solution: Solution
     factors: Factors | None = None
-    finer: CondensedSystem | None = None
+    finer: Factors | None = None
     before: Solution | None = None
 
     def solve(self, scene: Scene | Posed) -> Neighbour | None:
@@ -95,7 +94,7 @@ class Neighbour:
         continued: Array = here.w + share * (here.w - there.w)
         return continued
 
-    def _finer(self, found: Solution, served: bool) -> CondensedSystem | None:
+    def _finer(self, found: Solution, served: bool) -> Factors | None:
         """Analyse a solution; return the factors of that, if they are worth to be kept."""
         if found.problem.recovered:
             return None

@@ -16,6 +16,7 @@ from ribbonopt.scene.stages import ends_of
 from ribbonopt.scene.units import Units
 from ribbonopt.solution.solution import Solution
 from ribbonopt.solvers.extended import Line
+from ribbonopt.transcription.structure import Output
 
 STEPS = 20  # from one end to the other, where the stage says nothing of its steps
 SLOPE = 1e-5  # of the span: half the distance that derivatives by the position are taken over
@@ -130,8 +131,12 @@ class Curve:
 
     def line(self, solution: Solution) -> Line:
         """Return the equations of a solution along this curve, on its mesh and in its phases."""
-        widths, dense = solution.mesh.widths, solution.dense
+        return self.line_of(solution.dense)
+
+    def line_of(self, dense: Output) -> Line:
+        """Return the equations of an output along this curve."""
         layout, known = dense.blocks.layout, dense.known
+        widths = dense.blocks.widths(dense.p)
         return Line(
             dense.blocks,
             lambda position: layout.parameters(self._theta(position), widths, known),

@@ -15,6 +15,7 @@ from ribbonopt.accuracy.estimate import relative_error
 from ribbonopt.arrays import Array
 from ribbonopt.attempt.attempt import Attempt, verified
 from ribbonopt.checks.arcs import changed_phases
+from ribbonopt.checks.stability import negative_directions
 from ribbonopt.checks.zero_moment import unbent_share
 from ribbonopt.pipeline.prepared import Prepared
 from ribbonopt.solution.solution import Solution
@@ -24,12 +25,14 @@ from ribbonopt.solvers.newton import NewtonSolver
 from ribbonopt.studies.buckling.twin import has_twin, twin_of, twin_scene
 from ribbonopt.studies.spare import SPARE
 
+from .along import NEXT_TO_FOLD, error_along
 from .buckled import StageBuckling
 from .curve import Curve
 from .walk.metric import Metric
 from .walk.points import BUCKLING, POINT, Point
 from .walk.protocol import Trial
 
+STEEP = 0.1  # of the error at a given position: one along the branch that tells of a fold
 NEXT_TO_CROSSING = "next to where branches cross: the error is above the tolerance"
 
 
@@ -50,6 +53,10 @@ class RibbonEquations:
     prepared: Prepared
     curve: Curve
     metric: Metric
+
+    def measured(self, solution: Solution) -> RibbonEquations:
+        """Return the same with the metric that fits a solution."""
+        return replace(self, metric=metric_at(solution, self.curve))
 
     def reduced(self, solution: Solution, vector: Array) -> Array:
         """States at both ends, constants of the rod and position, of a vector [w, l]."""
@@ -110,6 +117,18 @@ class RibbonEquations:
             return []
         return self.buckling.between(self, a, b)
 
+    def uncounted(self, a: Solution, b: Solution, changes: int) -> str:
+        """Say what change of the count of negative directions no special point explains."""
+        if not self.curve.stage.stability:
+            return ""
+        before, after = negative_directions(a), negative_directions(b)
+        if before is None or after is None:
+            return ""
+        change = abs(after - before)
+        if change <= changes and (change - changes) % 2 == 0:
+            return ""
+        return f"a change of the count of negative directions from {before} to {after}"
+
     def departure(self, point: Point[Solution]) -> Array | None:
         """Return the infinitesimal deflection at a buckling point, None at others."""
         if point.kind != BUCKLING:
@@ -141,17 +160,17 @@ class RibbonEquations:
 
     def finished(self, origin: Point[Solution], trial: Trial[Solution]) -> Trial[Solution]:
         """Return a solution verified, to tolerance, in the phases it needs."""
-        found = trial.solution
+        found, note = trial.solution, ""
         tolerance = found.scene.tolerance
         if not found.sheets and self._needs_phases(found):
             found = self.prepared.solve(found.posed, guess=found, fallback=False)
         elif self._unbent(found):  # no error can be told of it
             found = verified(found, self.prepared.ribbon)
         elif tolerance is not None and relative_error(found)[0] > tolerance:
-            found = self.prepared.refined(found, SPARE)
+            found, note = self._refined(origin, trial, tolerance)
         else:
             found = verified(found, self.prepared.ribbon)
-        note = changed_phases(origin.solution.sheets, found.sheets)
+        note = "; ".join(filter(None, [note, changed_phases(origin.solution.sheets, found.sheets)]))
         if origin.kind != POINT and found.status in (Status.ROUNDED, Status.TOLERANCE_MISSED):
             # Where branches cross rounding is magnified: the row says how exact it is.
             found = replace(found, status=Status.CONVERGED, message=Status.CONVERGED.value)
@@ -161,6 +180,21 @@ class RibbonEquations:
             # Phases may have changed on the way.
             return self._anew(origin.solution, float(trial.unknowns[-1])) or done
         return done
+
+    def _refined(
+        self, origin: Point[Solution], trial: Trial[Solution], tolerance: float
+    ) -> tuple[Solution, str]:
+        """Return a solution verified, as exact as asked for; next to a fold, along the branch."""
+        solution, position = trial.solution, float(trial.unknowns[-1])
+        ahead = self.metric.dual(self.reduced(origin.solution, origin.tangent))
+        for _ in range(2):
+            error = error_along(solution, self.curve, position, row_of(solution, ahead))
+            if error <= min(tolerance, STEEP * relative_error(solution)[0]):
+                return verified(solution, self.prepared.ribbon), NEXT_TO_FOLD
+            solution = self.prepared.refined(solution, SPARE)
+            if solution.verified:
+                break
+        return solution, ""
 
     def elsewhere(self, origin: Point[Solution], position: float) -> Trial[Solution] | None:
         """Solve at a position in other phases: one may have lost its length on the way."""

@@ -84,14 +84,14 @@ each_model = pytest.mark.parametrize("model", MODELS)
 
 @each_model
 def test_frames_hold_where_they_are_prescribed(model: str) -> None:
-    condition = Frame("end", tuple(TARGET.ravel().tolist()))
+    condition = Frame.of("end", TARGET)
     assert max(sizes(condition, model, TARGET)) < 1e-14
 
 
 @each_model
 @pytest.mark.parametrize("axis", [0, 1, 2])
 def test_half_a_turn_from_the_frame_is_no_answer(model: str, axis: int) -> None:
-    condition = Frame("end", tuple(TARGET.ravel().tolist()))
+    condition = Frame.of("end", TARGET)
     turned = TARGET @ Rotation.from_rotvec(np.pi * np.eye(3)[axis]).as_matrix()
     assert sizes(condition, model, turned)[1] > 1
 

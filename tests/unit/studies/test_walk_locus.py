@@ -73,6 +73,9 @@ class FoldLocus:
     def test(self, z: Array) -> float:
         return fold_test(self.line, self.row, z)
 
+    def measured(self, solution: None) -> "FoldLocus":
+        return self
+
     def reduced(self, solution: None, vector: Array) -> Array:
         return self.line.reduced(vector)
 
@@ -94,6 +97,9 @@ class FoldLocus:
 
     def crossings(self, a: Point[None], b: Point[None]) -> list[Point[None]]:
         return []
+
+    def uncounted(self, a: None, b: None, changes: int) -> str:
+        return ""
 
     def departure(self, point: Point[None]) -> None:
         return None

@@ -78,6 +78,9 @@ class Equations(Protocol[S]):
     def metric(self) -> Metric:
         """The arclength; its last size is the change of the position that counts as one."""
 
+    def measured(self, solution: S) -> Equations[S]:
+        """Return the same equations with the metric that fits a solution."""
+
     def reduced(self, solution: S, vector: Array) -> Array:
         """Coordinates (m,) of a vector (n + k,): the same in any layout, the position last."""
 
@@ -114,6 +117,9 @@ class Equations(Protocol[S]):
 
     def crossings(self, a: Point[S], b: Point[S]) -> list[Point[S]]:
         """Return where other branches cross between two points, if no determinant can tell it."""
+
+    def uncounted(self, a: S, b: S, changes: int) -> str:
+        """Say what so many changes of test functions between two points do not explain."""
 
     def departure(self, point: Point[S]) -> Array | None:
         """Direction (n + k,) of a branch that crosses there, None for the null direction."""

@@ -1,7 +1,8 @@
 """One step along a curve: predict along the tangent, correct, accept or shorten.
 
 While the position moves along the curve, points are met at given values of it (natural
-continuation); where it turns, at given arclengths (pseudo-arclength continuation).
+continuation); where it turns, at given arclengths (pseudo-arclength continuation). Arclength is
+measured anew at each point, so that steps follow the growth of the unknowns.
 """
 
 from __future__ import annotations
@@ -13,19 +14,19 @@ import numpy as np
 
 from ribbonopt.arrays import Array
 
-from .points import Point, S
+from .course import Course, joined, leaving
+from .points import FOLD, Point, S
 from .protocol import Equations, Range, Trial
-from .special import special_points
-from .tangents import near
+from .special import Special, special_points
+from .tangents import near, renewed
 
 NATURAL = 0.1  # least share of the position in the tangent for natural continuation
-AIM = 0.02  # wanted distance of a prediction from the curve, in arclength
-FARTHEST = 5.0  # times that: a point that is further off is none of this curve
-JUMPED = "not where the branch was going: it may have changed to another equilibrium"
 GROWTH, SHRINK = 2.0, 0.25  # of a step, after success and failure
 LONGEST = 0.5  # arclength of a step where the position turns
-COSINE = 0.7  # least one of the angle between tangents one step apart
 DIGITS = 1e-12  # of a position, relative to the span
+DOUBTS = 3  # times that a step is shortened because something on it was not resolved
+JUMPED = "not where the branch was going: it may have changed to another equilibrium"
+UNRESOLVED = "not resolved: {} on the way from the point before"
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,10 +53,13 @@ class Stepper(Generic[S]):
         """Take the equations, and the sizes of steps."""
         self.equations, self.range = equations, range_
         self.trouble = ""
+        self._doubts = 0
 
     def step(self, point: Point[S], goal: float) -> Stride[S] | None:
         """Return the longest step towards a goal that succeeds; None where that is too short."""
-        length = point.step
+        self.equations = self.equations.measured(point.solution)
+        point = renewed(self.equations, point)
+        length, self._doubts = point.step, 0
         while True:
             found = self._try(point, goal, length)
             if found is not None:
@@ -72,7 +76,41 @@ class Stepper(Generic[S]):
     def _try(self, point: Point[S], goal: float, length: float) -> Stride[S] | None:
         prediction = self._predicted(point, goal, length)
         trial, prediction = self._corrected(point, goal, prediction)
-        return self._accepted(point, trial, prediction)
+        if not trial.converged and prediction.position is not None:
+            # It may turn before that position.
+            arc = min(prediction.arc, LONGEST)
+            prediction = Prediction(point.unknowns + arc * point.tangent, arc, None)
+            trial, prediction = self._corrected(point, goal, prediction)
+        least = abs(prediction.arc) * self._size * SHRINK < self.range.smallest
+        if not trial.converged:
+            self.trouble = trial.message
+            again = self.equations.elsewhere(point, float(trial.unknowns[-1]))
+            if again is None:
+                return None
+            placed = self._placed(point, prediction, again)
+            return self._arrived(point, again, placed, Special([]), least)
+        placed = following, course = self._placed(point, prediction, trial)
+        if not (course.same or least):
+            self.trouble = course.trouble
+            return None
+        special = self._special(point, following, goal)
+        if special.unresolved and not least and self._doubted():
+            self.trouble = UNRESOLVED.format(" and ".join(special.unresolved))
+            return None
+        final = self.equations.finished(point, trial)
+        self.trouble = final.message
+        if not final.converged:
+            return None
+        if final.unknowns is following.unknowns:
+            placed = replace(following, solution=final.solution), course
+        else:
+            placed = self._placed(point, prediction, final)
+        return self._arrived(point, final, placed, special, least)
+
+    def _doubted(self) -> bool:
+        """Whether a step in doubt is to be shortened once more."""
+        self._doubts += 1
+        return self._doubts <= DOUBTS
 
     def _predicted(self, point: Point[S], goal: float, length: float) -> Prediction:
         """Go along the tangent, exactly onto the goal where that is in reach."""
@@ -110,68 +148,61 @@ class Stepper(Generic[S]):
         guess = np.append(prediction.unknowns[:-1], position)
         return equations.correct_at(point.solution, guess), prediction
 
-    def _accepted(
-        self, point: Point[S], trial: Trial[S], prediction: Prediction
-    ) -> Stride[S] | None:
-        """Return the step if it is not too long, its point in the layout that it needs."""
-        equations = self.equations
-        if not trial.converged:
-            self.trouble = trial.message
-            again = equations.elsewhere(point, float(trial.unknowns[-1]))
-            if again is None:
-                return None
-            return Stride(self._arrived(point, again, self._told(point, prediction, again)), [])
-        metric, solution = equations.metric, trial.solution
-        error = metric.length(equations.reduced(solution, trial.unknowns - prediction.unknowns))
-        ahead = equations.reduced(solution, trial.unknowns - point.unknowns)
-        found, tangent = near(equations, solution, trial.unknowns, ahead)
-        cosine = metric.product(
-            equations.reduced(solution, tangent), equations.reduced(solution, point.tangent)
-        )
-        if cosine < COSINE or error > FARTHEST * AIM:
-            self.trouble = "the branch bends too sharply"
-            if prediction.arc * self._size > self.range.smallest:
-                return None
+    def _placed(
+        self, point: Point[S], prediction: Prediction, trial: Trial[S]
+    ) -> tuple[Point[S], Course]:
+        """Return a trial as the next point, in whatever layout it has, and how it lies."""
+        equations, solution = self.equations, trial.solution
+        left = leaving(equations, point, prediction.unknowns)
+        there = equations.reduced(solution, trial.unknowns)
+        found, tangent = near(equations, solution, trial.unknowns, there - left.here)
+        course = joined(left, there, equations.reduced(solution, tangent), equations.metric)
         following = replace(
             point,
             solution=solution,
             unknowns=trial.unknowns,
             tangent=tangent,
             sign=found.sign,
-            step=abs(prediction.arc) * _growth(error),
+            step=abs(prediction.arc) * float(np.clip(course.growth, SHRINK, GROWTH)),
         )
-        special = []
+        return following, course
+
+    def _special(self, point: Point[S], following: Point[S], goal: float) -> Special[S]:
+        """Return what is special between two points of one layout, in the range."""
+        if not self.range.special:
+            return Special([])
+        found = special_points(self.equations, point, following)
+        heading = np.sign(goal - point.position)
+        beyond = [p for p in found.points if heading * (p.position - goal) > 0]
+        if any(p.kind == FOLD for p in beyond):
+            # It turns there, and has passed the goal before.
+            return Special([], (f"the goal, before a {FOLD},",))
+        return replace(found, points=[p for p in found.points if p not in beyond])
+
+    def _arrived(
+        self,
+        point: Point[S],
+        final: Trial[S],
+        placed: tuple[Point[S], Course],
+        special: Special[S],
+        least: bool,
+    ) -> Stride[S] | None:
+        """Return the step to a finished trial, if that is where the branch goes."""
+        following, course = placed
+        doubts = list(special.unresolved)
+        points = list(special.points)
         if self.range.special:
-            special = special_points(equations, point, following)
-            special += equations.crossings(point, following)
-        final = equations.finished(point, trial)
-        self.trouble = final.message
-        if not final.converged:
+            crossings = self.equations.crossings(point, following)
+            points += crossings
+            changes = special.changes + len(crossings)
+            changed = self.equations.uncounted(point.solution, following.solution, changes)
+            doubts += [changed] if changed else []
+        if (not course.same or doubts) and not least and self._doubted():
+            self.trouble = UNRESOLVED.format(" and ".join(doubts)) if doubts else course.trouble
             return None
-        told = self._told(point, prediction, final)
-        return Stride(self._arrived(following, final, told), special)
-
-    def _told(self, point: Point[S], prediction: Prediction, final: Trial[S]) -> str:
-        """Return the note of a trial; with a word on it where it is not what was predicted."""
-        expected = self.equations.reduced(point.solution, prediction.unknowns)
-        found = self.equations.reduced(final.solution, final.unknowns)
-        off = self.equations.metric.length(found - expected)
-        return "; ".join(filter(None, [final.note, JUMPED if off > FARTHEST * AIM else ""]))
-
-    def _arrived(self, before: Point[S], trial: Trial[S], note: str) -> Point[S]:
-        """Return a point for a trial, maybe in another layout, or of other numbers, than before."""
-        before = replace(before, note=note)
-        if trial.unknowns is before.unknowns:
-            return replace(before, solution=trial.solution)
-        ahead = self.equations.reduced(before.solution, before.tangent)
-        found, tangent = near(self.equations, trial.solution, trial.unknowns, ahead)
-        return replace(
-            before,
-            solution=trial.solution,
-            unknowns=trial.unknowns,
-            tangent=tangent,
-            sign=found.sign,
-        )
+        notes = [final.note, "" if course.same else JUMPED]
+        notes += [UNRESOLVED.format(" and ".join(doubts))] if doubts else []
+        return Stride(replace(following, note="; ".join(filter(None, notes))), points)
 
     def _share(self, tangent: Array) -> float:
         """Share of the position in a unit tangent, with its sign."""
@@ -181,8 +212,3 @@ class Stepper(Generic[S]):
     def _size(self) -> float:
         """Change of the position that counts as one."""
         return float(self.equations.metric.sizes[-1])
-
-
-def _growth(error: float) -> float:
-    """Factor of the next step, for the error of a prediction."""
-    return float(np.clip(np.sqrt(AIM / max(error, 1e-12)), SHRINK, GROWTH))

@@ -10,7 +10,7 @@ from ribbonopt.arrays import Array
 
 from .points import POINT, Point, S
 from .protocol import Equations
-from .tangents import near
+from .tangents import near, renewed
 
 AWAY, LEAST_AWAY = 0.05, 1e-4  # arclength of the first step onto a branch that crosses
 BACK = 0.3  # of that: most that accuracy may move its end by
@@ -19,6 +19,8 @@ BESIDE = (0.0, 1e-12, 1e-10, 1e-8)  # arclength from a point where equations are
 
 def switched(equations: Equations[S], point: Point[S], sign: int) -> Point[S]:
     """Return the first point on the branch that crosses at a branch point; LinAlgError for none."""
+    equations = equations.measured(point.solution)
+    point = renewed(equations, point)
     known = equations.departure(point)
     direction = sign * (null_direction(equations, point) if known is None else known)
     away = AWAY

@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 from ribbonopt.arrays import Array
 
-from .points import S
+from .points import Point, S
 from .protocol import Equations, Linearised
 
 
@@ -22,3 +24,9 @@ def near(
     if metric.product(y, ahead) < 0:
         direction, y = -direction, -y
     return found, direction / metric.length(y)
+
+
+def renewed(equations: Equations[S], point: Point[S]) -> Point[S]:
+    """Return a point with its tangent and its step in the metric of equations; the same way."""
+    length = equations.metric.length(equations.reduced(point.solution, point.tangent))
+    return replace(point, tangent=point.tangent / length, step=point.step * length)
