@@ -61,7 +61,7 @@ class Register:
 
 
 @dataclass(frozen=True, eq=False)
-class Course(Generic[S]):
+class Common(Generic[S]):
     """What all branches of one stage share."""
 
     stage: int
@@ -80,7 +80,7 @@ class Branch(Generic[S]):
 
     def __init__(
         self,
-        course: Course[S],
+        common: Common[S],
         number: int,
         walk: Walk[S],
         begin: Callable[[], Point[S]],
@@ -90,34 +90,34 @@ class Branch(Generic[S]):
 
         One that has a row already is not entered again.
         """
-        self.course, self.walk, self.begin, self.origin = course, walk, begin, origin
+        self.common, self.walk, self.begin, self.origin = common, walk, begin, origin
         self.crosses = origin is not None and origin.kind in CROSSINGS
-        self.key = course.stage, number
-        self.trace = course.atlas.begun(number, origin)
+        self.key = common.stage, number
+        self.trace = common.atlas.begun(number, origin)
         self.kinds: Counter[str] = Counter()
         self.first: Point[S] | None = None
         self.last: Point[S] | None = None
         self.branch_points: list[Point[S]] = []
         kinds = (POINT, *SPECIAL)
-        points = [point for kind in kinds for point in course.history.points(*self.key, kind)]
+        points = [point for kind in kinds for point in common.history.points(*self.key, kind)]
         for point in sorted(points, key=lambda point: point.number):
-            course.register.known(point)
+            common.register.known(point)
             self._note(point)
             if point.kind == FOLD:
                 walk.turned.append(walk.range.value(point.position))
-        self.ended = course.history.endings.get(self.key)
+        self.ended = common.history.endings.get(self.key)
 
     def points(self) -> Iterator[Point[S]]:
         """Points that are not known yet; notes how the branch ends."""
         if self.ended is None:
             yield from self._followed()
             self.ended = self.walk.ending
-        self.course.register.endings[self.key] = self.ended
+        self.common.register.endings[self.key] = self.ended
 
     @property
     def closed(self) -> bool:
         """Whether its last point is its first one again."""
-        return is_home(self.course.atlas, self.trace)
+        return self.last is not None and is_home(self.common.atlas, self.trace, self.last)
 
     def _followed(self) -> Iterator[Point[S]]:
         if self.last is None:
@@ -126,7 +126,7 @@ class Branch(Generic[S]):
             except np.linalg.LinAlgError as error:
                 self.walk.ending = Ending(False, str(error))
                 return
-            branch = self.course.atlas.known(self.last, self.trace) if self.crosses else None
+            branch = self.common.atlas.known(self.last, self.trace) if self.crosses else None
             if branch is not None:
                 self.walk.ending = Ending(True, f"is branch {branch} already")
                 return
@@ -145,13 +145,13 @@ class Branch(Generic[S]):
     def _entered(self, point: Point[S]) -> Point[S]:
         origin = None if self.origin is None else self.origin.number
         point = replace(point, origin=origin)
-        point = self.course.register.entered(point, self.course.records, self.key)
+        point = self.common.register.entered(point, self.common.records, self.key)
         self._note(point)
         return point
 
     def _note(self, point: Point[S]) -> None:
         """Keep a point of this branch."""
-        self.course.atlas.note(self.trace, point)
+        self.common.atlas.note(self.trace, point)
         self.kinds[point.kind] += 1
         if point.kind == POINT:
             self.first, self.last = self.first or point, point
@@ -160,7 +160,7 @@ class Branch(Generic[S]):
 
     def _arrived(self, point: Point[S]) -> bool:
         """Whether a point is one where known branches cross; sets the ending."""
-        there = None if point.kind == POINT else self.course.atlas.crossing_at(point)
+        there = None if point.kind == POINT else self.common.atlas.crossing_at(point)
         if there is None:
             return False
         range_ = self.walk.range
@@ -172,7 +172,7 @@ class Branch(Generic[S]):
 
     def _finished(self, point: Point[S]) -> bool:
         """Whether no more points of this branch are wanted; sets the ending."""
-        records, most = self.course.records, self.walk.range.most
+        records, most = self.common.records, self.walk.range.most
         if point.kind != POINT:
             condition = records.stopped_at(point.kind, self.kinds[point.kind])
         else:
@@ -184,7 +184,7 @@ class Branch(Generic[S]):
             return False
         elif self.closed:
             self.walk.ending = Ending(False, CLOSED)
-        elif is_idle(self.course.atlas, self.trace):
+        elif is_idle(self.common.atlas, self.trace, point):
             self.walk.ending = Ending(
                 False,
                 f"no progress: the last {IDLE_POINTS} points are less than {IDLE:g} of the first "
@@ -198,13 +198,13 @@ class Branch(Generic[S]):
             return False
         return True
 
-    def _landed(self, point: Point[S], goal: float, stride: Stride[S]) -> Stride[S]:
+    def _landed(self, point: Point[S], stride: Stride[S]) -> Stride[S]:
         """Return a step that goes no further than to a condition, or to the first point."""
-        atlas, trace = self.course.atlas, self.trace
+        atlas, trace = self.common.atlas, self.trace
         home = comes_home(atlas, trace, point, stride.following)
 
         def margins(there: Point[S]) -> Mapping[str, float]:
-            found = self.course.records.margins(there)
+            found = self.common.records.margins(there)
             return {**found, HOME: homeward(atlas, trace, there)} if home else found
 
-        return landed(self.walk.stepper, point, goal, stride, margins)
+        return landed(self.walk.equations, point, stride, margins)

@@ -16,10 +16,11 @@ import numpy as np
 
 from ribbonopt.arrays import Array
 
+from .course import COSINE
+from .metric import Metric
 from .points import CROSSINGS, POINT, Point, S
 from .protocol import Equations
-from .steps import COSINE
-from .tangents import near
+from .tangents import near, renewed
 
 SAME = 1e-4  # arclength between a place and where a branch passes it, if it does
 MET = 1e-3  # arclength between two estimates of one point where branches cross
@@ -41,7 +42,7 @@ class Trace:
     places : list of (m,) arrays
         Its points, in order.
     headings : list of (m,) arrays
-        Unit directions of the first point, and of the last.
+        Directions of the first point, and of the last.
     """
 
     branch: int
@@ -52,7 +53,10 @@ class Trace:
 
 @dataclass(eq=False)
 class Atlas(Generic[S]):
-    """All branches of one stage, and the points where they cross."""
+    """All branches of one stage, and the points where they cross.
+
+    Distances are measured by the metric of the point that is looked at.
+    """
 
     equations: Equations[S]
     traces: list[Trace] = field(default_factory=list)
@@ -77,25 +81,30 @@ class Atlas(Generic[S]):
         """Coordinates (m,) of a point."""
         return self.equations.reduced(point.solution, point.unknowns)
 
+    def metric(self, point: Point[S]) -> Metric:
+        """Return the metric at a point."""
+        return self.equations.measured(point.solution).metric
+
     def crossing_at(self, point: Point[S]) -> Point[S] | None:
         """Return the known point where branches cross that a special point is; None for none."""
-        place, metric = self.place(point), self.equations.metric
+        place, metric = self.place(point), self.metric(point)
         return next((c for c, there in self.crossings if metric.length(place - there) < MET), None)
 
     def known(self, point: Point[S], trace: Trace) -> int | None:
         """Return the number of the branch that a point is on already, apart from its own trace."""
-        place = self.place(point)
+        place, metric = self.place(point), self.metric(point)
         for other in self.traces:
             if other is trace:
                 continue
-            for ends in self._pieces(other):
-                if self._beside(place, *ends) and any(self.passes(point, end) for end in ends):
+            for ends in self._pieces(other, metric):
+                if _beside(metric, place, *ends) and any(self.passes(point, end) for end in ends):
                     return other.branch
         return None
 
     def passes(self, point: Point[S], place: Array) -> bool:
         """Whether the branch through a point passes a place, which is near."""
-        equations, metric = self.equations, self.equations.metric
+        equations = self.equations.measured(point.solution)
+        point, metric = renewed(equations, point), equations.metric
         along = equations.reduced(point.solution, point.tangent)
         arc = metric.product(place - self.place(point), along)
         guess = point.unknowns + arc * point.tangent
@@ -111,21 +120,21 @@ class Atlas(Generic[S]):
         ahead = metric.product(equations.reduced(trial.solution, tangent), along)
         return ahead > COSINE and metric.length(found - place) < SAME
 
-    def _pieces(self, trace: Trace) -> Iterator[tuple[Array, Array]]:
+    def _pieces(self, trace: Trace, metric: Metric) -> Iterator[tuple[Array, Array]]:
         """Yield the ends of the pieces of a branch; the last may lead to where branches cross."""
-        metric = self.equations.metric
         yield from pairwise([*([] if trace.origin is None else [trace.origin]), *trace.places])
         for _, there in self.crossings if trace.places else ():
             ahead = there - trace.places[-1]
             if metric.length(ahead) < REACH and metric.product(ahead, trace.headings[-1]) > 0:
                 yield trace.places[-1], there
 
-    def _beside(self, place: Array, a: Array, b: Array) -> bool:
-        """Whether a place is near the straight piece between two others."""
-        metric, piece = self.equations.metric, b - a
-        length = metric.length(piece)
-        if length == 0:
-            return False
-        share = metric.product(place - a, piece) / length**2
-        aside = metric.length(place - a - share * piece)
-        return -BEYOND < share < 1 + BEYOND and aside < ASIDE * length
+
+def _beside(metric: Metric, place: Array, a: Array, b: Array) -> bool:
+    """Whether a place is near the straight piece between two others."""
+    piece = b - a
+    length = metric.length(piece)
+    if length == 0:
+        return False
+    share = metric.product(place - a, piece) / length**2
+    aside = metric.length(place - a - share * piece)
+    return -BEYOND < share < 1 + BEYOND and aside < ASIDE * length

@@ -13,7 +13,7 @@ from typing import Generic, Protocol
 
 from ribbonopt.arrays import Array
 
-from .branches import Branch, Course, History, Register
+from .branches import Branch, Common, History, Register
 from .endless import CLOSED
 from .known import Atlas
 from .points import POINT, Point, S
@@ -93,7 +93,7 @@ class _Ways(Generic[S]):
         begin = (known[0].solution, known[0].unknowns) if known else stage.first()
         self.stage, self.solution, self.unknowns = stage, *begin
         self.equations = stage.equations(self.solution)
-        self.course = Course(number, register, stage.records, history, Atlas(self.equations))
+        self.common = Common(number, register, stage.records, history, Atlas(self.equations))
         self.branches: list[Branch[S]] = []
 
     def points(self) -> Iterator[Point[S]]:
@@ -130,6 +130,6 @@ class _Ways(Generic[S]):
         self, walk: Walk[S], begin: Callable[[], Point[S]], origin: Point[S] | None
     ) -> Branch[S]:
         """Return the next branch."""
-        branch = Branch(self.course, len(self.branches), walk, begin, origin)
+        branch = Branch(self.common, len(self.branches), walk, begin, origin)
         self.branches = [*self.branches, branch]
         return branch

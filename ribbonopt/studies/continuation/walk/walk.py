@@ -15,7 +15,7 @@ from .protocol import Equations, Range
 from .steps import DIGITS, Stepper, Stride
 from .tangents import near
 
-Land = Callable[[Point[S], float, Stride[S]], Stride[S]]  # point, goal, and the step from there
+Land = Callable[[Point[S], Stride[S]], Stride[S]]  # a point, and the step from there
 
 
 @dataclass(frozen=True)
@@ -54,7 +54,7 @@ class Walk(Generic[S]):
             if step is None:
                 self.ending = self._stuck(point)
                 return
-            step = land(point, goal, step) if land else step
+            step = land(point, step) if land else step
             for found in step.special:
                 yield found
                 if found.kind == FOLD:
