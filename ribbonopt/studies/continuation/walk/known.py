@@ -92,14 +92,16 @@ class Atlas(Generic[S]):
 
     def known(self, point: Point[S], trace: Trace) -> int | None:
         """Return the number of the branch that a point is on already, apart from its own trace."""
+        others = (other for other in self.traces if other is not trace)
+        return next((other.branch for other in others if self.leads_to(other, point)), None)
+
+    def leads_to(self, trace: Trace, point: Point[S]) -> bool:
+        """Whether a branch has been at a point."""
         place, metric = self.place(point), self.metric(point)
-        for other in self.traces:
-            if other is trace:
-                continue
-            for ends in self._pieces(other, metric):
-                if _beside(metric, place, *ends) and any(self.passes(point, end) for end in ends):
-                    return other.branch
-        return None
+        return any(
+            _beside(metric, place, *ends) and any(self.passes(point, end) for end in ends)
+            for ends in self._pieces(trace, metric)
+        )
 
     def passes(self, point: Point[S], place: Array) -> bool:
         """Whether the branch through a point passes a place, which is near."""

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator
 from dataclasses import replace
+from functools import partial
 from typing import Generic, Protocol
 
 from ribbonopt.arrays import Array
@@ -116,13 +117,11 @@ class _Ways(Generic[S]):
         level = self.branches
         for _ in range(self.stage.switch):
             known = len(self.branches)
-            for origin in [point for branch in level for point in branch.branch_points]:
+            for left, origin in [(b, point) for b in level for point in b.branch_points]:
+                itself = partial(self.common.atlas.leads_to, left.trace)
                 for sign in (1, -1):
+                    begin = partial(switched, self.equations, origin, sign, itself)
                     walk = Walk(self.equations, self.stage.range, 0)
-
-                    def begin(point: Point[S] = origin, sign: int = sign) -> Point[S]:
-                        return replace(switched(self.equations, point, sign), row={})
-
                     yield from self._branch(walk, begin, origin).points()
             level = self.branches[known:]
 
