@@ -64,7 +64,23 @@ continuation:
   - {parameter: law.B3, to: 2.5, largest: 0.2}
 """
 )
-SCENES = {"branches and stages": COLUMN, "phases and meshes": MOEBIUS, "stopped": STOPPED}
+#: both ways from a start, with what crosses; special points and conditions that end a stage
+WAYS = (
+    COLUMN[: COLUMN.index("continuation:")]
+    + """\
+continuation:
+  - {parameter: parameters.P, from: 41, to: [38.5, 42], switch: 2, largest: 2}
+  - {parameter: parameters.P, to: 45, largest: 2, stop: [shortening > 0.01, value > 43.1]}
+  - {parameter: parameters.P, to: 30, largest: 2, stop: [branch point]}
+  - {parameter: parameters.turn, values: [0, 0.05], largest: 0.02}
+"""
+)
+SCENES = {
+    "branches and stages": COLUMN,
+    "phases and meshes": MOEBIUS,
+    "stopped": STOPPED,
+    "ways": WAYS,
+}
 HEAD = [
     *("number", "stage", "branch", "origin", "parameter", "value", "kind", "negative", "error"),
     *("energy", "H0", "n0x", "n0y", "n0z", "m0x", "m0y", "m0z", "u1", "u2", "u3"),
