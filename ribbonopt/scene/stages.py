@@ -19,7 +19,7 @@ from .quantities import OUTPUTS, Shape
 GRAMMAR = RESERVED - OUTPUTS.keys()
 
 _AT = re.compile(r"(.*)\sat\s(.*)", re.DOTALL)
-_WORD = re.compile(r"[A-Za-z_]\w*")
+_WORD = re.compile(r"(?<!\w)(?<!\d\.)[A-Za-z_]\w*")  # not the exponent of a number
 _SPECIAL = re.compile(r"(?:(\d+) +)?(fold|branch point|buckling point)(s?)")
 _STOP = (
     "expected 'A > B' or 'A < B', such as 'energy > 30'; or fold, branch point, buckling point, or "

@@ -43,6 +43,7 @@ from ribbonopt.scene.stages import (
     parse_stop,
     special_stop,
     stages_of,
+    words_of,
 )
 
 HEAD = """\
@@ -495,3 +496,16 @@ def test_values_become_floats() -> None:
     assert isinstance(changed.law, Homotopy)
     assert type(changed.law.rho) is float
     assert math.isnan(value_at(with_value(SEEN, "law.rho", math.nan), "law.rho"))
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("1e9", []),
+        ("2.5E-3 + 1.e5 - .1e2", []),
+        ("shortening*1e3 + e1", ["shortening", "e1"]),
+        ("sqrt(n0z)/x2", ["n0z", "x2"]),
+    ],
+)
+def test_exponents_are_no_words(text: str, words: list[str]) -> None:
+    assert words_of(text) == words
