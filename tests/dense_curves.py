@@ -81,6 +81,12 @@ class Dense:
     def departure(self, point: Point[Unit]) -> Array | None:
         return None
 
+    def finer(self, origin: Unit, unknowns: Array) -> None:
+        return None
+
+    def enough(self, error: float, position: float) -> bool:
+        return True
+
     def restored(self, origin: Unit, unknowns: Array) -> Unit:
         return origin
 

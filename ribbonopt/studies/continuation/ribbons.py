@@ -24,6 +24,7 @@ from ribbonopt.solvers.extended import ExtendedSystem, Local, local
 from ribbonopt.solvers.newton import NewtonSolver
 from ribbonopt.studies.buckling.twin import has_twin, twin_of, twin_scene
 from ribbonopt.studies.spare import SPARE
+from ribbonopt.transcription import Mesh
 
 from .along import NEXT_TO_FOLD, error_along
 from .buckled import StageBuckling
@@ -149,6 +150,22 @@ class RibbonEquations:
             return None
         curve = Curve(twin_scene(self.curve.scene), self.curve.stage)
         return RibbonEquations(twin_of(curve.scene_at(curve.start)), curve, self.metric)
+
+    def finer(self, origin: Solution, unknowns: Array) -> tuple[Solution, Array] | None:
+        """Return a solution of known unknowns on halved elements, None without a tolerance."""
+        if self.curve.scene.tolerance is None:
+            return None
+        mesh = Mesh(tuple(np.repeat(widths / 2, 2) for widths in origin.mesh.phases))
+        search = self.prepared.search(self.curve.posed_at(float(unknowns[-1])))
+        found = self.restored(origin, unknowns)
+        attempt = search.on_mesh(origin.sheets, mesh, found.trajectory.ends[1:-1])
+        w = attempt.unknowns(found)
+        return attempt.restored(w), np.append(w, unknowns[-1])
+
+    def enough(self, error: float, position: float) -> bool:
+        """Whether the position of a special point is as exact as asked."""
+        tolerance = self.curve.scene.tolerance
+        return tolerance is None or error <= tolerance * max(abs(position), STEEP * self.curve.span)
 
     def restored(self, origin: Solution, unknowns: Array) -> Solution:
         """Return a solution of known unknowns on the mesh and in the phases of another."""

@@ -104,6 +104,12 @@ class FoldLocus:
     def departure(self, point: Point[None]) -> None:
         return None
 
+    def finer(self, origin: None, unknowns: Array) -> None:
+        return None
+
+    def enough(self, error: float, position: float) -> bool:
+        return True
+
     def restored(self, origin: None, unknowns: Array) -> None:
         return None
 

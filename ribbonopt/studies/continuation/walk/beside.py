@@ -99,8 +99,12 @@ class Beside(Generic[S]):
         length = self.equations.metric.length(self.equations.reduced(self.a.solution, found))
         return np.asarray(found / length)
 
-    def root(self, test: Callable[[Probe[S]], float]) -> tuple[float, float] | None:
-        """Return the arclength where a test function vanishes, and its last change, or None.
+    def reach(self, arc: float) -> float:
+        """Distance from an arclength, on both sides of which the branch is known."""
+        return min(arc - min(self.known), max(self.known) - arc)
+
+    def root(self, test: Callable[[Probe[S]], float]) -> float | None:
+        """Return the arclength where a test function vanishes, None where that is not found.
 
         The function has values of opposite sign at both ends.
         """
@@ -114,7 +118,10 @@ class Beside(Generic[S]):
             values |= {probe.arc: test(probe) for probe in probes}
             found = _polynomial_root(probes, values, centre, 4 * spacing)
             if found is None:
-                low, high = _bracket(values)
+                bracket = _bracket(values)
+                if bracket is None:
+                    return None
+                low, high = bracket
                 centre, spacing = (low + high) / 2, (high - low) / 7
                 if spacing < 1e-3 * NARROWEST:
                     return None
@@ -126,7 +133,7 @@ class Beside(Generic[S]):
             if narrower == spacing and change <= DOUBTED:
                 break  # rounding: no spacing tells it better
             spacing = narrower
-        return (centre, change) if change <= DOUBTED else None
+        return centre if change <= DOUBTED else None
 
     def _known(self, arc: float, point: Point[S]) -> Probe[S]:
         found, tangent = near(self.equations, point.solution, point.unknowns, self.along)
@@ -148,10 +155,10 @@ def _crossing(values: dict[float, float]) -> float:
     return a + part * (b - a)
 
 
-def _bracket(values: dict[float, float]) -> tuple[float, float]:
-    """Neighbours between which a function changes its sign."""
+def _bracket(values: dict[float, float]) -> tuple[float, float] | None:
+    """Neighbours between which a function changes its sign, None for none."""
     places = sorted(values)
-    return next((a, b) for a, b in pairwise(places) if values[a] * values[b] <= 0)
+    return next(((a, b) for a, b in pairwise(places) if values[a] * values[b] <= 0), None)
 
 
 def _polynomial_root(

@@ -41,6 +41,8 @@ class Point(Generic[S]):
         What is to be told of it: how it is other than the continuation of the point before.
     origin : int or None
         Number of the point where its branch leaves another; None on the first branch.
+    error : float or None
+        Of the position of a special point, a bound; None where it is not known.
     """
 
     solution: S
@@ -55,6 +57,7 @@ class Point(Generic[S]):
     row: Mapping[str, Any] = field(default_factory=dict)
     note: str = ""
     origin: int | None = None
+    error: float | None = None
 
     @property
     def position(self) -> float:

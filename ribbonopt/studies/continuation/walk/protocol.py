@@ -124,6 +124,15 @@ class Equations(Protocol[S]):
     def departure(self, point: Point[S]) -> Array | None:
         """Direction (n + k,) of a branch that crosses there, None for the null direction."""
 
+    def finer(self, origin: S, unknowns: Array) -> tuple[S, Array] | None:
+        """Return a solution and its unknowns in a layout twice as fine, not corrected there.
+
+        None where there is none, or none is asked for.
+        """
+
+    def enough(self, error: float, position: float) -> bool:
+        """Whether the position of a special point is known well enough."""
+
     def restored(self, origin: S, unknowns: Array) -> S:
         """Return a solution of known unknowns in the layout of another."""
 

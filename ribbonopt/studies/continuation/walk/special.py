@@ -2,17 +2,22 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, replace
-from typing import Generic
+from typing import Any, Generic
 
 import numpy as np
 
-from .beside import Beside, Probe
+from .beside import ENOUGH, Beside, Probe
 from .points import BRANCH_POINT, FOLD, Point, S
 from .protocol import Equations
+from .switching import named
+from .tangents import near
 
 ONE = 1e-6  # arclength within which a fold and a branch point are one: a pitchfork from its side
 FROM_THE_SIDE = "pitchfork, met from its side branch"
+ASIDE = 0.03  # arclength on both sides of a special point, between which it is found again
+MESHES = 3  # on finer meshes, at most
 
 
 @dataclass(frozen=True, eq=False)
@@ -33,40 +38,53 @@ def special_points(equations: Equations[S], a: Point[S], b: Point[S]) -> Special
 
     A test function that changes its sign without a root that is found is named in `unresolved`.
     """
-    turns, crosses = a.tangent[-1] * b.tangent[-1] < 0, a.sign * b.sign < 0
-    if not (turns or crosses):
+    kinds = _changed(a, b)
+    if not kinds:
         return Special([])
     try:
         beside = Beside(equations, a, b)
+        found = {kind: beside.root(TESTS[kind](beside)) for kind in kinds}
     except np.linalg.LinAlgError:
-        changed = tuple(k for k, is_ in ((FOLD, turns), (BRANCH_POINT, crosses)) if is_)
-        return Special([], changed, len(changed))
-    origin = beside.ends[0].near.log
-
-    def determinant(probe: Probe[S]) -> float:
-        return probe.near.sign * float(np.exp(probe.near.log - origin))
-
-    arcs, unresolved = {}, []
-    if turns:
-        arcs[FOLD] = beside.root(lambda probe: float(probe.tangent[-1]))
-    if crosses:
-        arcs[BRANCH_POINT] = beside.root(determinant)
-    found = {}
-    for kind, root in arcs.items():
-        if root is None:
-            unresolved.append(kind)
-        else:
-            found[kind] = root[0]
+        return Special([], kinds, len(kinds))
+    unresolved = tuple(kind for kind, arc in found.items() if arc is None)
+    arcs = {kind: arc for kind, arc in found.items() if arc is not None}
     note = ""
-    if len(found) == 2 and abs(found[FOLD] - found[BRANCH_POINT]) < ONE:
-        del found[FOLD]
+    if len(arcs) == 2 and abs(arcs[FOLD] - arcs[BRANCH_POINT]) < ONE:
+        del arcs[FOLD]
         note = FROM_THE_SIDE
-    ordered = sorted(found.items(), key=lambda item: item[1])
-    points = [_point(beside, kind, arc, note) for kind, arc in ordered]
-    return Special(points, tuple(unresolved), len(arcs))
+    points = []
+    for kind, arc in sorted(arcs.items(), key=lambda item: item[1]):
+        point = _on_finer_meshes(equations, beside, _point(beside, kind, arc), arc)
+        if kind == BRANCH_POINT:
+            point = replace(point, note=note or named(equations, point))
+        points.append(point)
+    return Special(points, unresolved, len(kinds))
 
 
-def _point(beside: Beside[S], kind: str, arc: float, note: str) -> Point[S]:
+def _changed(a: Point[S], b: Point[S]) -> tuple[str, ...]:
+    """Kinds of points whose test functions change their sign."""
+    turns, crosses = a.tangent[-1] * b.tangent[-1] < 0, a.sign * b.sign < 0
+    return tuple(kind for kind, is_ in ((FOLD, turns), (BRANCH_POINT, crosses)) if is_)
+
+
+def _turning(beside: Beside[S]) -> Callable[[Probe[S]], float]:
+    """Test function of folds."""
+    return lambda probe: float(probe.tangent[-1])
+
+
+def _determinant(beside: Beside[S]) -> Callable[[Probe[S]], float]:
+    """Test function of branch points, relative to its value at the first point."""
+    origin = beside.ends[0].near.log
+    return lambda probe: probe.near.sign * float(np.exp(probe.near.log - origin))
+
+
+TESTS: Mapping[str, Callable[[Beside[Any]], Callable[[Probe[Any]], float]]] = {
+    FOLD: _turning,
+    BRANCH_POINT: _determinant,
+}
+
+
+def _point(beside: Beside[S], kind: str, arc: float) -> Point[S]:
     unknowns = beside.unknowns(arc)
     return replace(
         beside.a,
@@ -74,5 +92,63 @@ def _point(beside: Beside[S], kind: str, arc: float, note: str) -> Point[S]:
         unknowns=unknowns,
         tangent=beside.tangent(arc),
         kind=kind,
-        note=note,
+        note="",
+        error=None,
     )
+
+
+def _on_finer_meshes(
+    equations: Equations[S], beside: Beside[S], point: Point[S], arc: float
+) -> Point[S]:
+    """Find a special point again in finer layouts, until that moves it little enough."""
+    for _ in range(MESHES):
+        try:
+            again = _finer(equations, beside, point, arc)
+        except np.linalg.LinAlgError:
+            again = None
+        if again is None:
+            return point
+        beside, arc = again
+        found = _point(beside, point.kind, arc)
+        # Of the coarser of the two, and so a bound of that of the finer.
+        error = abs(found.position - point.position)
+        point = replace(found, error=error)
+        if equations.enough(error, point.position):
+            break
+    return point
+
+
+def _finer(
+    equations: Equations[S], beside: Beside[S], point: Point[S], arc: float
+) -> tuple[Beside[S], float] | None:
+    """Return the branch on both sides of a special point in a finer layout, and where it is."""
+    sides, aside = [], min(ASIDE, beside.reach(arc))
+    for place in (arc - aside, arc + aside):
+        finer = equations.finer(beside.a.solution, beside.unknowns(place))
+        ahead = equations.finer(beside.a.solution, beside.unknowns(place + (arc - place) / 3))
+        if finer is None or ahead is None:
+            return None
+        solution, unknowns = finer
+        way = np.sign(arc - place) * (ahead[1] - unknowns)
+        tangent = way / equations.metric.length(equations.reduced(solution, way))
+        guess = replace(point, solution=solution, unknowns=unknowns, tangent=tangent)
+        trial = equations.correct_along(guess, tangent, 0.0, unknowns, ENOUGH)
+        if not trial.converged:
+            return None
+        along = equations.reduced(trial.solution, tangent)
+        found, tangent = near(equations, trial.solution, trial.unknowns, along)
+        sides.append(
+            replace(
+                point,
+                solution=trial.solution,
+                unknowns=trial.unknowns,
+                tangent=tangent,
+                sign=found.sign,
+            )
+        )
+    a, b = sides
+    if point.kind not in _changed(a, b):
+        return None
+    beside = Beside(equations, a, b)
+    root = beside.root(TESTS[point.kind](beside))
+    return None if root is None else (beside, root)

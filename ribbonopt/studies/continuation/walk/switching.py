@@ -15,6 +15,8 @@ from .tangents import near, renewed
 
 AWAY, LEAST_AWAY = 0.05, 1e-4  # arclength of the first step onto a branch that crosses
 BACK = 0.3  # of that: most that accuracy may move its end by
+MOVES = 1e-3  # least change of the position, as one counts, over the square of the arclength
+PITCHFORK, TRANSCRITICAL = "pitchfork", "transcritical"
 BESIDE = (0.0, 1e-12, 1e-10, 1e-8)  # arclength from a point where equations are nearly singular
 
 
@@ -37,7 +39,8 @@ def switched(
     while away > LEAST_AWAY:
         guess = point.unknowns + away * direction
         trial = equations.correct_along(point, direction, away, guess)
-        if trial.converged:
+        off = equations.metric.length(equations.reduced(point.solution, trial.unknowns - guess))
+        if trial.converged and off < away:
             there = equations.reduced(trial.solution, trial.unknowns)
             ahead = there - equations.reduced(point.solution, point.unknowns)
             trial = equations.finished(point, trial)
@@ -57,6 +60,7 @@ def switched(
                 kind=POINT,
                 note=trial.note,
                 row={},
+                error=None,
             )
             if not itself(first):
                 return first
@@ -65,6 +69,31 @@ def switched(
     if own is not None:
         return own
     raise np.linalg.LinAlgError("no point was found on the branch that crosses")
+
+
+def named(equations: Equations[S], point: Point[S]) -> str:
+    """Say what crosses at a branch point: a pitchfork, a transcritical branch, or "" for unknown.
+
+    At a pitchfork the position turns on the branch that crosses.
+    """
+    try:
+        direction = null_direction(equations, point)
+    except np.linalg.LinAlgError:
+        return ""
+    for away in (AWAY / 8, AWAY / 32):
+        moved = []
+        for sign in (1, -1):
+            guess = point.unknowns + sign * away * direction
+            trial = equations.correct_along(point, sign * direction, away, guess)
+            off = equations.metric.length(equations.reduced(point.solution, trial.unknowns - guess))
+            if trial.converged and off < away:
+                moved.append(float(trial.unknowns[-1]) - point.position)
+        if len(moved) == 2:
+            least = MOVES * away**2 * equations.metric.sizes[-1]
+            if min(abs(change) for change in moved) < least:
+                return ""
+            return PITCHFORK if moved[0] * moved[1] > 0 else TRANSCRITICAL
+    return ""
 
 
 def null_direction(equations: Equations[S], point: Point[S]) -> Array:
