@@ -221,6 +221,26 @@ def test_branches_know_where_they_left(ring: Run) -> None:
     assert {point.origin for point in ring.points if point.branch == 0} == {None}
 
 
+@pytest.mark.parametrize("radius", [0.2, 0.04, 0.01])
+def test_small_branches_are_begun_near_to_where_they_leave(radius: float) -> None:
+    small = Dense(
+        lambda z: np.array([z[0] * (z @ z - radius**2)]),
+        lambda z: np.array([[z @ z - radius**2 + 2 * z[0] ** 2, 2 * z[0] * z[1]]]),
+        Metric(np.ones(2)),
+    )
+    range_ = Straight(-1, (1,), 0.6 * radius, first=0.6 * radius, smallest=1e-6 * radius, most=999)
+    found = run([stage(small, range_, [0, -1], switch=1)])
+    np.testing.assert_allclose(found.of(BRANCH_POINT), [[0, -radius], [0, radius]], atol=1e-9)
+    for branch, sign in ((1, 1), (2, -1)):
+        z = np.array(found.of(branch=branch))
+        np.testing.assert_allclose(np.linalg.norm(z, axis=1), radius, rtol=1e-9)
+        assert (sign * z[:, 0] > 0).all()
+    assert sorted(found.endings[0, branch].reason for branch in (3, 4)) == [
+        "is branch 1 already",
+        "is branch 2 already",
+    ]
+
+
 @pytest.mark.parametrize(("depth", "branches"), [(0, 1), (1, 3), (2, 5), (3, 5)])
 def test_branches_of_branches_are_followed_as_deep_as_asked(depth: int, branches: int) -> None:
     found = run([stage(TWICE, Straight(-1, (3,), 0.2), [0, 0, -1], switch=depth)])

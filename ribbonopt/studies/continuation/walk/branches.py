@@ -160,7 +160,7 @@ class Branch(Generic[S]):
 
     def _arrived(self, point: Point[S]) -> bool:
         """Whether a point is one where known branches cross; sets the ending."""
-        there = None if point.kind == POINT else self.common.atlas.crossing_at(point)
+        there = self.common.atlas.crossing_at(point) if point.kind in CROSSINGS else None
         if there is None:
             return False
         range_ = self.walk.range

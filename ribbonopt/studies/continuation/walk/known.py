@@ -23,7 +23,7 @@ from .protocol import Equations
 from .tangents import near, renewed
 
 SAME = 1e-4  # arclength between a place and where a branch passes it, if it does
-MET = 1e-3  # arclength between two estimates of one point where branches cross
+MET = 1e-4  # arclength between two estimates of one point where branches cross
 ASIDE = 0.35  # of a piece between two points: most that a branch is off the straight line
 BEYOND = 0.01  # of a piece: most that a place is beyond its ends
 REACH = 1.0  # arclength of a last piece, to where branches cross
@@ -86,7 +86,7 @@ class Atlas(Generic[S]):
         return self.equations.measured(point.solution).metric
 
     def crossing_at(self, point: Point[S]) -> Point[S] | None:
-        """Return the known point where branches cross that a special point is; None for none."""
+        """Return the known point where branches cross that one is; None for none."""
         place, metric = self.place(point), self.metric(point)
         return next((c for c, there in self.crossings if metric.length(place - there) < MET), None)
 
