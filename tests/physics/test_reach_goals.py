@@ -6,7 +6,8 @@ from dataclasses import replace
 
 import pytest
 
-from ribbonopt.errors import ModelError
+from ribbonopt.errors import ConvergenceError, ModelError
+from ribbonopt.pipeline.prepared import solve
 from ribbonopt.problem.wellposed.reach import refuse_far_goals
 from ribbonopt.scene import Scene, loads_scene
 
@@ -112,3 +113,13 @@ def test_stages_begin_where_the_ones_before_have_led() -> None:
     assert error.key == "continuation.1.to"
     assert limit_of(error) == pytest.approx(0.6, rel=1e-9)
     refuse_far_goals(scene(stages.replace("0.9", "0.8") % 0.59, "w", "d"))
+
+
+def test_no_ribbon_is_straight_across_its_clamps() -> None:
+    text = (CLAMPED % ("0.6", "0.8", "")).replace("continuation: \n", "")
+    with pytest.raises(ConvergenceError, match="would have to be straight, but its directors"):
+        solve(loads_scene(text))
+    along = text.replace("identity", "{turns: [{x: -0.6435011087932844}]}")
+    # straight, so that it is another matter what its loads are
+    with pytest.raises(ConvergenceError, match="straight and without stress"):
+        solve(loads_scene(along))

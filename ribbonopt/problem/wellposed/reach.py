@@ -35,6 +35,20 @@ def refuse_far_goals(scene: Scene) -> None:
         scene = scene if last is None else with_value(scene, stage.parameter, last)
 
 
+def held_along(scene: Scene) -> bool:
+    """Whether the tangents at the ends may be along the line between them."""
+    ends = scene.boundary.start, scene.boundary.end
+    first, last = (components(end.position, scene.parameters) for end in ends)
+    if len(first) < len("xyz") or len(last) < len("xyz"):
+        return True
+    line = np.array([last[axis] - first[axis] for axis in "xyz"])
+    line = line / np.linalg.norm(line)
+    frames = [frame_of(end, scene.parameters) for end in ends]
+    return all(
+        frame is None or float(np.linalg.norm(frame[:, 2] - line)) < PARALLEL for frame in frames
+    )
+
+
 def _goals(stage: ContinuationStage, path: KeyPath) -> list[tuple[KeyPath, float]]:
     """Return where a stage goes to, each with its key."""
     if stage.values:
@@ -60,7 +74,7 @@ def _refuse_far(
     beyond = np.flatnonzero(found < -ROUNDING)
     there = with_value(scene, name, end)
     if not len(beyond):
-        if abs(slack(end)) > ROUNDING or _along(there):
+        if abs(slack(end)) > ROUNDING or held_along(there):
             return
         limit = end
     else:
@@ -116,17 +130,3 @@ def _slack(scene: Scene) -> float:
     """Return the share of its length by which a ribbon is longer than its ends are apart."""
     length = scene.interval[1] - scene.interval[0]
     return float(1 - gap_between_ends(scene) / length)
-
-
-def _along(scene: Scene) -> bool:
-    """Whether the tangents at the ends may be along the line between them."""
-    ends = scene.boundary.start, scene.boundary.end
-    first, last = (components(end.position, scene.parameters) for end in ends)
-    if len(first) < len("xyz") or len(last) < len("xyz"):
-        return True
-    line = np.array([last[axis] - first[axis] for axis in "xyz"])
-    line = line / np.linalg.norm(line)
-    frames = [frame_of(end, scene.parameters) for end in ends]
-    return all(
-        frame is None or float(np.linalg.norm(frame[:, 2] - line)) < PARALLEL for frame in frames
-    )
