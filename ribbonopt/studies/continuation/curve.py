@@ -12,6 +12,7 @@ from ribbonopt.arrays import Array
 from ribbonopt.problem import BoundaryValueProblem, Posed
 from ribbonopt.scene import ContinuationStage, Scene
 from ribbonopt.scene.lens import with_value
+from ribbonopt.scene.stages import ends_of
 from ribbonopt.scene.units import Units
 from ribbonopt.solution.solution import Solution
 from ribbonopt.solvers.extended import Line
@@ -45,20 +46,35 @@ class Curve:
     _posed: dict[float, Posed] = field(default_factory=dict)
 
     @property
-    def start(self) -> float:
+    def begin(self) -> float:
         """Position where the stage begins."""
         assert self.stage.from_ is not None
         return self.position(self.stage.from_)
 
     @property
+    def start(self) -> float:
+        """Position of the end that is not the last: where the stage begins, or goes first."""
+        to = self.stage.to
+        return self.position(to[0]) if isinstance(to, tuple) else self.begin
+
+    @property
     def goals(self) -> tuple[float, ...]:
         """Positions that must be met exactly, in order; the last is the end."""
-        values = self.stage.values or (self.stage.to,)
-        return tuple(self.position(value) for value in values if value is not None)
+        return tuple(
+            self.position(value) for value in self.stage.values or ends_of(self.stage)[-1:]
+        )
+
+    @property
+    def ways(self) -> tuple[Curve, ...]:
+        """The curve in each direction that is followed from where it begins."""
+        if not isinstance(self.stage.to, tuple):
+            return (self,)
+        back = replace(self.stage, to=self.stage.to[::-1])
+        return Curve(self.scene, back, self.units), self
 
     @property
     def span(self) -> float:
-        """Distance from the start to the end."""
+        """Distance from end to end."""
         return abs(self.goals[-1] - self.start)
 
     @property
@@ -106,7 +122,7 @@ class Curve:
 
     def value(self, position: float) -> float:
         """Value of the parameter, exactly that of the scene file where it names one."""
-        named = (self.stage.from_, self.stage.to, *(self.stage.values or ()))
+        named = (self.stage.from_, *ends_of(self.stage), *(self.stage.values or ()))
         for value in named:
             if value is not None and self.position(value) == position:
                 return value
