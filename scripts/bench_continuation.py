@@ -29,6 +29,7 @@ from ribbonopt.scene import Scene, load_scene
 from ribbonopt.solvers.newton import NewtonSolver
 from ribbonopt.studies.continuation import recorded
 from ribbonopt.studies.continuation.continuation import Continuation
+from ribbonopt.studies.continuation.recorded import value_of
 from ribbonopt.studies.continuation.walk import steps
 
 CONFIGS = Path(__file__).resolve().parent.parent / "configs"
@@ -135,7 +136,7 @@ def summary(
 def slope(rows: list[dict[str, Any]], least: float) -> float:
     """Order of u2(0) - limit in the parameter, from the smaller half of its values."""
     rows = [row for row in rows if row["kind"] == "point"]
-    pairs = [(row["value"], abs(row["u2"] - LIMIT)) for row in rows[len(rows) // 2 :]]
+    pairs = [(value_of(row), abs(row["u2"] - LIMIT)) for row in rows[len(rows) // 2 :]]
     known = np.log([pair for pair in pairs if pair[1] > 10 * least * LIMIT])
     return float(np.polyfit(known[:, 0], known[:, 1], 1)[0])
 
@@ -172,7 +173,7 @@ def draw(epsilon: list[dict[str, Any]], delta: list[dict[str, Any]], path: Path)
         (delta, "s-", "#c0501a", "variational, delta"),
     )
     for rows, mark, colour, label in curves:
-        values = np.array([(row["value"], row["u2"]) for row in rows if row["kind"] == "point"])
+        values = np.array([(value_of(row), row["u2"]) for row in rows if row["kind"] == "point"])
         left.semilogx(*values.T, mark, ms=3.5, color=colour, label=label)
         gap = np.abs(values[:, 1] - LIMIT)
         right.loglog(values[:, 0], gap, mark, ms=3.5, color=colour, label=label)

@@ -64,8 +64,11 @@ def _place(options: argparse.Namespace, error: ModelError) -> str:
     """File and line of the key that an error blames."""
     from ribbonopt.scene import locate
 
-    where = locate(options.scene, options.set, error.key) if error.key else ""
-    return f"{options.scene}, {where}" if where else str(options.scene)
+    scene = getattr(options, "scene", None)
+    if scene is None:  # of a folder, or of a study
+        return str(getattr(options, "result", None) or ", ".join(options.study))
+    where = locate(scene, options.set, error.key) if error.key else ""
+    return f"{scene}, {where}" if where else str(scene)
 
 
 def _fail(options: argparse.Namespace, error: str, status: str, code: int) -> int:

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 
 from ribbonopt.errors import SceneError
+from ribbonopt.studies.continuation.columns import COLUMNS, HINT
 from ribbonopt.version import VERSION
 
 
@@ -56,14 +57,17 @@ def parser() -> argparse.ArgumentParser:
     follow = verbs.add_parser(
         "continue",
         help="follow a scene's equilibria as a parameter moves (its `continuation`)",
-        formatter_class=_help,
+        formatter_class=_help_as_written,
+        epilog=_branch_columns(),
     )
     _scene(follow)
-    follow.add_argument("--out", metavar="DIR", help="folder of the branch (default: results/NAME)")
+    follow.add_argument(
+        "--out", metavar="DIR", help="folder of the branch (default: results/NAME-branch)"
+    )
     follow.add_argument("--resume", action="store_true", help="go on with the branch in the folder")
     _columns(
         follow,
-        "draw what is recorded, such as value:energy u2:energy, and ribbons along the branch",
+        "draw columns, such as law.epsilon:energy u2:energy, and ribbons along the branch",
     )
 
     batch = verbs.add_parser(
@@ -104,6 +108,20 @@ def _columns(verb: argparse.ArgumentParser, words: str) -> None:
 def _help(prog: str) -> argparse.HelpFormatter:
     # A given width spares the import that asks the terminal for its own.
     return argparse.HelpFormatter(prog, width=100)
+
+
+def _help_as_written(prog: str) -> argparse.HelpFormatter:
+    return argparse.RawDescriptionHelpFormatter(prog, width=100)
+
+
+def _branch_columns() -> str:
+    from textwrap import fill
+
+    lines = [
+        fill(text, 98, initial_indent=f"  {name:16}", subsequent_indent=" " * 18)
+        for name, text in COLUMNS.items()
+    ]
+    return "\n".join(["columns of a branch:", *lines, "", fill(HINT, 98)])
 
 
 def _scene(verb: argparse.ArgumentParser) -> None:

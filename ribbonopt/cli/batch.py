@@ -5,7 +5,6 @@ from __future__ import annotations
 import argparse
 import gc
 import sys
-import time
 from collections import Counter
 from collections.abc import Sequence
 from contextlib import closing
@@ -15,7 +14,8 @@ from typing import TYPE_CHECKING, Any
 from ribbonopt.errors import SceneError
 
 from .arguments import count
-from .common import INTERRUPTED, NOT_CONVERGED, pairs_of, print_json
+from .common import INTERRUPTED, NOT_CONVERGED, default_folder, pairs_of, print_json
+from .progress import ProgressLine
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -23,7 +23,6 @@ if TYPE_CHECKING:
     from ribbonopt.studies.batch.files import BatchFolder
 
 HUGE = 100_000  # ribbons, beyond which a study may be a mistake
-OFTEN = 0.1  # seconds between two pictures of the bar
 
 
 def batch(options: argparse.Namespace) -> int:
@@ -44,7 +43,9 @@ def batch(options: argparse.Namespace) -> int:
         from ribbonopt.studies.batch.cluster import check_cluster
 
         check_cluster(options.scheduler)  # before anything is written
-    folder = BatchFolder(options.out or f"results/{study.name}", study, resume=options.resume)
+    folder = BatchFolder(
+        options.out or default_folder(study.name, "batch"), study, resume=options.resume
+    )
     rows = run_batch(
         study,
         jobs=jobs,
@@ -52,12 +53,13 @@ def batch(options: argparse.Namespace) -> int:
         known=folder.known,
         folder=str(folder.folder.absolute()),
     )
-    bar = _Bar(study.count, folder)
+    line, before = ProgressLine(quiet=options.quiet), len(folder.rows)
     try:
-        with closing(folder), closing(rows), closing(bar):
+        with closing(folder), closing(rows), closing(line):
             for row in rows:
                 folder.append(row)
-                bar.show()
+                if line.due or len(folder.rows) == study.count:
+                    line.show(_progress(folder, line.rate(len(folder.rows) - before)))
         _draw(study.name, study.count, study.keys, folder.rows, folder.folder, pairs)
     except KeyboardInterrupt:
         print(
@@ -85,7 +87,10 @@ def _known(pairs: list[tuple[str, str]], columns: Sequence[str]) -> None:
             from ribbonopt.scene.faults import suggestion
 
             near = suggestion(name, columns)
-            raise SceneError(f"--plot: rows have no column {name!r}{near} (table.csv has them all)")
+            known = ", ".join(columns)
+            raise SceneError(
+                f"--plot: found {name!r}, expected a column of the rows{near}: {known}"
+            )
 
 
 def _draw(
@@ -152,25 +157,8 @@ def _noted(folder: BatchFolder) -> str:
     return f"  note: {count} fell back (column note); number {first['number']}: {first['note']}\n"
 
 
-class _Bar:
-    """Progress on a terminal: done, failed, rate, time left."""
-
-    def __init__(self, total: int, folder: BatchFolder) -> None:
-        self.total, self.folder, self.width = total, folder, 0
-        self.before, self.started, self.shown = len(folder.rows), time.perf_counter(), 0.0
-        self.wanted = sys.stderr.isatty()
-
-    def show(self) -> None:
-        now, done = time.perf_counter(), len(self.folder.rows)
-        if not self.wanted or (now - self.shown < OFTEN and done < self.total):
-            return
-        self.shown = now
-        rate = (done - self.before) / max(now - self.started, 1e-9)
-        left = f"{timedelta(seconds=round((self.total - done) / rate))} left"
-        line = f"{done}/{self.total} done, {self.folder.failed} failed, {rate:.1f}/s, {left}"
-        print("\r" + line.ljust(self.width), end="", file=sys.stderr, flush=True)
-        self.width = len(line)
-
-    def close(self) -> None:
-        if self.width:
-            print("\r" + " " * self.width + "\r", end="", file=sys.stderr, flush=True)
+def _progress(folder: BatchFolder, rate: float) -> str:
+    """Return how far a batch is: done, failed, rows a second, time left."""
+    done, total = len(folder.rows), folder.study.count
+    left = f"{timedelta(seconds=round((total - done) / rate))} left"
+    return f"{done}/{total} done, {folder.failed} failed, {rate:.1f}/s, {left}"

@@ -31,6 +31,14 @@ def load(options: argparse.Namespace) -> tuple[Scene, float]:
     return scene, (reading - start) + (time.perf_counter() - read)
 
 
+def default_folder(name: str, verb: str) -> str:
+    """Return the folder of what a verb makes of a scene, where no other is asked for.
+
+    The branch of a scene stands beside its solution.
+    """
+    return f"results/{name}{'-branch' if verb == 'continue' else ''}"
+
+
 def pairs_of(texts: list[str] | None) -> list[tuple[str, str]] | None:
     """Read the X:Y of `--plot`; None where no figure is wanted."""
     if texts is None:
@@ -39,7 +47,7 @@ def pairs_of(texts: list[str] | None) -> list[tuple[str, str]] | None:
     for text in texts:
         x, colon, y = text.partition(":")
         if not (x and colon and y):
-            raise SceneError(f"--plot: found {text!r}; expected X:Y, such as value:energy")
+            raise SceneError(f"--plot: found {text!r}; expected X:Y, such as law.epsilon:energy")
         pairs.append((x, y))
     return pairs
 

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 
 from ribbonopt.errors import SceneError
 
-from .common import NOT_CONVERGED, load, pairs_of, print_json, say_left_out
+from .common import NOT_CONVERGED, default_folder, load, pairs_of, print_json, say_left_out
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -28,7 +28,7 @@ def solve(options: argparse.Namespace) -> int:
     from ribbonopt.output.staging import staged_result
 
     # Claimed before solving, so that a folder that cannot be written costs no solve.
-    with staged_result(options.out or f"results/{scene.name}") as stage:
+    with staged_result(options.out or default_folder(scene.name, "solve")) as stage:
         solution = solve(scene)
         exports: list[Export] = []
         if options.plot:
@@ -119,6 +119,11 @@ def plot(options: argparse.Namespace) -> int:
         raise SceneError(
             f"--plot: {result} is no branch and no batch, whose columns could be drawn"
         )
+    elif not result.is_dir():
+        beside = Path(f"{result}-branch")
+        near = f"; did you mean {beside}?" if beside.is_dir() else ""
+        wanted = "expected one written by ribbonopt solve, continue or batch"
+        raise SceneError(f"{result}: no such folder; {wanted}{near}")
     else:
         solution = load_solution(result)
         paths, left_out = draw_figures(solution, picture_folder(options.out or result))

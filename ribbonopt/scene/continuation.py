@@ -44,7 +44,8 @@ class ContinuationStage:
         Whether the branches that cross are followed, in both directions; 2 for those as well that
         cross them, and so on.
     stability
-        Whether negative directions are counted where the scene is conservative.
+        Whether negative directions are counted where the scene is conservative; `eigenvalue` if the
+        smallest eigenvalue of the second variation is recorded besides, as `softest`.
     """
 
     parameter: str
@@ -59,4 +60,9 @@ class ContinuationStage:
     stop: tuple[str, ...] = ()
     special: bool = True
     switch: bool | Annotated[int, Bounds(ge=0)] = False
-    stability: bool = True
+    stability: bool | Literal["eigenvalue"] = True
+
+    @property
+    def measured(self) -> bool:
+        """Whether the smallest eigenvalue of the second variation is recorded."""
+        return self.stability == "eigenvalue"

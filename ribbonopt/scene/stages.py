@@ -19,7 +19,7 @@ from .quantities import OUTPUTS, Shape
 GRAMMAR = RESERVED - OUTPUTS.keys()
 
 _AT = re.compile(r"(.*)\sat\s(.*)", re.DOTALL)
-_WORD = re.compile(r"(?<!\w)(?<!\d\.)[A-Za-z_]\w*")  # not the exponent of a number
+_WORD = re.compile(r"(?<![\w.])[A-Za-z_]\w*(?:\.[A-Za-z_]\w*)*")  # not the e of 1e3
 _SPECIAL = re.compile(r"(?:(\d+) +)?(fold|branch point|buckling point)(s?)")
 _STOP = (
     "expected 'A > B' or 'A < B', such as 'energy > 30'; or fold, branch point, buckling point, or "
@@ -147,5 +147,5 @@ def parse_scalar(text: str, names: Mapping[str, Shape]) -> None:
 
 
 def words_of(text: str) -> list[str]:
-    """Return the words of a formula that are not its grammar's own: names of quantities."""
+    """Return the words of a formula that are not its grammar's own: names, dotted paths."""
     return [word for word in _WORD.findall(text) if word not in GRAMMAR]

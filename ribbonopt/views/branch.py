@@ -1,15 +1,14 @@
-"""Figures of a branch of equilibria: quantities against the parameter.
+"""Figures of a branch of equilibria: quantities against the parameter, and ribbons along it.
 
-Points are plain mappings, one for each accepted point in order: `stage`, `branch`, `parameter` (a
-dotted path), `value`, `kind`, `negative` (negative directions, None unknown) and quantities.
+Curves go smoothly through the points of one branch; special points and ribbons that are pictured
+bear the numbers of their rows.
 """
 
 from __future__ import annotations
 
 import math
-from collections.abc import Collection, Sequence
+from collections.abc import Collection, Mapping, Sequence
 from functools import partial
-from itertools import pairwise
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -18,194 +17,207 @@ import numpy as np
 from ribbonopt.plain import Row, Rows
 from ribbonopt.solution.solution import Solution
 
+from .branch_axes import COUNTS, dress, label, unit_of
+from .branch_numbers import write_numbers
+from .branch_rows import KINK, POINT, BranchFigure, Piece, Plane
+from .branch_style import DOT, STYLES, UNKNOWN, mark_of, marks_of, state_of
 from .columns import ColumnPair
-from .pieces import Array
+from .curves import Array, curves_through
 from .strip import plot_strip
-from .style import BENDING, FAINT, INK, TWIST, Drawn, blank, draw_all, tidy
+from .style import BENDING, FAINT, INK, SI, SPECIAL, TWIST, Drawn, blank, draw_all, tidy
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
     from matplotlib.gridspec import SubplotSpec
 
-Log = bool | Collection[str]
-
-COLOURS = (BENDING, TWIST, "#009e73", "#cc79a7", "#56b4e9", "#e69f00")  # one for each branch
-STABLE, UNSTABLE, UNKNOWN = "stable", "unstable", "stability unknown"
-FOLD, BRANCH, BUCKLING = "fold", "branch point", "buckling point"
-FIRST, LAST = "first point", "last point"
-STYLES: dict[str, dict[str, Any]] = {
-    STABLE: {"ls": "-", "lw": 2.0},
-    UNSTABLE: {"ls": (0, (3.5, 1.8)), "lw": 1.6},
-    UNKNOWN: {"ls": "-", "lw": 0.9},
-    FIRST: {"ls": "", "marker": ".", "ms": 9, "color": FAINT, "zorder": 4},
-    LAST: {"ls": "", "marker": "x", "ms": 5.5, "color": FAINT, "mew": 1.2, "zorder": 4},
-    FOLD: {"ls": "", "marker": "s", "ms": 6.5, "mfc": INK, "mec": "w", "mew": 0.8, "zorder": 5},
-    BRANCH: {"ls": "", "marker": "o", "ms": 7.5, "mfc": "w", "mec": INK, "mew": 1.4, "zorder": 6},
-    BUCKLING: {"ls": "", "marker": "D", "ms": 6.5, "mfc": "w", "mec": INK, "mew": 1.4, "zorder": 6},
-}
-SPECIAL = (FOLD, BRANCH, BUCKLING)
-DOT = {"marker": "o", "ms": 3.5, "zorder": 4.5}  # a point alone
-LABELS = {"number": "point", "negative": "negative directions", "error": "estimated error"}
+#: one for each branch
+COLOURS = (BENDING, TWIST, "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#7b3fa0", "#8a6d00")
+ENTRY = 2.2  # inches for one of the legend
+BEHIND, ASIDE = 0.01, 2.2  # of the axes: a curve this near to another is drawn as much wider
 
 
-def plot_branch(rows: Rows, x: str, y: str, *, log: Log = False, title: str = "") -> Figure:
+def plot_branch(
+    rows: Rows, x: str, y: str, *, log: bool | Collection[str] = (), title: str = ""
+) -> Figure:
     """Plot quantity y against x, where "value" is the parameter; rows without either are left out.
 
     Parameters that differ by stage get axes each. `log` says whether they are logarithmic, or which
-    are; with values that are not positive they are not.
+    columns are; with values that are not positive they are not.
     """
-    return _plot(rows, [(x, y)], log, title)
+    names = {row["parameter"] for row in rows}
+    return draw_branch(
+        BranchFigure(rows, ((x, y),), title, names if log is True else log or ()), ()
+    )
 
 
 def save_branch_figures(
-    rows: Rows,
-    ribbons: Sequence[Solution],
-    captions: Sequence[str],
-    folder: str | Path,
-    pairs: Sequence[ColumnPair],
-    *,
-    log: Log = False,
+    figure: BranchFigure, ribbons: Mapping[int, Solution], folder: str | Path
 ) -> Drawn:
-    """Write branch.png, a panel for each of the first four pairs (x, y), and ribbons.png if any.
+    """Write branch.png, a panel for each of the first four pairs, and ribbons.png if any.
 
-    That is left out, and it is said why, where a ribbon has no surface.
+    That is left out, and it is said why, where a ribbon has no surface. `ribbons` are the solutions
+    of points by their numbers.
     """
-    drawings = {"branch.png": partial(_plot, rows, pairs[:4], log)}
-    if ribbons:
-        drawings["ribbons.png"] = partial(plot_strip, ribbons, captions)
+    shown = [row for row in figure.pictured if row["number"] in ribbons]
+    drawings = {"branch.png": partial(draw_branch, figure, [row["number"] for row in shown])}
+    if shown:
+        solutions = [ribbons[row["number"]] for row in shown]
+        captions = [_caption(row, figure) for row in shown]
+        drawings["ribbons.png"] = partial(plot_strip, solutions, captions)
     return draw_all(drawings, Path(folder))
 
 
-def _plot(rows: Rows, pairs: Sequence[ColumnPair], log: Log, title: str = "") -> Figure:
-    """Draw a panel for each pair, and one legend under them."""
-    most = max(len(_parameters(rows, pair)) for pair in pairs)
+def draw_branch(subject: BranchFigure, numbered: Sequence[int]) -> Figure:
+    """Draw a panel for each of the first four pairs, and one legend under them.
+
+    Parameters
+    ----------
+    subject
+        What to draw.
+    numbered
+        Numbers of points whose ribbons are pictured elsewhere.
+    """
+    pairs = subject.pairs[:4]
+    most = max(len(subject.axes_of(pair)) for pair in pairs)
     columns = 1 if most > 1 or len(pairs) == 1 else 2
     count = math.ceil(len(pairs) / columns)
     width = min(1.5 + 4.0 * most, 14.0) if most > 1 else (7.2 if columns == 1 else 11.0)
     figure = blank(width, 5.4 if count == 1 else 3.8 * count + 0.6)
     grid = figure.add_gridspec(count, columns)
     for i, pair in enumerate(pairs):
-        _panel(figure, grid[divmod(i, columns)], rows, pair, log)
-    figure.axes[0].set_title(title, loc="left", fontsize=12, fontweight="bold")
-    _legend(figure, rows, pairs)
+        _panel(figure, grid[divmod(i, columns)], subject, pair, numbered)
+    figure.axes[0].set_title(subject.title, loc="left", fontsize=12, fontweight="bold")
+    if subject.title:
+        across = len(subject.axes_of(pairs[0])) if columns == 1 else min(columns, len(pairs))
+        last = figure.axes[across - 1]
+        last.set_title(SI if subject.si else SPECIAL, loc="right", fontsize=9)
+    _legend(figure, subject, bool(numbered))
     return figure
 
 
-def _panel(figure: Figure, cell: SubplotSpec, rows: Rows, pair: ColumnPair, log: Log) -> None:
+def _panel(
+    figure: Figure,
+    cell: SubplotSpec,
+    subject: BranchFigure,
+    pair: ColumnPair,
+    numbered: Sequence[int],
+) -> None:
     """Draw one pair of quantities, on axes of each parameter if these differ."""
-    parameters = _parameters(rows, pair)
-    inner, first = cell.subgridspec(1, len(parameters)), None
-    for i, parameter in enumerate(parameters):
+    planes, first = subject.axes_of(pair), None
+    inner = cell.subgridspec(1, len(planes))
+    for i, plane in enumerate(planes):
         beside = first if pair[1] != "value" else None
         axes = figure.add_subplot(inner[i], sharey=beside)
         first = first or axes
-        points = _draw(axes, rows, pair, parameter)
-        for k in range(2):
-            _scale(axes, k, pair[k], points[k], log if isinstance(log, bool) else parameter in log)
-        axes.set_xlabel(_label(pair[0], parameter, rows))
-        axes.set_ylabel("" if beside else _label(pair[1], parameter, rows))
+        if plane.rows:
+            _draw(axes, plane, numbered)
+        else:
+            words: dict[str, Any] = {"ha": "center", "color": FAINT, "transform": axes.transAxes}
+            axes.text(0.5, 0.5, "nothing recorded", **words)
+        dress(axes, plane)
+        if beside:
+            axes.set_ylabel("")
         axes.grid(True, which="major", alpha=0.25)
         tidy(axes)
         axes.tick_params(labelleft=beside is None)
 
 
-def _draw(axes: Axes, rows: Rows, pair: ColumnPair, parameter: str) -> Array:
-    """Draw and return the points of a parameter; "" stands for all."""
-    drawn = _drawn(rows, [pair])
-    here = [row for row in drawn if parameter in ("", row["parameter"])]
-    runs: dict[tuple[int, int], list[Row]] = {}
-    for row in here:
-        runs.setdefault((row["branch"], row["stage"]), []).append(row)
-    plain = {"lw": 1.6} if all(_state(row) == UNKNOWN for row in rows) else {}
-    for (branch, _), run in runs.items():
-        for state, stretch in _stretches(run):
-            style = STYLES[state] | plain | (DOT if len(stretch) == 1 else {})
-            colour = COLOURS[branch % len(COLOURS)]
-            axes.plot(*_points(stretch, pair), color=colour, label="_" if plain else state, **style)
-    last = {row["branch"]: i for i, row in enumerate(drawn)}.values()
-    marked = {name: [row for row in drawn if row["kind"] == name] for name in SPECIAL}
-    marked |= {FIRST: drawn[:1], LAST: [drawn[i] for i in last if i]}
-    for name, chosen in marked.items():
-        chosen = [row for row in chosen if parameter in ("", row["parameter"])]
+def _draw(axes: Axes, plane: Plane, numbered: Sequence[int]) -> None:
+    """Draw curves, marks and numbers of a plane that has points."""
+    plain = _plain(plane.figure)
+    curves = [_curves(plane, piece) for piece in plane.pieces]
+    for i, (piece, found) in enumerate(zip(plane.pieces, curves, strict=True)):
+        colour = COLOURS[piece.rows[-1]["branch"] % len(COLOURS)]
+        wider = ASIDE if _behind(plane, found, curves[i + 1 :]) else 1.0
+        for state, curve in _stretches(piece.rows, found):
+            style = STYLES[state] | plain | (DOT if curve.shape[1] == 1 else {})
+            style["lw"] *= wider
+            axes.plot(*curve, color=colour, label=state, **style)
+    for name, chosen in marks_of(plane).items():
         if chosen:
-            axes.plot(*_points(chosen, pair), label=name, **STYLES[name])
-    if not here:
-        axes.text(0.5, 0.5, "nothing recorded", ha="center", color=FAINT, transform=axes.transAxes)
-    return _points(here, pair)
+            axes.plot(*plane.points(chosen), label=name, **STYLES[name])
+    regular = [row for row in plane.rows if row["number"] in numbered and row["kind"] == POINT]
+    if regular:
+        axes.plot(*plane.points(regular), ls="", color=INK, label="_", **DOT)
+    write_numbers(axes, plane, numbered, [curve for found in curves for curve in found])
 
 
-def _stretches(run: Sequence[Row]) -> list[tuple[str, list[Row]]]:
-    """Cut a run of points where stability changes; a fold or branch point ends both stretches."""
-    stretches = [(_state(run[0]), [run[0]])] if len(run) == 1 else []
-    for a, b in pairwise(run):
-        plain = [row for row in (a, b) if row["kind"] not in STYLES]
-        states = {_state(row) for row in plain or (a, b)}
+def _curves(plane: Plane, piece: Piece) -> list[Array]:
+    """Return the curve (2, m) from each point of a piece to the next; of one point itself."""
+    points = plane.points(piece.rows)
+    if len(piece.rows) == 1:
+        return [points]
+    rows = [*piece.beyond[::-1], *piece.rows]
+    rough = any(name in (*COUNTS, "error") for name in plane.pair)  # nothing is between points
+    corners = [i for i, row in enumerate(rows) if row["kind"] == KINK or rough]
+    found = curves_through(plane.scaled(plane.points(rows)), corners)
+    curves = [plane.values(curve) for curve in found[len(piece.beyond) :]]
+    for i, curve in enumerate(curves):
+        curve[:, 0], curve[:, -1] = points[:, i], points[:, i + 1]  # to the last digit
+    return curves
+
+
+def _stretches(piece: Sequence[Row], curves: Sequence[Array]) -> list[tuple[str, Array]]:
+    """Join curves while stability is the same; a fold or branch point ends both stretches."""
+    if len(piece) == 1:
+        return [(state_of(piece[0]), curves[0])]
+    stretches: list[tuple[str, list[Array]]] = []
+    for i, curve in enumerate(curves):
+        both = piece[i : i + 2]
+        states = {state_of(row) for row in [row for row in both if row["kind"] == POINT] or both}
         state = states.pop() if len(states) == 1 else UNKNOWN
         if not stretches or stretches[-1][0] != state:
-            stretches.append((state, [a]))
-        stretches[-1][1].append(b)
-    return stretches
+            stretches.append((state, []))
+        stretches[-1][1].append(curve if not stretches[-1][1] else curve[:, 1:])
+    return [(state, np.concatenate(found, axis=1)) for state, found in stretches]
 
 
-def _state(row: Row) -> str:
-    return UNKNOWN if row["negative"] is None else UNSTABLE if row["negative"] else STABLE
+def _behind(plane: Plane, curves: Sequence[Array], later: Sequence[Sequence[Array]]) -> bool:
+    """Whether one of the curves drawn later hides these, as mirror images do."""
+    here = plane.scaled(np.concatenate(curves, axis=1))
+    for other in later:
+        there = plane.scaled(np.concatenate(other, axis=1))
+        gaps = np.hypot(*(here[:, :, None] - there[:, None, :])).min(axis=1)
+        if np.mean(gaps < BEHIND) > 0.5:
+            return True
+    return False
 
 
-def _drawn(rows: Rows, pairs: Sequence[ColumnPair]) -> list[Row]:
-    """Rows that have both quantities of one of some pairs."""
-    return [row for row in rows if any(np.isfinite(_points([row], p)).all() for p in pairs)]
+def _plain(subject: BranchFigure) -> dict[str, Any]:
+    """Return how curves are drawn where stability is known nowhere; nothing where it is."""
+    known = any(state_of(row) != UNKNOWN for row in subject.rows)
+    return {} if known else {"ls": "-", "lw": 1.6}
 
 
-def _points(rows: Rows, pair: ColumnPair) -> Array:
-    """Values (2, k) of both quantities, NaN where there are none."""
-    return np.array([[row.get(quantity) for row in rows] for quantity in pair], float)
+def _caption(row: Row, subject: BranchFigure) -> str:
+    """Return what stands under a ribbon: number, kind, parameter, branch."""
+    kind = "" if row["kind"] == POINT else f"  {row['kind']}"
+    branch = f"\nbranch {row['branch']}" if row["branch"] else ""
+    unit = unit_of(row["parameter"], subject.si)
+    value = f"{row[row['parameter']]:.4g}{f' {unit}' if unit else ''}"
+    return f"{row['number']}{kind}\n{label(row['parameter'], False)} = {value}{branch}"
 
 
-def _parameters(rows: Rows, pair: ColumnPair) -> list[str]:
-    """Return the parameters that have axes of their own: "" stands for all."""
-    names = list(dict.fromkeys(row["parameter"] for row in rows))
-    return names if "value" in pair and names else [""]
-
-
-def _label(quantity: str, parameter: str, rows: Rows) -> str:
-    """Label of an axis; of one parameter among several, with its stages."""
-    if quantity != "value" or len({row["parameter"] for row in rows}) < 2:
-        return LABELS.get(quantity, parameter if quantity == "value" else quantity)
-    stages = sorted({row["stage"] for row in rows if row["parameter"] == parameter})
-    return f"{parameter}\nstage{'s' * (len(stages) > 1)} {', '.join(map(str, stages))}"
-
-
-def _scale(axes: Axes, k: int, quantity: str, values: Array, log: bool) -> None:
-    """Logarithmic if asked, for a parameter, and for errors; whole numbers where they count."""
-    from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullLocator
-
-    axis = (axes.xaxis, axes.yaxis)[k]
-    if quantity in ("number", "negative"):
-        axis.set_major_locator(MaxNLocator("auto", integer=True))
-    wanted = {"error": True, "value": log}.get(quantity, False)
-    if wanted and min(values, default=0) > 0:
-        axes.set(**{f"{'xy'[k]}scale": "log"})
-        low, high = sorted(axis.get_view_interval())
-        few = LogLocator(subs=(1, 2, 5)) if high < 1e3 * low else LogLocator()
-        axis.set_major_locator(few if high > 10 * low else MaxNLocator(5))
-        axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-        axis.set_minor_locator(NullLocator())
-
-
-def _legend(figure: Figure, rows: Rows, pairs: Sequence[ColumnPair]) -> None:
+def _legend(figure: Figure, subject: BranchFigure, numbers: bool) -> None:
     """Entries for branches if there are several, and for the lines and marks that are drawn."""
     from matplotlib.lines import Line2D
 
-    drawn = _drawn(rows, pairs)
+    planes = [plane for pair in subject.pairs for plane in subject.axes_of(pair)]
+    drawn = {row["number"]: row for plane in planes for row in plane.rows}.values()
     names = {line.get_label() for axes in figure.axes for line in axes.lines}
     branches = sorted({row["branch"] for row in drawn})
     entries: dict[str, dict[str, Any]] = {}
     for branch in branches if len(branches) > 1 else []:
         entries[f"branch {branch}"] = {"color": COLOURS[branch % len(COLOURS)], "lw": 3}
     for name in (name for name in STYLES if name in names):
-        count = sum(row["kind"] == name for row in drawn)
-        entries[name + (f" ({count})" if count else "")] = {"color": INK} | STYLES[name]
-    handles = [Line2D([], [], label=label, **style) for label, style in entries.items()]
-    n = math.ceil(len(entries) / max(1, math.ceil(len(entries) / 5)))
+        count = sum(row["kind"] != POINT and mark_of(row) == name for row in drawn)
+        plain = _plain(subject) if name == UNKNOWN else {}
+        entries[name + (f" ({count})" if count else "")] = {"color": INK} | STYLES[name] | plain
+    handles = [Line2D([], [], label=text, **style) for text, style in entries.items()]
+    if numbers:
+        handles.append(Line2D([], [], label="numbers: points in ribbons.png", color=INK, **DOT))
+        handles[-1].set_linestyle("")
+    wide = max(1, int(figure.get_figwidth() / ENTRY))
+    n = math.ceil(len(handles) / math.ceil(len(handles) / wide)) if handles else 1
     figure.legend(handles=handles, loc="outside lower center", ncols=n, frameon=False, fontsize=9)

@@ -14,6 +14,7 @@ ColumnPair = tuple[str, str]
 
 WIDE = 50.0  # largest over smallest value, from which axes are logarithmic
 NOISE = 1e-9  # relative differences below this are rounding
+LEAST = 1e-4  # size that numbers of any column may be expected to have
 COSTS = ("start", "iterations", "path", "seconds", "note", "message")
 
 
@@ -38,6 +39,7 @@ def varied(rows: Rows, name: str) -> list[float]:
     values = numbers(rows, name)
     vector = next((vector for vector in START_VECTORS if name in vector), (name,))
     largest = max((abs(value) for part in vector for value in numbers(rows, part)), default=0.0)
+    largest = max(largest, LEAST)
     return values if values and max(values) - min(values) > NOISE * largest else []
 
 

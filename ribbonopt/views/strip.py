@@ -1,4 +1,4 @@
-"""Ribbons in a row, such as those along a branch: to one scale, in one view."""
+"""Ribbons in rows, such as those along a branch: to one scale, in one view."""
 
 from __future__ import annotations
 
@@ -22,10 +22,11 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 PICTURE, ROW, TALLEST, NARROWEST = 3.0, 14.0, 3.2, 1.7  # inches
+MOST = 6  # pictures in a row
 
 
 def plot_strip(ribbons: Sequence[Solution], captions: Sequence[str]) -> Figure:
-    """Draw ribbons in a row, to one scale, in one view of one frame; bands whole.
+    """Draw ribbons in rows, to one scale, in one view of one frame; bands whole.
 
     Raises
     ------
@@ -47,13 +48,18 @@ def plot_strip(ribbons: Sequence[Solution], captions: Sequence[str]) -> Figure:
     size = max(right - left, (high - low) / 2)
     box = (left - 0.04 * size, right + 0.04 * size, low - 0.2 * size, high + 0.04 * size)
     tall = (box[3] - box[2]) / (box[1] - box[0])
-    width = max(min(PICTURE, ROW / len(subjects), TALLEST / tall), NARROWEST)
+    rows = -(-len(subjects) // MOST)
+    columns = -(-len(subjects) // rows)
+    width = max(min(PICTURE, ROW / columns, TALLEST / tall), NARROWEST)
     fill = textwrap.TextWrapper(round(13 * width)).fill
     texts = ["\n".join(map(fill, caption.splitlines())) for caption in captions]
-    below = 0.6 + 0.17 * max(text.count("\n") for text in texts)
-    figure = blank(max(width * len(subjects), 3.4), min(width * tall, TALLEST) + below)
-    panels = figure.subplots(1, len(subjects), squeeze=False)[0]
-    for axes, drawing, text in zip(panels, drawings, texts, strict=True):
+    below = 0.4 + 0.17 * max(text.count("\n") for text in texts)
+    height = min(width * tall, TALLEST) + below
+    figure = blank(max(width * columns, 3.4), rows * height + 0.2)
+    panels = figure.subplots(rows, columns, squeeze=False).ravel()
+    for axes in panels[len(subjects) :]:
+        axes.set_axis_off()
+    for axes, drawing, text in zip(panels, drawings, texts, strict=False):
         paint(axes, replace(drawing, line_widths=np.maximum(0.6 * drawing.line_widths, SEAM)))
         axes.set(xlim=box[:2], ylim=box[2:], aspect="equal", xticks=[], yticks=[])
         axes.spines[:].set_visible(False)

@@ -185,6 +185,9 @@ def test_report_and_figures(run: Run, study: Path, tmp_path: Path) -> None:
     assert {"report.html", "scatter.png"} <= {p.name for p in (tmp_path / "again").iterdir()}
     status, _, err = run("plot", out, "--plot", "law.epsilom:u2")
     assert (status, "did you mean 'law.epsilon'" in err) == (2, True)
+    assert err.count("\n") == 1
+    for word in ("--plot", "found 'law.epsilom'", "expected a column", "energy", "iterations"):
+        assert word in err
     status, _, err = run("batch", study, "--out", tmp_path / "b", "--plot", "law.epsilom:u2")
     assert (status, "did you mean 'law.epsilon'" in err) == (2, True)
     status, _, err = run("batch", study, "--out", tmp_path / "b", "--plot", "energy")

@@ -4,6 +4,7 @@ import csv
 import json
 import math
 import os
+import re
 import signal
 from collections.abc import Callable
 from pathlib import Path
@@ -28,6 +29,9 @@ from branches import (
     written,
 )
 
+from ribbonopt.cli.progress import ProgressLine
+from ribbonopt.studies.continuation.recorded import value_of
+from ribbonopt.studies.continuation.walk.steps import JUMPED
 from ribbonopt.views.style import Drawn
 
 Run = Callable[..., Any]
@@ -43,8 +47,8 @@ def test_branch_is_written(whole: Callable[[str], Whole]) -> None:
     assert list(dict.fromkeys(places)) == [(0, 0), (0, 1), (0, 2), (1, 0)]
     crossing = [row for row in rows if row["kind"] != "point"]
     assert [row["kind"] for row in crossing] == ["branch point"]
-    assert crossing[0]["value"] == pytest.approx(4 * math.pi**2, abs=1e-6)
-    values = [row["value"] for row in rows if row["stage"] == 1]
+    assert value_of(crossing[0]) == pytest.approx(4 * math.pi**2, abs=1e-6)
+    values = [value_of(row) for row in rows if row["stage"] == 1]
     for asked in (0, 0.02, 0.05):
         assert asked in values
 
@@ -78,7 +82,15 @@ def test_table_has_the_rows_of_the_branch(whole: Callable[[str], Whole]) -> None
     assert len(table) == len(rows)
     for cells, row in zip(table, rows, strict=True):
         assert list(cells) == list(row)
-        for name in ("value", "error", "energy", "deflection", "n0z", "u2"):
+        for name in (
+            "parameters.P",
+            "parameters.turn",
+            "error",
+            "energy",
+            "deflection",
+            "n0z",
+            "u2",
+        ):
             assert cells[name] == ("" if row[name] is None else repr(row[name]))
         assert (cells["kind"], cells["parameter"]) == (row["kind"], row["parameter"])
 
@@ -114,15 +126,23 @@ def test_json_is_one_object(run: Run, tmp_path: Path) -> None:
 def test_folder_is_named_after_the_scene(run: Run, tmp_path: Path) -> None:
     scene = written(tmp_path, COLUMN + SHORT)
     assert run("continue", scene, "--quiet").status == 0
-    assert names(tmp_path / "results") == ["column"]
-    assert names(tmp_path / "results" / "column") == FILES
+    assert names(tmp_path / "results") == ["column-branch"]
+    assert names(tmp_path / "results" / "column-branch") == FILES
+    before = points(tmp_path / "results" / "column-branch")
+    # beside the solution of the same scene, whichever comes first
+    assert run("solve", scene, "--plot", "--quiet").status == 0
+    assert names(tmp_path / "results") == ["column", "column-branch"]
+    assert run("continue", scene, "--resume", "--quiet").status == 0
+    assert points(tmp_path / "results" / "column-branch") == before
+    assert run("plot", "results/column-branch").status == 0
+    assert run("solve", scene, "--plot", "--quiet").status == 0
 
 
 def test_values_are_met_exactly(run: Run, tmp_path: Path) -> None:
     values = "continuation={parameter: parameters.P, values: [30, 31.7, 33.3], largest: 5}"
     scene = written(tmp_path, COLUMN + SHORT)
     assert run("continue", scene, "--out", "o", "--quiet", "--set", values).status == 0
-    found = [row["value"] for row in points(tmp_path / "o")]
+    found = [value_of(row) for row in points(tmp_path / "o")]
     assert found == sorted(found)
     assert (found[0], found[-1]) == (30, 33.3)
     assert 31.7 in found
@@ -130,7 +150,10 @@ def test_values_are_met_exactly(run: Run, tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(
     ("condition", "beyond"),
-    [("value > 33", 33), ("n0z < -35.5", 35.5), ("value + 0*energy > 32", 32)],
+    [
+        *(("value > 33", 33), ("n0z < -35.5", 35.5), ("value + 0*energy > 32", 32)),
+        *(("parameters.P > 33", 33), ("P > 3.3e1", 33), ("2 * parameters.P < 2 * P + 1e-3", 29)),
+    ],
 )
 def test_conditions_stop_the_branch(
     run: Run, tmp_path: Path, condition: str, beyond: float
@@ -139,9 +162,9 @@ def test_conditions_stop_the_branch(
     status, out, err = run("continue", written(tmp_path, COLUMN + stage), "--out", "o")
     assert (status, err) == (0, "")
     assert f"stopped, as asked: {condition}" in out
-    *before, last = (row["value"] for row in points(tmp_path / "o"))
-    # exactly where the condition begins to be met
-    assert beyond < last < beyond + 1e-8
+    *before, last = (value_of(row) for row in points(tmp_path / "o"))
+    # exactly where the condition begins to be met, or at once
+    assert beyond < last < beyond + 1e-8 or not before
     assert max(before, default=0) <= beyond
 
 
@@ -175,9 +198,10 @@ def test_figures_are_drawn_and_drawn_again(run: Run, tmp_path: Path) -> None:
     ("asked", "drawn"),
     [
         (["u2:H0", "value:negative"], [("u2", "H0"), ("value", "negative")]),
-        ([], [("value", name) for name in ("shortening", "deflection", "u2", "energy")]),
+        (["P:H0", "u2:parameters.P"], [("parameters.P", "H0"), ("u2", "parameters.P")]),
+        ([], [("parameters.P", name) for name in ("shortening", "deflection", "H0")]),
     ],
-    ids=["pairs", "usual"],
+    ids=["pairs", "names", "usual"],
 )
 def test_what_is_drawn(
     run: Run,
@@ -195,12 +219,45 @@ def test_what_is_drawn(
     monkeypatch.setattr("ribbonopt.views.branch.save_branch_figures", note)
     scene = written(tmp_path, COLUMN + SHORT)
     assert run("continue", scene, "--out", "o", "--quiet", "--plot", *asked).status == 0
-    ((rows, ribbons, captions, _, pairs),) = calls
-    assert list(pairs) == drawn
-    assert rows == points(tmp_path / "o")
-    assert captions[0] == "parameters.P = 30"
-    assert captions[-1] == "parameters.P = 38"
-    assert len(ribbons) == len(captions) == min(5, len(rows))
+    ((figure, ribbons, _),) = calls
+    rows = points(tmp_path / "o")
+    assert list(figure.pairs) == drawn
+    assert (figure.rows, figure.title, figure.si) == (rows, "column", False)
+    assert list(ribbons) == [row["number"] for row in figure.pictured]
+    assert {0, len(rows) - 1} <= ribbons.keys()
+    for row in rows:
+        if row["number"] in ribbons:
+            assert ribbons[row["number"]].energy == pytest.approx(row["energy"], abs=1e-12)
+
+
+def test_a_jump_that_is_noted_is_drawn_as_one(
+    run: Run, whole: Callable[[str], Whole], tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    calls: list[tuple[Any, ...]] = []
+
+    def note(*arguments: Any, **_: Any) -> Drawn:
+        calls.append(arguments)
+        return Drawn([], [])
+
+    monkeypatch.setattr("ribbonopt.views.branch.save_branch_figures", note)
+    reference = whole("fold")
+    lines = [json.loads(line) for line in reference.lines]
+    for number, text in ((2, JUMPED), (4, "phases: m2 > 0"), (5, f"phases: m2 > 0; {JUMPED}")):
+        lines[number]["row"]["note"] = text
+    data = "".join(json.dumps(line) + "\n" for line in lines).encode()
+    assert run("plot", reference.cut(tmp_path / "o", data)).status == 0
+    ((figure, _, _),) = calls
+    assert list(figure.jumps) == [2, 5]
+
+
+@pytest.mark.parametrize("there", [True, False])
+def test_a_folder_that_is_not_there(run: Run, tmp_path: Path, there: bool) -> None:
+    if there:
+        (tmp_path / "results" / "snap-branch").mkdir(parents=True)
+    status, out, err = run("plot", "results/snap")
+    assert (status, out, err.count("\n")) == (2, "", 1)
+    assert "results/snap: no such folder; expected one written by" in err
+    assert ("did you mean results/snap-branch?" in err) == there
 
 
 # a terminal
@@ -237,26 +294,47 @@ def on_terminal(*arguments: object, interrupt: Path | None = None) -> Terminal:
 
 
 @pytest.mark.skipif(not hasattr(os, "openpty"), reason="no pseudo terminals")
-def test_progress_on_a_terminal(tmp_path: Path) -> None:
+def test_progress_on_a_terminal(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("COLUMNS", "200")
     scene = written(tmp_path, COLUMN + SHORT)
     status, out, err = on_terminal(scene, "--out", tmp_path / "o", "--json")
     assert status == 0
     assert out.count(b"\n") == 1
     assert json.loads(out)["status"] == "converged"
     bars = [line.rstrip() for line in err.split("\r") if line.startswith("[")]
-    rows = points(tmp_path / "o")
-    assert len(bars) == len(rows)
-    for bar, row in zip(bars, rows, strict=True):
-        assert f"] parameters.P = {row['value']:.6g}  step " in bar
-        assert bar.endswith(f"  error {row['error']:.0e}")
+    rows = {f"] parameters.P = {value_of(row):.6g}, step ": row for row in points(tmp_path / "o")}
+    assert 1 <= len(bars) <= len(rows)  # not more often than it can be read
+    for bar in bars:
+        (row,) = (row for text, row in rows.items() if text in bar)
+        assert f", error {row['error']:.0e}, {row['negative']} negative, " in bar
+        assert re.search(r", [0-9.]+/s$", bar)
     filled = [bar.count("#") for bar in bars]
     assert filled == sorted(filled)
-    assert (filled[0], filled[-1]) == (0, 24)
+    assert filled[0] == 0
     # one line, that is gone in the end
     assert "\n" not in err
     *_, cleared, end = err.split("\r")
     assert (cleared.strip(), end) == ("", "")
     assert len(cleared) >= len(bars[-1])
+
+
+@pytest.mark.skipif(not hasattr(os, "openpty"), reason="no pseudo terminals")
+def test_quiet_is_quiet_on_a_terminal_too(tmp_path: Path) -> None:
+    scene = written(tmp_path, COLUMN + SHORT)
+    assert on_terminal(scene, "--out", tmp_path / "o", "--quiet") == (0, b"", "")
+
+
+def test_the_line_of_progress_ends_with_the_terminal(
+    capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("COLUMNS", "10")
+    monkeypatch.setattr("sys.stderr.isatty", lambda: True)
+    line = ProgressLine(quiet=False)
+    line.show("0123456789abc")
+    line.show("01")
+    line.close()
+    line.close()
+    assert capsys.readouterr().err == "\r012345678\r01       \r  \r"
 
 
 @pytest.mark.skipif(not hasattr(os, "openpty"), reason="no pseudo terminals")

@@ -13,6 +13,8 @@ from typing import Any
 import pytest
 from branches import COLUMN, FOLD, SNAP, points, written
 
+from ribbonopt.studies.continuation.recorded import value_of
+
 Run = Callable[..., Any]
 Row = dict[str, Any]
 
@@ -32,7 +34,7 @@ def followed(run: Run, tmp_path: Path, text: str) -> tuple[list[Row], dict[int, 
 
 
 def values(rows: list[Row], branch: int) -> list[float]:
-    return [row["value"] for row in rows if (row["branch"], row["stage"]) == (branch, 0)]
+    return [value_of(row) for row in rows if (row["branch"], row["stage"]) == (branch, 0)]
 
 
 # where it ends
@@ -43,7 +45,7 @@ def test_a_stage_ends_at_its_fold(run: Run, tmp_path: Path, stop: str) -> None:
     text = SNAP.replace("largest: 5", f"largest: 5, stop: [energy > 1e9, {stop}]")
     rows, endings = followed(run, tmp_path, text)
     assert rows[-1]["kind"] == "fold"
-    assert rows[-1]["value"] == pytest.approx(FOLD, abs=1e-7)
+    assert value_of(rows[-1]) == pytest.approx(FOLD, abs=1e-7)
     assert endings == {0: f"stopped, as asked: {stop}"}
     assert {row["negative"] for row in rows} == {0, None}
 
@@ -58,10 +60,10 @@ def test_a_stage_goes_on_from_before_the_branch_point_that_ended_one(
     last = [row for row in rows if row["stage"] == 0][-2:]
     assert endings == {0: "stopped, as asked: branch point"}
     assert [row["kind"] for row in last] == ["point", "branch point"]
-    assert last[1]["value"] == pytest.approx(EULER, rel=1e-8)
+    assert value_of(last[1]) == pytest.approx(EULER, rel=1e-8)
     begin = next(row for row in rows if row["stage"] == 1)
     assert begin["energy"] == pytest.approx(last[0]["energy"], abs=1e-12)
-    assert begin["n0z"] == pytest.approx(-last[0]["value"], rel=1e-9)
+    assert begin["n0z"] == pytest.approx(-value_of(last[0]), rel=1e-9)
 
 
 @pytest.mark.parametrize("largest", [2, 5, 15])
@@ -85,7 +87,7 @@ def test_the_point_that_is_landed_on_does_not_depend_on_the_steps(run: Run, tmp_
         scene = written(tmp_path / str(largest), text)
         assert run("continue", scene, "--out", f"o{largest}", "--quiet").status == 0
         found.append(points(tmp_path / f"o{largest}")[-1])
-    for name in ("value", "energy", "n0x", "n0z", "m0y"):
+    for name in ("parameters.angle", "energy", "n0x", "n0z", "m0y"):
         assert found[0][name] == pytest.approx(found[1][name], rel=1e-8, abs=1e-8)
 
 
@@ -105,7 +107,7 @@ def test_both_ways_from_a_start(run: Run, tmp_path: Path) -> None:
     assert {row["origin"] for row in rows if row["branch"] == 0} == {None}
     assert {row["origin"] for row in rows if row["branch"] == 1} == {rows[0]["number"]}
     # the next stage begins at the end that is named last
-    assert next(row["value"] for row in rows if row["stage"] == 1) == 50
+    assert next(value_of(row) for row in rows if row["stage"] == 1) == 50
 
 
 def test_both_ways_are_as_each_way_alone(run: Run, tmp_path: Path) -> None:
@@ -116,7 +118,7 @@ def test_both_ways_are_as_each_way_alone(run: Run, tmp_path: Path) -> None:
         assert run("continue", scene, "--out", f"o{end}", "--quiet").status == 0
         alone = points(tmp_path / f"o{end}")
         last = [row for row in rows if row["branch"] == branch][-1]
-        for name in ("value", "energy", "n0z", "shortening"):
+        for name in ("parameters.P", "energy", "n0z", "shortening"):
             assert last[name] == pytest.approx(alone[-1][name], rel=1e-9, abs=1e-9)
 
 
@@ -128,7 +130,7 @@ def test_branches_of_branches(run: Run, tmp_path: Path) -> None:
     rows, endings = followed(run, tmp_path, column(stage))
     special = [(row["branch"], row["kind"]) for row in rows if row["kind"] != "point"]
     assert special == [(0, "branch point"), (1, "branch point"), (2, "branch point")]
-    second = [row["value"] for row in rows if row["kind"] != "point"][1:]
+    second = [value_of(row) for row in rows if row["kind"] != "point"][1:]
     assert second[0] == pytest.approx(second[1], rel=1e-9)
     assert sorted(endings) == list(range(7))
     number = {row["number"]: row for row in rows}

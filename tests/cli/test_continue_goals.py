@@ -8,6 +8,8 @@ from typing import Any
 import pytest
 from branches import COLUMN, FOLD, SHORT, SNAP, TABLE, Whole, points, written
 
+from ribbonopt.studies.continuation.recorded import value_of
+
 Run = Callable[..., Any]
 
 
@@ -27,7 +29,7 @@ def test_goal_beyond_a_fold(whole: Callable[[str], Whole]) -> None:
     reference = whole("fold")
     rows = points(reference.folder)
     folds = [row for row in rows if row["kind"] == "fold"]
-    assert [row["value"] for row in folds] == [pytest.approx(FOLD, abs=1e-7)]
+    assert [value_of(row) for row in folds] == [pytest.approx(FOLD, abs=1e-7)]
     ending = json.loads(reference.lines[-1])["ending"]
     assert (ending["stage"], ending["branch"], ending["reached"]) == (0, 0, False)
     for word in ("turned back", "fold", "parameters.angle = 32.363354"):
@@ -67,7 +69,7 @@ def test_step_below_the_smallest(run: Run, tmp_path: Path) -> None:
     told = run("continue", scene, "--out", tmp_path / "o", "--quiet")
     message, rows = short_of(told, tmp_path / "o")
     assert "the step fell below 20 beyond parameters.angle = 25" in message
-    assert [row["value"] for row in rows] == [0, 25]
+    assert [value_of(row) for row in rows] == [0, 25]
 
 
 NO_START = "solver={type: newton, max_iterations: 1}"

@@ -116,7 +116,7 @@ def test_bad_records_are_refused(
         assert word in message
 
 
-#: of every row; a record of this name would take its place
+#: of every row, or what a row may be asked for; a record of this name would take its place
 TAKEN = ("value", "stage", "branch", "number", "kind", "parameter", "negative", "error", "switches")
 
 
@@ -156,6 +156,8 @@ def test_energy_formulation_is_refused(run: Run, tmp_path: Path) -> None:
         ("kind:energy", "'kind'"),
         ("value:switches", "'switches'"),
         ("value:energy:u2", "energy:u2"),
+        ("parameters.Q:energy", "did you mean 'parameters.P'?"),
+        ("P:enrgy", "did you mean 'energy'?"),
     ],
 )
 def test_figures_of_nonsense_are_refused_before_solving(
@@ -165,6 +167,21 @@ def test_figures_of_nonsense_are_refused_before_solving(
     message = refused(run("continue", scene, "--out", "o", "--plot", pair), tmp_path)
     assert "--plot" in message
     assert word in message
+    assert "expected" in message
+
+
+@pytest.mark.usefixtures("unsolved")
+@pytest.mark.parametrize("pair", ["nothing:energy", "P:nothing", "kind:energy", "nonsense"])
+def test_figures_of_nonsense_of_a_folder_are_refused(
+    run: Run, whole: Callable[[str], Whole], tmp_path: Path, pair: str
+) -> None:
+    reference = whole("fold")
+    folder = reference.cut(tmp_path / "o", reference.data)
+    status, out, err = run("plot", folder, "--plot", pair)
+    assert (status, out, err.count("\n")) == (2, "", 1)
+    assert err.startswith(f"ribbonopt: --plot{f' {pair}' if ':' in pair else ''}: found ")
+    assert "expected" in err
+    assert names(folder) == sorted([BRANCH, "scene.yaml"])
 
 
 def test_bad_input_in_json_is_one_object(run: Run, tmp_path: Path) -> None:

@@ -16,6 +16,7 @@ from scipy.special import ellipe, ellipk
 from ribbonopt.scene import load_scene
 from ribbonopt.solution.solution import Solution
 from ribbonopt.studies.continuation.continuation import Continuation
+from ribbonopt.studies.continuation.recorded import value_of
 from ribbonopt.studies.continuation.walk.points import POINT, Point
 
 Array = np.ndarray
@@ -56,7 +57,7 @@ def to_sadowsky(configs: Path) -> list[Point]:
 
 
 def test_figure_5d_has_points_over_seven_decades(to_sadowsky: list[Point]) -> None:
-    epsilon = column(to_sadowsky, "value")
+    epsilon = column(to_sadowsky, "law.epsilon")
     assert len(epsilon) >= 20
     assert (epsilon[0], epsilon[-1]) == (0.1, 1e-8)
     assert (np.diff(epsilon) < 0).all()
@@ -72,7 +73,7 @@ def test_figure_5d_has_points_over_seven_decades(to_sadowsky: list[Point]) -> No
 def test_figure_5d_goes_through_the_28_digit_numbers(
     to_sadowsky: list[Point], epsilon: float
 ) -> None:
-    (point,) = (point for point in to_sadowsky if point.row["value"] == epsilon)
+    (point,) = (point for point in to_sadowsky if value_of(point.row) == epsilon)
     exact = REGULARIZED[epsilon]
     assert gap(point.solution, exact["n0"], exact["m0"]) < 1e-8
     assert point.row["u2"] == pytest.approx(exact["u2"][0], rel=1e-8)
@@ -84,14 +85,14 @@ def test_figure_5d_is_that_of_half_intervals(
 ) -> None:
     assert len(to_sadowsky[::every]) >= 6
     for point in to_sadowsky[::every]:
-        epsilon = point.row["value"]
+        epsilon = value_of(point.row)
         truth = solved("moebius_half", SMOOTHED.format(epsilon), "tolerance=1e-11")
         assert gap(point.solution, truth.n0, truth.m0) < 1e-8, epsilon
         assert point.row["u2"] == pytest.approx(truth.u0[1], rel=1e-8), epsilon
 
 
 def test_figure_5d_tends_to_sadowsky_as_epsilon(to_sadowsky: list[Point]) -> None:
-    epsilon, u2 = column(to_sadowsky, "value"), column(to_sadowsky, "u2")
+    epsilon, u2 = column(to_sadowsky, "law.epsilon"), column(to_sadowsky, "u2")
     assert slope(epsilon[-10:], u2[-10:]) == pytest.approx(1, abs=2e-3)  # measured: 1.00002
     assert u2[-1] == pytest.approx(LIMIT - 5.3078 * epsilon[-1], abs=1e-9)
     # On the line through the last two points to epsilon = 0; measured: 3e-11.
@@ -103,9 +104,9 @@ def test_delta_tends_to_sadowsky_faster(configs: Path) -> None:
     stage = "{parameter: law.delta, scale: log, values: [0.1, 0.03, 0.01, 3e-3, 2e-3, 1e-3]}"
     law = "law={type: variational, delta: 0.1}"
     points = followed(configs / "moebius_whole.yaml", law, f"continuation={stage}")
-    delta, u2 = column(points, "value"), column(points, "u2")
+    delta, u2 = column(points, "law.delta"), column(points, "u2")
     for value, (printed, H) in VARIATIONAL.items():
-        (row,) = (point.row for point in points if point.row["value"] == value)
+        (row,) = (point.row for point in points if value_of(point.row) == value)
         assert agrees(row["u2"], printed) and agrees(row["H0"], H)
         assert row["energy"] == pytest.approx(row["H0"], rel=1e-9)  # E = H L of a loop
     small = delta < 4e-3
@@ -130,7 +131,7 @@ def test_appendix_c_from_rod_to_ribbon(
     last = solved("moebius_half", SMOOTHED.format(1e-8), "tolerance=1e-11")
     ends = ((rho[0], 0, rod), (rho[-1], 1, ribbon), (epsilon[0], 0.1, ribbon))
     for point, value, truth in (*ends, (epsilon[-1], 1e-8, last)):
-        assert point.row["value"] == value
+        assert value_of(point.row) == value
         assert gap(point.solution, truth.n0, truth.m0) < 1e-8
         assert point.row["u2"] == pytest.approx(truth.u0[1], rel=1e-8)
     assert len(rho) >= 10
@@ -144,7 +145,7 @@ def test_appendix_c_from_rod_to_ribbon(
 
 def test_elastica_goes_through_its_shortenings(configs: Path) -> None:
     points = followed(configs / "elastica_shortening.yaml")
-    rows = {point.row["value"]: point.row for point in points if point.kind == POINT}
+    rows = {value_of(point.row): point.row for point in points if point.kind == POINT}
     assert {0.25, 0.5, 1.0} <= rows.keys()
     for shortening, row in rows.items():
         m = brentq(lambda m, d=shortening: 2 - 2 * ellipe(m) / ellipk(m) - d, 0, 0.9, xtol=1e-15)

@@ -17,6 +17,7 @@ from ribbonopt.errors import ModelError
 from ribbonopt.pipeline.prepared import prepare
 from ribbonopt.scene import load_scene
 from ribbonopt.studies.continuation.continuation import Continuation
+from ribbonopt.studies.continuation.recorded import value_of
 from ribbonopt.studies.continuation.walk.points import (
     BRANCH_POINT,
     BUCKLING,
@@ -85,11 +86,11 @@ def test_columns_have_their_branch_point_at_euler_s_load(
 ) -> None:
     run, load = columns[name], EULER[name]
     (found,) = run.special(BRANCH_POINT)
-    assert found.row["value"] == pytest.approx(load, rel=1e-8)
+    assert value_of(found.row) == pytest.approx(load, rel=1e-8)
     assert not run.special(FOLD)
     for row in run.rows():
         assert abs(row["deflection"]) < 1e-10
-        assert row["negative"] == (0 if row["value"] < load else 1)
+        assert row["negative"] == (0 if value_of(row) < load else 1)
     assert run.continuation.ending.reached
     assert_stability_agrees(run)
 
@@ -101,23 +102,23 @@ def test_columns_buckle_both_ways_and_are_stable_then(columns: dict[str, Run], n
     one, other = run.rows(1), run.rows(2)
     assert len(one) == len(other) >= 3
     for a, b in zip(one, other, strict=True):
-        assert a["value"] == pytest.approx(b["value"], rel=1e-9)
+        assert value_of(a) == pytest.approx(value_of(b), rel=1e-9)
         assert a["deflection"] == pytest.approx(-b["deflection"], rel=1e-7)
         for key in ("shortening", "energy"):
             assert a[key] == pytest.approx(b[key], rel=1e-7)
     assert {row["negative"] for row in one + other} == {0}
-    assert one[0]["value"] < 1.02 * EULER[name]
+    assert value_of(one[0]) < 1.02 * EULER[name]
 
 
 @each_column
 def test_buckled_columns_are_elasticas(columns: dict[str, Run], name: str) -> None:
     for row in columns[name].rows(1):
         # sqrt(P) = 2 K for one half wave, 4 K for the clamped column's two
-        K = np.sqrt(row["value"] / EULER[name]) * np.pi / 2
+        K = np.sqrt(value_of(row) / EULER[name]) * np.pi / 2
         m = brentq(lambda m, K=K: ellipk(m) - K, 0, 0.9, xtol=1e-15)
         assert abs(row["deflection"]) == pytest.approx(np.sqrt(m) / K, rel=1e-7)
         assert row["shortening"] == pytest.approx(2 - 2 * ellipe(m) / K, rel=1e-7)
-        assert row["energy"] == pytest.approx(2 * row["value"] * (ellipe(m) / K - 1 + m), rel=1e-7)
+        assert row["energy"] == pytest.approx(2 * value_of(row) * (ellipe(m) / K - 1 + m), rel=1e-7)
 
 
 @pytest.mark.slow
@@ -125,13 +126,13 @@ def test_columns_buckle_again_and_again(configs: Path) -> None:
     # Clamped, in its plane: (2 k pi)^2 and between them tan(x) = x with x = sqrt(P) / 2.
     stage = "{parameter: parameters.P, from: 30, to: 100, largest: 5, switch: true}"
     run = Run(configs / "column_clamped.yaml", f"continuation={stage}")
-    loads = [point.row["value"] for point in run.special(BRANCH_POINT)]
+    loads = [value_of(point.row) for point in run.special(BRANCH_POINT)]
     np.testing.assert_allclose(loads, [4 * np.pi**2, 4 * 4.493409457909064**2], rtol=1e-8)
     assert sorted(run.branches) == [0, 1, 2, 3, 4]
     assert_stability_agrees(run)
     for one, other in ((1, 2), (3, 4)):
         for kind in (FOLD, BRANCH_POINT):
-            a, b = ([p.row["value"] for p in run.special(kind, i)] for i in (one, other))
+            a, b = ([value_of(p.row) for p in run.special(kind, i)] for i in (one, other))
             np.testing.assert_allclose(a, b, rtol=1e-8)
     assert run.special(BRANCH_POINT, 1) and run.special(FOLD, 3)
 
@@ -143,9 +144,9 @@ def test_a_straight_ribbon_of_sadowsky_has_no_branch_points_and_buckles_as_a_rod
     run, rod = Run(configs / f"{name}.yaml", SADOWSKY), columns[name]
     assert run.special(BRANCH_POINT) == []
     (point,) = run.special(BUCKLING)
-    assert point.row["value"] == pytest.approx(EULER[name], rel=1e-9)
+    assert value_of(point.row) == pytest.approx(EULER[name], rel=1e-9)
     for row in run.rows(1):
-        K = np.sqrt(row["value"] / EULER[name]) * np.pi / 2
+        K = np.sqrt(value_of(row) / EULER[name]) * np.pi / 2
         m = brentq(lambda m, K=K: ellipk(m) - K, 0, 0.9, xtol=1e-15)
         assert abs(row["deflection"]) == pytest.approx(np.sqrt(m) / K, rel=1e-7)
     assert sorted(run.branches) == sorted(rod.branches)
@@ -182,7 +183,7 @@ def test_fold_is_that_of_the_planar_elastica(snap: Run) -> None:
     (fold,) = snap.special(FOLD)
     row = fold.row
     truth = fsolve(singular, [4.6, -60, 4.9, 32 * DEGREE], xtol=1e-13)
-    assert row["value"] * DEGREE == pytest.approx(truth[3], rel=1e-8)
+    assert value_of(row) * DEGREE == pytest.approx(truth[3], rel=1e-8)
     np.testing.assert_allclose([row["n0x"], row["n0z"], row["m0y"]], truth[:3], rtol=1e-6)
 
 
@@ -192,7 +193,7 @@ def test_snapping_strip_loses_its_stability_at_the_fold(snap: Run) -> None:
     assert {point.row["negative"] for point in points[:at]} == {0}
     assert {point.row["negative"] for point in points[at + 1 :]} == {1}
     assert_stability_agrees(snap)
-    angles = [point.row["value"] for point in points]
+    angles = [value_of(point.row) for point in points]
     assert max(angles) == angles[at]
     assert (np.diff(angles[: at + 1]) > 0).all() and (np.diff(angles[at:]) < 0).all()
 
@@ -200,14 +201,15 @@ def test_snapping_strip_loses_its_stability_at_the_fold(snap: Run) -> None:
 def test_fold_is_the_same_from_both_directions(configs: Path, snap: Run) -> None:
     (fold,) = snap.special(FOLD)
     unstable = [row for row in snap.rows() if row["negative"] == 1]
-    begin = min(unstable, key=lambda row: abs(row["value"] - 20))
+    begin = min(unstable, key=lambda row: abs(value_of(row) - 20))
+    angle = value_of(begin)
     back = Run(
         configs / "snap.yaml",
         f"guess={{force: [{begin['n0x']}, 0, {begin['n0z']}], moment: [0, {begin['m0y']}, 0]}}",
-        f"continuation={{parameter: parameters.angle, from: {begin['value']}, to: 40, largest: 4}}",
+        f"continuation={{parameter: parameters.angle, from: {angle}, to: 40, largest: 4}}",
     )
     (again,) = back.special(FOLD)
-    assert again.row["value"] == pytest.approx(fold.row["value"], rel=1e-8)
+    assert value_of(again.row) == pytest.approx(value_of(fold.row), rel=1e-8)
     np.testing.assert_allclose(again.solution.n0, fold.solution.n0, rtol=1e-6, atol=1e-6)
     rows = back.rows()
     assert (rows[0]["negative"], rows[-1]["negative"]) == (1, 0)
@@ -221,7 +223,7 @@ def test_two_equilibria_below_the_fold_and_none_above(configs: Path, snap: Run) 
     prepared = prepare(load_scene(configs / "snap.yaml"))
 
     def beside(gap: float, guess: Point) -> float | None:
-        angle = fold.row["value"] + gap
+        angle = value_of(fold.row) + gap
         scene = load_scene(configs / "snap.yaml", [f"parameters.angle={angle!r}"])
         found = prepared.solve(scene, guess=guess.solution, fallback=False)
         return float(found.sample(0.5, "dot(r, ex)")) if found.verified else None
@@ -240,7 +242,7 @@ def test_goal_beyond_a_fold_is_not_reached_and_the_branch_is_kept(configs: Path)
     ending = run.continuation.ending
     assert not ending.reached
     assert "fold" in ending.reason and "32.363354" in ending.reason
-    assert run.rows()[-1]["value"] < 0
+    assert value_of(run.rows()[-1]) < 0
 
 
 def test_parameter_that_no_condition_uses_is_refused(configs: Path) -> None:

@@ -26,6 +26,7 @@ from ribbonopt.scene.lens import with_value
 from ribbonopt.solution.solution import Solution
 from ribbonopt.studies.continuation.continuation import Continuation
 from ribbonopt.studies.continuation.files import BranchFolder
+from ribbonopt.studies.continuation.recorded import value_of
 from ribbonopt.studies.continuation.walk.points import BRANCH_POINT, BUCKLING, POINT
 
 TIP = """
@@ -166,7 +167,7 @@ def test_a_branch_of_straight_ribbons(law: str, load: float) -> None:
     assert continuation.ending.reached
     assert not [point for point in points if point.kind == BRANCH_POINT]
     (buckling,) = [point for point in points if point.kind == BUCKLING]
-    assert buckling.row["value"] == pytest.approx(load, abs=1e-7)
+    assert value_of(buckling.row) == pytest.approx(load, abs=1e-7)
     straight = [point.row for point in points if point.branch == 0 and point.kind == POINT]
     assert {(row["error"], row["negative"]) for row in straight} == {(None, None)}
     assert all("no linearisation" in row["note"] for row in straight)
@@ -179,9 +180,9 @@ def test_a_branch_of_straight_ribbons(law: str, load: float) -> None:
         assert all(row["error"] <= 1e-9 and row["note"] == "" for row in rows[1:])
         assert rows[0]["error"] <= 1e-9 or "above the tolerance" in rows[0]["note"]
         assert rows[0]["error"] <= 1e-8
-        assert rows[-1]["value"] == 8
-        assert load < rows[0]["value"] < load + 0.01
-        (p, q), (a, b) = ([row[k] for row in rows[:2]] for k in ("value", "side"))
+        assert value_of(rows[-1]) == 8
+        assert load < value_of(rows[0]) < load + 0.01
+        (p, q), (a, b) = ([row[k] for row in rows[:2]] for k in ("parameters.P", "side"))
         # A pitchfork: the load is even in the deflection.
         assert p - a**2 * (q - p) / (b**2 - a**2) == pytest.approx(load, abs=1e-5)
         sides.append(rows[-1]["side"])
@@ -195,12 +196,12 @@ def test_a_branch_of_straight_ribbons(law: str, load: float) -> None:
 def test_columns(law: str, states: str) -> None:
     _, points = followed(COLUMN.format(law=law) + f"states: {states}\n")
     kind = BRANCH_POINT if law == "kirchhoff" else BUCKLING
-    found = [point.row["value"] for point in points if point.kind != POINT]
+    found = [value_of(point.row) for point in points if point.kind != POINT]
     stiffness = 1.001 if "regularized" in law else 1.0
     assert found == pytest.approx([stiffness * np.pi**2 / 4], abs=1e-8)
     assert [point.kind for point in points if point.kind != POINT] == [kind]
     buckled = [point.row for point in points if point.branch]
-    assert {row["value"] for row in buckled} >= {3.0}
+    assert {value_of(row) for row in buckled} >= {3.0}
     assert max(row["error"] for row in buckled if "above" not in row["note"]) <= 1e-9
     assert max(row["error"] for row in buckled) <= 1e-8
 
@@ -225,7 +226,7 @@ def test_a_branch_goes_on_after_a_break(tmp_path: Path) -> None:
         list(again.follow(Continuation(scene)))
         rows, same = again.rows, whole.rows
         assert [(r["number"], r["kind"]) for r in rows] == [(r["number"], r["kind"]) for r in same]
-        values = [[r["value"] for r in part] for part in (rows, same)]
+        values = [[value_of(r) for r in part] for part in (rows, same)]
         np.testing.assert_allclose(*values, rtol=1e-8)
 
 

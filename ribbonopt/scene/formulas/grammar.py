@@ -115,6 +115,8 @@ class Parser:
                 if [item.shape for item in items] != ["scalar"] * 3:
                     self._refuse(node, "a vector is written with three scalars, [a, b, c]")
                 return Vector((items[0], items[1], items[2]))
+            case ast.Attribute() if (path := self._source(node)) in self.names:
+                return Name(path, self.names[path])
             case ast.Attribute(attr="x" | "y" | "z" as axis):
                 vector = self._node(node.value, depth + 1, exponent=exponent)
                 if vector.shape != "vector":

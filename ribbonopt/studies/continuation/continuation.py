@@ -1,7 +1,7 @@
 """Continuation: branches of equilibria as a parameter of the scene moves, stage after stage.
 
     for point in Continuation(scene):
-        print(point.row["value"], point.row["energy"])
+        print(point.row["law.epsilon"], point.row["energy"])
 
 One structure is built; every point is a verified solution. Where a stage ends short of its goal,
 the iterator ends and `endings` says why.

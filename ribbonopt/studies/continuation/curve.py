@@ -18,8 +18,11 @@ from ribbonopt.solution.solution import Solution
 from ribbonopt.solvers.extended import Line
 from ribbonopt.transcription.structure import Output
 
+from .walk.points import Point
+
 STEPS = 20  # from one end to the other, where the stage says nothing of its steps
 SLOPE = 1e-5  # of the span: half the distance that derivatives by the position are taken over
+SOME = 0.1  # of the span: what errors of smaller values are relative to
 KEPT = 16  # scenes at recent positions
 
 
@@ -124,6 +127,16 @@ class Curve:
             if value is not None and self.position(value) == position:
                 return value
         return float(10**position) if self.stage.scale == "log" else position
+
+    def error_of(self, point: Point[Solution]) -> float | None:
+        """Return the bound of the error of a special point's value, relative; None for unknown."""
+        return None if point.error is None else self.relative(point.error, point.position)
+
+    def relative(self, error: float, position: float) -> float:
+        """Return an error of a position relative to the value there, or to what counts as some."""
+        if self.stage.scale == "log":
+            return float(np.log(10)) * error
+        return error / max(abs(position), SOME * self.span)
 
     def scene_at(self, position: float) -> Scene:
         """Return the scene with the parameter's value at a position."""

@@ -107,12 +107,12 @@ class BranchFolder:
     def write_table(self) -> None:
         """Write the rows as CSV."""
         rows = self.rows
-        names = list(rows[0]) if rows else []
+        names = list(dict.fromkeys(name for row in rows for name in row))
         with open(self.folder / TABLE, "w", newline="", encoding="utf-8") as file:
             writer = csv.writer(file)
             writer.writerow(names)
             for row in rows:
-                writer.writerow([_cell(row[name]) for name in names])
+                writer.writerow([_cell(row.get(name)) for name in names])
 
     def _note_endings(self, continuation: Continuation, known: set[Key]) -> set[Key]:
         for key, ending in continuation.endings.items():
@@ -166,10 +166,19 @@ def rows_of(lines: list[dict[str, Any]]) -> list[dict[str, Any]]:
 
 def _read(path: Path) -> list[dict[str, Any]]:
     """Whole lines; special points after the last regular one will be found again."""
-    lines = whole_lines(path, _sound)
+    lines = [_renamed(line) for line in whole_lines(path, _sound)]
     while lines and "row" in lines[-1] and lines[-1]["row"]["kind"] != POINT:
         lines.pop()
     return lines
+
+
+def _renamed(line: dict[str, Any]) -> dict[str, Any]:
+    """Return a line with its parameter under its own name, which once was called `value`."""
+    row = line.get("row", {})
+    if "value" not in row:
+        return line
+    path = row["parameter"]
+    return {**line, "row": {path if key == "value" else key: row[key] for key in row}}
 
 
 def _sound(line: Any) -> bool:
@@ -179,7 +188,7 @@ def _sound(line: Any) -> bool:
     row, ending = line.get("row"), line.get("ending")
     if isinstance(ending, dict):
         return {"stage", "branch", "reached", "reason"} <= ending.keys()
-    keys = {"number", "stage", "branch", "kind"}
+    keys = {"number", "stage", "branch", "parameter", "kind"}
     return isinstance(row, dict) and keys <= row.keys() and isinstance(line.get("state"), dict)
 
 

@@ -13,7 +13,9 @@ from ribbonopt.accuracy.estimate import analyse, relative_error
 from ribbonopt.checks.zero_moment import lacks_linearisation, unknown_of
 from ribbonopt.errors import ModelError
 from ribbonopt.plain import Row, finite
-from ribbonopt.scene import Scene
+from ribbonopt.scene import ContinuationStage, Scene
+from ribbonopt.scene.faults import suggestion
+from ribbonopt.scene.lens import value_at
 from ribbonopt.scene.quantities import ANSWERS, START_VECTORS
 from ribbonopt.scene.stages import parse_record, stages_of, words_of
 from ribbonopt.solution.solution import Solution
@@ -22,12 +24,15 @@ from .curve import Curve
 from .stops import Stops, conditions_of
 from .walk.points import POINT, Point
 
-#: numbers that every row has, besides what the scene records
+#: numbers that every row has, besides the parameters and what the scene records
 NUMBERS = (
-    *("value", "error", *ANSWERS),
+    *("error", *ANSWERS),
     *("number", "stage", "branch", "negative", "intervals", "iterations"),
 )
+SOFTEST = "softest"  # a number of rows where a stage asks for it
 WORDS = ("parameter", "kind", "origin", "switches", "note")
+VALUE = "value"  # stands for the parameter that a row's own stage moves
+PARAMETERS = "parameters."
 
 
 class Recorder:
@@ -42,31 +47,47 @@ class Recorder:
             If a condition of a stage names what is not recorded.
         """
         self.formulas = {name: parse_record(text, scene) for name, text in scene.record.items()}
+        self.parameters = tuple(dict.fromkeys(stage.parameter for stage in stages_of(scene)))
+        self.measured = any(stage.measured for stage in stages_of(scene))
         for name in self.formulas:
-            if name in (*NUMBERS, *WORDS):
+            if name in (*NUMBERS, *WORDS, VALUE, SOFTEST, *self.parameters):
                 raise ModelError(
                     f"record.{name}: every row has {name!r} already; choose another name",
                     f"record.{name}",
                 )
         for stage in stages_of(scene):
             for text, left, _, right in conditions_of(stage):
-                for side in (left, right):
-                    self.known(words_of(side), f"continuation.stop: {text!r}", "continuation")
+                if fault := self.fault_of((*words_of(left), *words_of(right))):
+                    raise ModelError(f"continuation.stop: {text!r}: {fault}", "continuation")
 
     @property
     def names(self) -> tuple[str, ...]:
         """Names of all numbers of a row."""
-        return (*NUMBERS, *self.formulas)
+        softest = [SOFTEST] if self.measured else []
+        return (*self.parameters, *NUMBERS, *softest, *self.formulas)
 
-    def known(self, words: Iterable[str], where: str, key: str = "") -> None:
-        """Raise a ModelError where a word is none of the names of a row."""
+    @property
+    def short(self) -> dict[str, str]:
+        """Columns by other names: a parameter of the scene by its own, as formulas call it."""
+        paths = [path for path in self.parameters if path.startswith(PARAMETERS)]
+        others = {path.removeprefix(PARAMETERS): path for path in paths}
+        return {name: path for name, path in others.items() if name not in self.names}
+
+    def column(self, word: str) -> str:
+        """Return the column that a word means, VALUE for itself; the word where it means none."""
+        return self.short.get(word, word)
+
+    def fault_of(self, words: Iterable[str]) -> str:
+        """Return what is wrong with words that should be names of numbers; "" if nothing."""
         for word in words:
-            if word not in self.names:
-                raise ModelError(
-                    f"{where}: found {word!r}, expected a recorded quantity: "
-                    f"{', '.join(self.names)}; add others under `record`",
-                    key,
+            if word != VALUE and self.column(word) not in self.names:
+                near = suggestion(word, [*self.names, *self.short])
+                known = ", ".join((*self.names, *self.short, VALUE))
+                return (
+                    f"found {word!r}, expected a recorded quantity{near}: {known}; "
+                    "add others under `record`"
                 )
+        return ""
 
     def row(self, point: Point[Solution], curve: Curve) -> dict[str, Any]:
         """Return what is recorded of a point, in the units of the scene."""
@@ -77,15 +98,17 @@ class Recorder:
             "branch": point.branch,
             "origin": point.origin,
             "parameter": stage.parameter,
-            "value": curve.value(point.position),
+            **self._parameters(solution.scene, stage, curve.value(point.position)),
             "kind": point.kind,
             "negative": _negative(solution) if stage.stability and point.kind == POINT else None,
             # At a fold the equations at a given parameter are singular: so is their estimate.
-            "error": error_of(solution) if point.kind == POINT else None,
+            "error": error_of(solution) if point.kind == POINT else curve.error_of(point),
         }
         row |= self.varying(point, curve)
         row["switches"] = solution.switch_points.tolist()
         row["intervals"] = solution.dense.blocks.layout.element_count
+        if self.measured:
+            row[SOFTEST] = _softest(solution) if stage.measured and point.kind == POINT else None
         row["iterations"] = solution.iterations
         told = (*unknown_of(solution), *solution.given_up, *solution.fell_back)
         row["note"] = "; ".join(filter(None, [point.note, *told]))
@@ -93,8 +116,21 @@ class Recorder:
 
     def varying(self, point: Point[Solution], curve: Curve) -> dict[str, float | None]:
         """Return the numbers of a row that vary along a branch, in the units of the scene."""
-        found = sampled(point.solution, self.formulas)
-        return {"value": curve.value(point.position), **numbers_of(point.solution), **found}
+        solution = point.solution
+        parameters = self._parameters(solution.scene, curve.stage, curve.value(point.position))
+        return {**parameters, **numbers_of(solution), **sampled(solution, self.formulas)}
+
+    def _parameters(
+        self, scene: Scene, stage: ContinuationStage, value: float
+    ) -> dict[str, float | None]:
+        """Values of the parameters of all stages: of the others as they are in the scene."""
+        given = {path: value_at(scene, path) for path in self.parameters if path != stage.parameter}
+        return {path: given.get(path, value) for path in self.parameters}
+
+    def named(self, row: Mapping[str, Any], stage: ContinuationStage) -> Row:
+        """Return a row of a stage with the numbers by all their names, as conditions may say."""
+        others = {name: row.get(path) for name, path in self.short.items()}
+        return {**row, VALUE: row.get(stage.parameter), **others}
 
 
 @dataclass(frozen=True, eq=False)
@@ -115,7 +151,7 @@ class StageRecords:
 
     def stopped(self, row: Mapping[str, Any]) -> str:
         """Return the condition of the stage that a row meets, "" if none."""
-        return self.stops.met(row)
+        return self.stops.met(self.recorder.named(row, self.curve.stage))
 
     def stopped_at(self, kind: str, count: int) -> str:
         """Return what ends the stage at the special point of a kind and number, "" if nothing."""
@@ -128,7 +164,13 @@ class StageRecords:
         """
         if not self.stops.conditions:
             return {}
-        return self.stops.margins(self.recorder.varying(point, self.curve))
+        row = self.recorder.varying(point, self.curve)
+        return self.stops.margins(self.recorder.named(row, self.curve.stage))
+
+
+def value_of(row: Mapping[str, Any]) -> float:
+    """Return the value of the parameter that the stage of a row moves."""
+    return float(row[row["parameter"]])
 
 
 def error_of(solution: Solution) -> float | None:
@@ -166,3 +208,10 @@ def _negative(solution: Solution) -> int | None:
     from ribbonopt.checks.stability import negative_directions  # builds second derivatives
 
     return negative_directions(solution)
+
+
+def _softest(solution: Solution) -> float | None:
+    from ribbonopt.checks.softest import softest  # builds second derivatives
+
+    found = softest(solution)
+    return None if isinstance(found, str) else found.eigenvalue

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import base64
+from collections.abc import Collection, Iterator
 from typing import Any
 
 import numpy as np
@@ -71,15 +72,14 @@ class Stored:
         )
 
 
-def spread(
-    continuation: Continuation, lines: list[dict[str, Any]], count: int
-) -> list[tuple[dict[str, Any], Solution]]:
-    """Rows and solutions of a few points, spread over all branches."""
-    regular = [line for line in lines if "row" in line and line["row"]["kind"] == POINT]
+def restored(
+    continuation: Continuation, lines: list[dict[str, Any]], numbers: Collection[int]
+) -> Iterator[tuple[int, Solution]]:
+    """Yield numbers of points and their solutions, from parsed lines."""
     history = Stored(continuation, lines)
-    places = np.linspace(0, len(regular) - 1, min(count, len(regular))).round()
-    chosen = [regular[int(i)] for i in places]
-    return [(line["row"], history.point(line).solution) for line in chosen]
+    for line in lines:
+        if "row" in line and line["row"]["number"] in numbers:
+            yield line["row"]["number"], history.point(line).solution
 
 
 def state_of(point: Point[Solution]) -> dict[str, Any]:

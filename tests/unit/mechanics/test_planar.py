@@ -16,6 +16,7 @@ from ribbonopt.mechanics.section import RodFields
 from ribbonopt.pipeline.prepared import prepare, solve
 from ribbonopt.scene import Scene, load_scene, loads_scene
 from ribbonopt.solution.solution import Solution
+from ribbonopt.studies.continuation.recorded import value_of
 
 PLANES = [Plane(axis, sign) for axis in range(3) for sign in (1, -1)]
 each_plane = pytest.mark.parametrize("plane", PLANES, ids=str)
@@ -170,7 +171,7 @@ def test_the_snap_has_its_fold_in_the_plane_too(configs: Path) -> None:
     folds = []
     for states in ("planar", "reduced"):
         branch = list(Continuation(load_scene(configs / "snap.yaml", [f"states={states}"])))
-        folds += [p.row["value"] for p in branch if p.kind == "fold"]
+        folds += [value_of(p.row) for p in branch if p.kind == "fold"]
         assert next(p.row["negative"] for p in branch if p.kind == "point") == 0
     assert len(folds) == 2
     assert folds[0] == pytest.approx(folds[1], abs=1e-9)

@@ -12,6 +12,8 @@ import pytest
 
 from ribbonopt.errors import OutputError
 from ribbonopt.scene import Scene, dump_scene, loads_scene
+from ribbonopt.scene.lens import value_at
+from ribbonopt.scene.stages import stages_of
 from ribbonopt.studies.continuation.continuation import Continuation
 from ribbonopt.studies.continuation.files import (
     FILE,
@@ -21,7 +23,8 @@ from ribbonopt.studies.continuation.files import (
     load_branch,
     rows_of,
 )
-from ribbonopt.studies.continuation.stored import Stored, spread
+from ribbonopt.studies.continuation.recorded import value_of
+from ribbonopt.studies.continuation.stored import Stored, restored
 from ribbonopt.studies.continuation.walk.branches import Nothing
 from ribbonopt.studies.continuation.walk.points import BRANCH_POINT, POINT, Point
 
@@ -80,9 +83,10 @@ SCENES = {
     "stopped": STOPPED,
     "ways": WAYS,
 }
+START = ["number", "stage", "branch", "origin", "parameter"]
 HEAD = [
-    *("number", "stage", "branch", "origin", "parameter", "value", "kind", "negative", "error"),
-    *("energy", "H0", "n0x", "n0y", "n0z", "m0x", "m0y", "m0z", "u1", "u2", "u3"),
+    *("kind", "negative", "error", "energy"),
+    *("H0", "n0x", "n0y", "n0z", "m0x", "m0y", "m0z", "u1", "u2", "u3"),
 ]
 TAIL = ["switches", "intervals", "iterations", "note"]
 
@@ -204,19 +208,63 @@ def test_points_in_memory_are_those_of_the_folder(followed: dict[str, Followed])
         assert point.tangent.tobytes() == other.tangent.tobytes()
 
 
-@pytest.mark.parametrize("count", [1, 3, 1000])
-def test_spread_has_first_and_last_of_the_regular_points(
-    followed: dict[str, Followed], count: int
-) -> None:
+def test_chosen_points_are_restored(followed: dict[str, Followed]) -> None:
     of = followed["branches and stages"]
-    regular = [point for point in of.points if point.kind == POINT]
-    found = spread(Continuation(of.scene), load_branch(of.folder)[1], count)
-    numbers = [row["number"] for row, _ in found]
-    assert len(numbers) == min(count, len(regular))
-    assert numbers[0] == regular[0].number
-    assert numbers == sorted(set(numbers))
-    if count > 1:
-        assert numbers[-1] == regular[-1].number
+    special = next(point.number for point in of.points if point.kind == BRANCH_POINT)
+    chosen = {0, special, of.points[-1].number}
+    found = dict(restored(Continuation(of.scene), load_branch(of.folder)[1], chosen))
+    assert found.keys() == chosen
+    for point in of.points:
+        if point.number in chosen:
+            back, there = (
+                one.sample(np.ones(1), "r") for one in (found[point.number], point.solution)
+            )
+            np.testing.assert_array_equal(back, there)
+
+
+@each_scene
+def test_each_parameter_has_its_column(followed: dict[str, Followed], name: str) -> None:
+    of = followed[name]
+    paths = list(dict.fromkeys(stage.parameter for stage in stages_of(of.scene)))
+    for point in of.points:
+        scene = point.solution.scene
+        assert [point.row[path] for path in paths] == [value_at(scene, path) for path in paths]
+        assert "value" not in point.row
+    # where a stage ended its parameter stays
+    ends = {}
+    for point in of.points:
+        for path, value in ends.items():
+            if path != point.row["parameter"]:
+                assert point.row[path] == value
+        if point.branch == 0 and point.kind == POINT:
+            ends[point.row["parameter"]] = value_of(point.row)
+    assert len(ends) == len(paths)
+
+
+@each_scene
+def test_branches_of_before_are_read(
+    followed: dict[str, Followed], tmp_path: Path, name: str
+) -> None:
+    # the parameter's column was called `value`
+    of = followed[name]
+    old = []
+    for text in of.lines:
+        line = json.loads(text)
+        if "row" in line:
+            paths = {stage.parameter for stage in stages_of(of.scene)}
+            row = {"value": value_of(line["row"])}
+            row |= {key: value for key, value in line["row"].items() if key not in paths}
+            line["row"] = row
+        old.append(json.dumps(line) + "\n")
+    path = copied(of, tmp_path / "o", old[:6])
+    begun = [value_of(row) for row in rows_of(load_branch(path)[1])]
+    assert begun == [value_of(point.row) for point in of.points[: len(begun)]]
+    assert len(begun) > 3
+    continuation = Continuation(of.scene)
+    list(BranchFolder(path, of.scene, resume=True).follow(continuation))
+    assert continuation.ending.reached
+    rows = rows_of(load_branch(path)[1])
+    assert [value_of(row) for row in rows] == [value_of(point.row) for point in of.points]
 
 
 # files
@@ -239,7 +287,8 @@ def test_each_line_is_there_before_its_point_is_given(
 @each_scene
 def test_columns_are_stable(followed: dict[str, Followed], name: str) -> None:
     of = followed[name]
-    expected = [*HEAD, *of.scene.record, *TAIL]
+    parameters = dict.fromkeys(stage.parameter for stage in stages_of(of.scene))
+    expected = [*START, *parameters, *HEAD, *of.scene.record, *TAIL]
     with open(of.folder / TABLE, newline="", encoding="utf-8") as file:
         head, *rows = csv.reader(file)
     assert head == expected

@@ -14,17 +14,19 @@ from ribbonopt.pipeline.prepared import solve
 from ribbonopt.scene import load_scene
 from ribbonopt.solution.solution import Solution
 from ribbonopt.views import plot_ribbon
-from ribbonopt.views.branch import COLOURS, plot_branch, save_branch_figures
+from ribbonopt.views.branch import COLOURS, draw_branch, plot_branch, save_branch_figures
+from ribbonopt.views.branch_rows import BranchFigure
 from ribbonopt.views.strip import plot_strip
+from ribbonopt.views.style import blank
 
 CONFIGS = Path(__file__).parents[3] / "configs"
 STATES = ("stable", "unstable", "stability unknown")
 TURN = math.sqrt(0.5)
 
 
-def row(number, value, negative=0, kind="point", **others):
-    point = {"stage": 1, "branch": 0, "parameter": "parameters.load", "error": 1e-9}
-    return {**point, "number": number, "value": value, "negative": negative, "kind": kind, **others}
+def row(number, value, negative=0, kind="point", parameter="parameters.load", **others):
+    point = {"stage": 0, "branch": 0, "parameter": parameter, parameter: value, "error": 1e-9}
+    return {**point, "number": number, "negative": negative, "kind": kind, **others}
 
 
 def fold():
@@ -52,7 +54,7 @@ def pitchfork():
 def two_stages():
     rows = [row(i, 0.1 * i, energy=float(i), parameter="parameters.shortening") for i in range(4)]
     for i, epsilon in enumerate(np.geomspace(0.1, 1e-3, 5)):
-        rows.append(row(4 + i, epsilon, energy=3.0 + i, stage=2, parameter="law.epsilon"))
+        rows.append(row(4 + i, epsilon, energy=3.0 + i, stage=1, parameter="law.epsilon"))
     return rows
 
 
@@ -62,6 +64,13 @@ def lines_of(axes, label):
 
 def data_of(axes, label):
     return [line.get_xydata() for line in lines_of(axes, label)]
+
+
+def on_curve(curve, points):
+    """Check that a curve begins and ends with points, and meets each of them in their order."""
+    places = [int(np.flatnonzero((curve == point).all(axis=1))[0]) for point in points]
+    assert places == sorted(places)
+    assert (places[0], places[-1]) == (0, len(curve) - 1)
 
 
 def legend_of(figure):
@@ -78,12 +87,12 @@ def test_unstable_stretches_are_dashed_and_folds_end_both():
     figure = plot_branch(rows, "value", "energy", title="arch")
     (axes,) = figure.axes
     first, last = (i for i, r in enumerate(rows) if r["kind"] == "fold")
-    xy = np.array([[r["value"], r["energy"]] for r in rows])
+    xy = np.array([[r["parameters.load"], r["energy"]] for r in rows])
     before, after = data_of(axes, "stable")
     (between,) = data_of(axes, "unstable")
-    np.testing.assert_array_equal(before, xy[: first + 1])
-    np.testing.assert_array_equal(between, xy[first : last + 1])
-    np.testing.assert_array_equal(after, xy[last:])
+    on_curve(before, xy[: first + 1])
+    on_curve(between, xy[first : last + 1])
+    on_curve(after, xy[last:])
     assert {line.is_dashed() for line in lines_of(axes, "unstable")} == {True}
     assert {line.is_dashed() for line in lines_of(axes, "stable")} == {False}
     assert not lines_of(axes, "stability unknown")
@@ -99,8 +108,8 @@ def test_folds_are_squares_and_the_ends_are_marked():
     assert folds.get_marker() == "s"
     assert folds.get_linestyle() == "None"
     np.testing.assert_allclose(folds.get_ydata(), [-TURN, TURN])
-    assert data_of(axes, "first point")[0].tolist() == [[rows[0]["value"], -1.6]]
-    assert data_of(axes, "last point")[0].tolist() == [[rows[-1]["value"], 1.6]]
+    assert data_of(axes, "first point")[0].tolist() == [[rows[0]["parameters.load"], -1.6]]
+    assert data_of(axes, "last point")[0].tolist() == [[rows[-1]["parameters.load"], 1.6]]
     assert legend_of(figure) == ["stable", "unstable", "first point", "last point", "fold (2)"]
 
 
@@ -109,7 +118,17 @@ def test_branches_differ_in_colour_and_are_not_joined():
     (axes,) = figure.axes
     drawn = [line for line in axes.lines if line.get_label() in STATES]
     assert [line.get_color() for line in drawn] == [COLOURS[k] for k in (0, 0, 1, 2)]
-    assert [len(line.get_xdata()) for line in drawn] == [5, 5, 4, 4]
+    runs = [[r for r in pitchfork() if r["branch"] == k] for k in range(3)]
+    ends = [line.get_xydata()[[0, -1]].tolist() for line in drawn]
+    assert ends[:2] == [[[0, 0], [1, 0]], [[1, 0], [2, 0]]]
+    # each begins where it branches off
+    assert ends[2:] == [[[1, 0], [2, 1]], [[1, 0], [2, -1]]]
+    for line, run in zip(drawn[2:], runs[1:], strict=True):
+        points = [[r["parameters.load"], r["u2"]] for r in run]
+        on_curve(line.get_xydata(), [[1, 0], *points])
+        # between its points it is the parabola that it is
+        x, y = line.get_xydata().T
+        np.testing.assert_allclose(x, 1 + y**2, atol=0.02)
     (switch,) = lines_of(axes, "branch point")
     assert (switch.get_marker(), switch.get_markerfacecolor()) == ("o", "w")
     assert switch.get_xydata().tolist() == [[1, 0]]
@@ -128,14 +147,16 @@ def test_where_stability_changes_between_points_it_is_unknown():
     }
     thin, thick = lines_of(axes, "stability unknown")[0], lines_of(axes, "stable")[0]
     assert thin.get_linewidth() < thick.get_linewidth()
+    assert thin.is_dashed()
 
 
 def test_without_any_stability_lines_are_plain():
     figure = plot_branch([row(i, i, None, u2=i) for i in range(3)], "value", "u2")
-    (line, *_) = figure.axes[0].lines
+    (line,) = lines_of(figure.axes[0], "stability unknown")
     assert not line.is_dashed()
-    assert len(line.get_xdata()) == 3
-    assert legend_of(figure) == ["first point", "last point"]
+    on_curve(line.get_xydata(), [[0, 0], [1, 1], [2, 2]])
+    assert legend_of(figure) == ["stability unknown", "first point", "last point"]
+    assert not figure.legends[0].get_lines()[0].is_dashed()
 
 
 @pytest.mark.parametrize("log", [True, ["law.epsilon"]])
@@ -145,7 +166,8 @@ def test_each_parameter_has_its_axis(log):
     assert right.get_xlabel() == "law.epsilon\nstage 2"
     assert (left.get_xscale(), right.get_xscale()) == ("linear", "log")  # the first is at 0
     assert left.get_ylim() == right.get_ylim()
-    assert [len(axes.lines[0].get_xdata()) for axes in (left, right)] == [4, 5]
+    assert data_of(left, "stable")[0][[0, -1]].tolist() == [[0, 0], [0.1 * 3, 3]]
+    assert data_of(right, "stable")[0][[0, -1], 1].tolist() == [3, 7]
     assert lines_of(left, "first point") and not lines_of(left, "last point")
     assert lines_of(right, "last point") and not lines_of(right, "first point")
 
@@ -154,7 +176,10 @@ def test_stages_share_an_axis_where_the_parameter_is_not_drawn():
     (axes,) = plot_branch(two_stages(), "number", "energy", log=True).axes
     assert axes.get_xlabel() == "point"
     assert axes.get_xscale() == "linear"
-    assert [len(xy) for xy in data_of(axes, "stable")] == [4, 5]
+    assert [xy[[0, -1]].tolist() for xy in data_of(axes, "stable")] == [
+        [[0, 0], [3, 3]],
+        [[4, 3], [8, 7]],
+    ]
 
 
 @pytest.mark.parametrize("high", [0.02, 0.5, 100.0])
@@ -187,7 +212,7 @@ def test_one_point(log):
 def test_rows_without_values_are_skipped():
     rows = [row(i, i, u2=u2) for i, u2 in enumerate([1, None, 2, math.nan, 3])] + [row(5, 5)]
     (axes,) = plot_branch(rows, "value", "u2").axes
-    assert data_of(axes, "stable")[0].tolist() == [[0, 1], [2, 2], [4, 3]]
+    on_curve(data_of(axes, "stable")[0], [[0, 1], [2, 2], [4, 3]])
     assert data_of(axes, "last point")[0].tolist() == [[4, 3]]
 
 
@@ -233,16 +258,218 @@ def test_bands_are_drawn_whole_and_said_to_be():
 
 def test_files_are_written(tmp_path):
     pairs = [("value", "energy"), ("value", "u2"), ("u2", "energy"), ("number", "error")]
-    ribbons = [solved("helix")]
-    paths, left_out = save_branch_figures(fold(), ribbons, ["helix"], tmp_path, [*pairs, pairs[0]])
+    figure = BranchFigure(fold(), (*pairs, pairs[0]))
+    ribbons = {figure.pictured[0]["number"]: solved("helix")}
+    paths, left_out = save_branch_figures(figure, ribbons, tmp_path)
     assert left_out == []
     assert [path.name for path in paths] == ["branch.png", "ribbons.png"]
     assert all(imread(path).std() > 0.02 for path in paths)
     assert imread(paths[0]).shape[1] > 1500  # two panels wide
-    (only,) = save_branch_figures(fold(), [], [], tmp_path, pairs[:1]).paths
+    (only,) = save_branch_figures(BranchFigure(fold(), (pairs[0],)), {}, tmp_path).paths
     assert only == tmp_path / "branch.png"
 
 
 def test_a_folder_that_is_not_there(tmp_path):
     with pytest.raises(OutputError, match=r"branch\.png: cannot be written"):
-        save_branch_figures(fold(), [], [], tmp_path / "none", [("value", "energy")])
+        figure = BranchFigure(fold(), (("value", "energy"),))
+        save_branch_figures(figure, {}, tmp_path / "none")
+
+
+# jumps, corners, notes, numbers
+
+
+def straight(kinds=(), notes=None, count=7):
+    kinds, notes = dict(kinds), notes or {}
+    return [
+        row(i, float(i), kind=kinds.get(i, "point"), u2=float(i % 3), note=notes.get(i, ""))
+        for i in range(count)
+    ]
+
+
+def test_no_line_crosses_a_jump():
+    rows = straight()
+    figure = BranchFigure(rows, (("value", "u2"),), jumps=[3])
+    (axes,) = draw_branch(figure, []).axes
+    ends = [xy[[0, -1], 0].tolist() for xy in data_of(axes, "stable")]
+    assert ends == [[0, 2], [3, 6]]
+
+
+@pytest.mark.parametrize("jump", [0, 6])
+def test_a_jump_at_an_end_leaves_a_point(jump):
+    (axes,) = draw_branch(BranchFigure(straight(), (("value", "u2"),), jumps=[jump]), []).axes
+    ends = [xy[[0, -1], 0].tolist() for xy in data_of(axes, "stable")]
+    assert ends == ([[0, 6]] if jump == 0 else [[0, 5], [6, 6]])
+
+
+@pytest.mark.parametrize(
+    ("kind", "marker", "name"),
+    [
+        *(("fold", "s", "fold"), ("branch point", "o", "branch point")),
+        *(("buckling point", "D", "buckling point"), ("kink", "v", "kink")),
+        ("what comes later", "*", "other special point"),
+    ],
+)
+def test_each_kind_has_its_mark(kind, marker, name):
+    figure = plot_branch(straight({2: kind, 4: kind}), "value", "u2")
+    (line,) = lines_of(figure.axes[0], name)
+    assert (line.get_marker(), line.get_xdata().tolist()) == (marker, [2, 4])
+    assert f"{name} (2)" in legend_of(figure)
+
+
+def test_a_kink_is_a_corner():
+    def slopes(kind):
+        (axes,) = plot_branch(straight({2: kind}), "value", "u2").axes
+        x, y = data_of(axes, "stable")[0].T
+        at = int(np.flatnonzero(x == 2)[0])
+        return [(y[k] - y[at]) / (x[k] - x[at]) for k in (at - 1, at + 1)]
+
+    into, out = slopes("kink")
+    assert into == pytest.approx(1, rel=0.3)
+    assert out < -1
+    into, out = slopes("branch point")
+    assert abs(into - out) < 0.5 * 3
+
+
+def test_notes_are_marked_where_they_begin():
+    notes = {1: "odd", 2: "odd", 3: "other", 5: "odd"}
+    figure = plot_branch(straight(notes=notes), "value", "u2")
+    (line,) = lines_of(figure.axes[0], "note")
+    assert line.get_xdata().tolist() == [1, 3, 5]
+    assert "note" in legend_of(figure)
+
+
+def test_special_points_and_ends_are_pictured_and_numbered():
+    rows = fold()
+    subject = BranchFigure(rows, (("value", "energy"),))
+    chosen = [r["number"] for r in subject.pictured]
+    special = [r["number"] for r in rows if r["kind"] != "point"]
+    assert {0, len(rows) - 1, *special} <= set(chosen)
+    assert chosen == sorted(set(chosen))
+    assert len(chosen) <= 12
+    (axes,) = draw_branch(subject, chosen).axes
+    texts = [number for text in axes.texts for number in text.get_text().split(", ")]
+    assert sorted(map(int, texts)) == chosen
+    for text in axes.texts:
+        number = int(text.get_text().split(",")[0])
+        assert text.xy == pytest.approx((rows[number]["parameters.load"], rows[number]["energy"]))
+    figure = draw_branch(subject, chosen)
+    assert "numbers: points in ribbons.png" in legend_of(figure)
+
+
+def test_pictures_are_spread_along_the_way_not_along_the_points():
+    # many points at the begin, as where steps are short
+    values = [*np.linspace(0, 0.01, 50), *np.linspace(0.1, 1, 10)]
+    rows = [row(i, v, u2=v) for i, v in enumerate(values)]
+    chosen = [r["u2"] for r in BranchFigure(rows, (("value", "u2"),)).pictured]
+    assert max(np.diff(chosen)) < 0.25
+    assert (chosen[0], chosen[-1]) == (0, 1)
+
+
+def test_too_many_special_points_are_not_all_pictured():
+    rows = straight({i: "fold" for i in range(1, 60, 2)}, count=60)
+    chosen = BranchFigure(rows, (("value", "u2"),)).pictured
+    assert len(chosen) <= 12
+    assert sum(r["kind"] == "fold" for r in chosen) == 8
+
+
+def test_captions_name_number_kind_and_value(tmp_path, monkeypatch):
+    said = []
+    monkeypatch.setattr(
+        "ribbonopt.views.branch.plot_strip",
+        lambda _, captions: said.append(captions) or blank(1, 1),
+    )
+    rows = pitchfork()
+    subject = BranchFigure(rows, (("value", "u2"),))
+    save_branch_figures(subject, {4: None, rows[-1]["number"]: None}, tmp_path)
+    ((first, last),) = said
+    assert first == "4  branch point\nparameters.load = 1"
+    assert last == f"{rows[-1]['number']}\nparameters.load = 2\nbranch 2"
+
+
+def test_mirror_images_are_both_seen():
+    rows = [r | {"energy": abs(r["u2"])} for r in pitchfork()]
+    one, other = plot_branch(rows, "value", "energy").axes[0].lines[2:4]
+    assert one.get_linewidth() > 2 * other.get_linewidth()
+    one, other = plot_branch(rows, "value", "u2").axes[0].lines[2:4]
+    assert one.get_linewidth() == other.get_linewidth()
+
+
+def test_a_branch_begins_at_the_nearest_crossing():
+    rows = [
+        row(i, float(i), kind="branch point" if i in (1, 3) else "point", u2=0.0) for i in range(5)
+    ]
+    rows += [row(5, 3.1, branch=1, u2=0.2), row(6, 4.0, branch=1, u2=1.0)]
+    rows += [row(7, 1.1, branch=2, u2=0.2), row(8, 2.0, branch=2, u2=1.0)]
+    drawn = [
+        line.get_xydata()[0].tolist()
+        for line in plot_branch(rows, "value", "u2").axes[0].lines
+        if line.get_color() in COLOURS[1:3]
+    ]
+    assert drawn == [[3, 0], [1, 0]]
+
+
+@pytest.mark.parametrize("si", [False, True])
+def test_axes_bear_units_where_they_are_known(si):
+    path = "boundary.end.position.z"
+    rows = [row(i, i, parameter=path, energy=i, tip=i) for i in range(3)]
+    pairs = (("value", "energy"), (path, "tip"), ("u2", "error"))
+    labels = [
+        (axes.get_xlabel(), axes.get_ylabel())
+        for axes in draw_branch(BranchFigure(rows, pairs, "arch", si=si), []).axes
+    ]
+    expected = [(f"{path} (m)", "energy (J)"), (f"{path} (m)", "tip")]
+    plain = [(path, "energy"), (path, "tip")]
+    assert labels[:2] == (expected if si else plain)
+
+
+def test_rounding_is_flat():
+    rows = [row(i, i, u2=(-1) ** i * 1e-31, m0x=3 + 1e-15 * i, m0y=0.0, m0z=0.0) for i in range(5)]
+    for name in ("u2", "m0x"):
+        (axes,) = plot_branch(rows, "value", name).axes
+        low, high = axes.get_ylim()
+        assert high - low > 1
+        assert low < rows[0][name] < high
+
+
+@pytest.mark.parametrize("branches", [1, 3, 7])
+def test_all_of_the_legend_is_in_the_figure(branches):
+    rows = straight({1: "fold", 2: "kink", 3: "branch point", 4: "buckling point", 5: "new"})
+    rows += [row(7 + b, 1.0, None, branch=b, u2=1.0, note="odd") for b in range(1, branches)]
+    figure = draw_branch(BranchFigure(rows, (("value", "u2"),)), [0])
+    figure.canvas.draw()
+    box = figure.legends[0].get_window_extent()
+    width, height = figure.canvas.get_width_height()
+    assert box.x0 >= 0 and box.y0 >= 0 and box.x1 <= width and box.y1 <= height
+
+
+def test_rows_may_say_where_a_branch_begins():
+    rows = [row(i, float(i), kind="branch point" if i == 3 else "point", u2=0.0) for i in range(5)]
+    rows += [row(5, 3.1, branch=1, u2=0.2, origin=1), row(6, 4.0, branch=1, u2=1.0, origin=1)]
+    (branch,) = (
+        line
+        for line in plot_branch(rows, "value", "u2").axes[0].lines
+        if line.get_color() == COLOURS[1]
+    )
+    assert branch.get_xydata()[0].tolist() == [1, 0]
+
+
+def test_the_two_ways_from_a_start_are_one_curve():
+    def there(x):
+        return (x - 0.3) ** 2
+
+    ways = [np.linspace(0, 1, 6), np.linspace(0, -1, 6)[1:]]
+    rows = [row(i, x, u2=there(x)) for i, x in enumerate(ways[0])]
+    rows += [row(6 + i, x, branch=1, origin=0, u2=there(x)) for i, x in enumerate(ways[1])]
+    lines = plot_branch(rows, "value", "u2").axes[0].lines
+    curve = next(line for line in lines if line.get_color() == COLOURS[1]).get_xydata()
+    assert curve[0].tolist() == [0, there(0)]
+    slope = (curve[1, 1] - curve[0, 1]) / (curve[1, 0] - curve[0, 0])
+    assert slope == pytest.approx(-0.6, abs=0.06)
+
+
+def test_a_branch_that_begins_with_a_jump_is_not_joined():
+    rows = pitchfork()
+    first = next(r["number"] for r in rows if r["branch"] == 1)
+    axes = draw_branch(BranchFigure(rows, (("value", "u2"),), jumps=[first]), []).axes[0]
+    drawn = [line for line in axes.lines if line.get_color() == COLOURS[1]]
+    assert [line.get_xydata()[0].tolist() for line in drawn] == [[1.25, 0.5]]

@@ -14,6 +14,7 @@ from ribbonopt.scene import Boundary, Collocation, End, Loop, RotationVector, Sc
 from ribbonopt.solution.solution import Solution
 from ribbonopt.views import Pictures, plot_plane, plot_ribbon, plot_strains
 from ribbonopt.views.branch import save_branch_figures
+from ribbonopt.views.branch_rows import BranchFigure
 from ribbonopt.views.files import draw_figures
 from ribbonopt.views.pieces import in_plane, sample_pieces
 from ribbonopt.views.strip import plot_strip
@@ -23,7 +24,15 @@ BOUNDARY = Boundary(
     End("clamped", (0.0, 0.0, 0.0), "identity"),
     End("clamped", (0.68, 0.15, 0.31), RotationVector((0.0, 2.4, 0.6))),
 )
-ROW = {"stage": 0, "branch": 0, "parameter": "a", "value": 1.0, "kind": "point", "negative": 0}
+ROW = {
+    "number": 0,
+    "stage": 0,
+    "branch": 0,
+    "parameter": "a",
+    "a": 1.0,
+    "kind": "point",
+    "negative": 0,
+}
 
 
 @pytest.fixture(scope="module")
@@ -73,8 +82,9 @@ def test_pictures_that_there_are_none_of_are_left_out(rod: Solution, tmp_path: P
 
 
 def test_of_a_branch_of_rods_the_branch_is_drawn(rod: Solution, tmp_path: Path) -> None:
-    rows = [ROW | {"energy": 1.0}, ROW | {"value": 2.0, "energy": 3.0}]
-    drawn = save_branch_figures(rows, [rod], ["rod"], tmp_path, [("value", "energy")])
+    rows = [ROW | {"energy": 1.0}, ROW | {"number": 1, "a": 2.0, "energy": 3.0}]
+    figure = BranchFigure(rows, (("a", "energy"),))
+    drawn = save_branch_figures(figure, {0: rod}, tmp_path)
     assert [path.name for path in drawn.paths] == ["branch.png"]
     assert len(drawn.left_out) == 1
     assert drawn.left_out[0].startswith("ribbons.png: rod bends in its own plane")

@@ -1,0 +1,87 @@
+"""Axes of the figures of a branch: what they are called, in which units, on which scale."""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING
+
+from ribbonopt.scene.quantities import START_VECTORS
+
+from .branch_rows import VALUE, Plane
+from .columns import LEAST, NOISE
+
+if TYPE_CHECKING:
+    from matplotlib.axes import Axes
+    from matplotlib.axis import Axis
+
+COUNTS = ("number", "stage", "branch", "negative", "intervals", "iterations")
+MARGIN = 0.08  # of the axes, beside what is drawn: room for numbers
+LABELS = {"number": "point", "negative": "negative directions", "error": "estimated error"}
+#: SI units of the columns of every row
+UNITS = {"energy": "J", "H0": "N"} | {
+    name: unit
+    for names, unit in zip(START_VECTORS, ("N", "N m", "1/m"), strict=True)
+    for name in names
+}
+#: SI units of numbers of a scene, by a word of their path; a load is a force per length
+PARTS = {
+    **dict.fromkeys(("position", "distance", "interval", "length", "width", "thickness"), "m"),
+    **{"force": "N", "moment": "N m", "youngs_modulus": "Pa"},
+}
+
+
+def unit_of(column: str, si: bool) -> str:
+    """Return the unit of a column; "" where it has none, or none that is known."""
+    if not si:
+        return ""
+    parts = column.split(".")
+    if parts[0] == "loads":
+        return "N/m" if "force" in parts else ""
+    if parts[0] not in ("boundary", "interval", "ribbon"):
+        return UNITS.get(column, "")
+    return next((PARTS[part] for part in parts if part in PARTS), "")
+
+
+def label(column: str, si: bool) -> str:
+    """Return the words for a column, with its unit."""
+    unit = unit_of(column, si)
+    return LABELS.get(column, column) + (f" ({unit})" if unit else "")
+
+
+def dress(axes: Axes, plane: Plane) -> None:
+    """Label and scale both axes."""
+    for k in range(2):
+        axis, name = (axes.xaxis, axes.yaxis)[k], plane.name(k)
+        axis.set_label_text(label(name, plane.figure.si) + _stages(plane, k))
+        if name in COUNTS:
+            from matplotlib.ticker import MaxNLocator
+
+            axis.set_major_locator(MaxNLocator("auto", integer=True))
+        if plane.flat(k):
+            low, high = plane.points(plane.rows)[k].min(), plane.points(plane.rows)[k].max()
+            room = abs(low + high) / 4 if abs(low + high) > NOISE * LEAST else 1.0
+            axis.set_view_interval(low - room, high + room, ignore=True)
+        else:
+            (axes.set_xmargin, axes.set_ymargin)[k](MARGIN)
+        if plane.log[k]:
+            axes.set(**{f"{'xy'[k]}scale": "log"})
+            _decades(axis)
+
+
+def _stages(plane: Plane, k: int) -> str:
+    """Return the stages of one parameter among several, "" where there is one for all."""
+    if plane.pair[k] != VALUE or not plane.parameter:
+        return ""
+    rows = plane.figure.rows
+    stages = sorted({row["stage"] + 1 for row in rows if row["parameter"] == plane.parameter})
+    return f"\nstage{'s' * (len(stages) > 1)} {', '.join(map(str, stages))}"
+
+
+def _decades(axis: Axis) -> None:
+    """Few ticks in plain digits."""
+    from matplotlib.ticker import FuncFormatter, LogLocator, MaxNLocator, NullLocator
+
+    low, high = sorted(axis.get_view_interval())
+    few = LogLocator(subs=(1, 2, 5)) if high < 1e3 * low else LogLocator()
+    axis.set_major_locator(few if high > 10 * low else MaxNLocator(5))
+    axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
+    axis.set_minor_locator(NullLocator())
