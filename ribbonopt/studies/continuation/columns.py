@@ -8,6 +8,7 @@ COLUMNS: Mapping[str, str] = {
     "number": "place among all points, from 0; figures call points by it",
     "stage": "stage of the continuation, from 0",
     "branch": "0: where the stage begins; 1, 2, ...: branches that cross, each way of each",
+    "origin": "number of the point where the branch leaves another; none on the first",
     "parameter": "path of the number that the stage moves",
     "PATH": "one column for each number that a stage moves, under its own path (law.epsilon, "
     "parameters.angle): its value at the point, in stages that do not move it too",
