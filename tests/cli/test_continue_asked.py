@@ -45,7 +45,7 @@ def test_a_stage_ends_at_its_fold(run: Run, tmp_path: Path, stop: str) -> None:
     text = SNAP.replace("largest: 5", f"largest: 5, stop: [energy > 1e9, {stop}]")
     rows, endings = followed(run, tmp_path, text)
     assert rows[-1]["kind"] == "fold"
-    assert rows[-1]["value"] == pytest.approx(FOLD, abs=1e-7)
+    assert value_of(rows[-1]) == pytest.approx(FOLD, abs=1e-7)
     assert endings == {0: f"stopped, as asked: {stop}"}
     assert {row["negative"] for row in rows} == {0, None}
 
@@ -60,10 +60,10 @@ def test_a_stage_goes_on_from_before_the_branch_point_that_ended_one(
     last = [row for row in rows if row["stage"] == 0][-2:]
     assert endings == {0: "stopped, as asked: branch point"}
     assert [row["kind"] for row in last] == ["point", "branch point"]
-    assert last[1]["value"] == pytest.approx(EULER, rel=1e-8)
+    assert value_of(last[1]) == pytest.approx(EULER, rel=1e-8)
     begin = next(row for row in rows if row["stage"] == 1)
     assert begin["energy"] == pytest.approx(last[0]["energy"], abs=1e-12)
-    assert begin["n0z"] == pytest.approx(-last[0]["value"], rel=1e-9)
+    assert begin["n0z"] == pytest.approx(-value_of(last[0]), rel=1e-9)
 
 
 @pytest.mark.parametrize("largest", [2, 5, 15])
@@ -87,7 +87,7 @@ def test_the_point_that_is_landed_on_does_not_depend_on_the_steps(run: Run, tmp_
         scene = written(tmp_path / str(largest), text)
         assert run("continue", scene, "--out", f"o{largest}", "--quiet").status == 0
         found.append(points(tmp_path / f"o{largest}")[-1])
-    for name in ("value", "energy", "n0x", "n0z", "m0y"):
+    for name in ("parameters.angle", "energy", "n0x", "n0z", "m0y"):
         assert found[0][name] == pytest.approx(found[1][name], rel=1e-8, abs=1e-8)
 
 
@@ -118,7 +118,7 @@ def test_both_ways_are_as_each_way_alone(run: Run, tmp_path: Path) -> None:
         assert run("continue", scene, "--out", f"o{end}", "--quiet").status == 0
         alone = points(tmp_path / f"o{end}")
         last = [row for row in rows if row["branch"] == branch][-1]
-        for name in ("value", "energy", "n0z", "shortening"):
+        for name in ("parameters.P", "energy", "n0z", "shortening"):
             assert last[name] == pytest.approx(alone[-1][name], rel=1e-9, abs=1e-9)
 
 
