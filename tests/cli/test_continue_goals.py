@@ -64,14 +64,6 @@ def test_points_used_up(run: Run, tmp_path: Path) -> None:
     assert len(rows) == 3
 
 
-def test_step_below_the_smallest(run: Run, tmp_path: Path) -> None:
-    scene = written(tmp_path, SNAP.replace("largest: 5", "first: 25, smallest: 20, largest: 30"))
-    told = run("continue", scene, "--out", tmp_path / "o", "--quiet")
-    message, rows = short_of(told, tmp_path / "o")
-    assert "the step fell below 20 beyond parameters.angle = 25" in message
-    assert [value_of(row) for row in rows] == [0, 25]
-
-
 NO_START = "solver={type: newton, max_iterations: 1}"
 
 

@@ -251,7 +251,7 @@ OF_EPSILON = [
     ("to: 1, stop: [0 folds]", "stop.0: formula '0 folds': found a number that does not fit"),
     ("to: 1, stop: [2 fold]", "expected 'fold', or '2 folds' for the second one"),
     ("to: 1, stop: [turn]", "found no sign > or <, expected 'A > B' or 'A < B', such as 'energy"),
-    ("to: 1, stop: [turn]", "or fold, branch point, buckling point, or a number of them"),
+    ("to: 1, stop: [turn]", "or fold, branch point, buckling point, kink, or a number of them"),
     ("to: 1, stop: [fold], special: false", "stop.0: found 'fold', folds are not located with"),
     ("to: [0.001, 0.005]", "to: found [0.001, 0.005], of which one is to be below and one above"),
     ("from: 2, to: [3, 2]", "one above where law.epsilon begins, 2; for one direction write one"),

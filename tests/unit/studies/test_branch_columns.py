@@ -12,6 +12,7 @@ from ribbonopt.solution.sampling import evaluate_formula
 from ribbonopt.studies.continuation.columns import COLUMNS
 from ribbonopt.studies.continuation.recorded import (
     NUMBERS,
+    SOFTEST,
     WORDS,
     Recorder,
     value_of,
@@ -119,9 +120,9 @@ def test_dotted_names_are_names_only_where_they_are_known() -> None:
 
 def test_all_columns_are_told() -> None:
     told = {name for names in COLUMNS for name in names.split(", ")}
-    assert told == {*NUMBERS, *WORDS, "PATH", "NAME"}
+    assert told == {*NUMBERS, *WORDS, SOFTEST, "PATH", "NAME"}
     page = (ROOT / "docs" / "branches.md").read_text(encoding="utf-8")
-    assert all(f"`{name}`" in page for name in (*NUMBERS, *WORDS))
+    assert all(f"`{name}`" in page for name in (*NUMBERS, *WORDS, SOFTEST))
 
 
 def test_help_tells_all_columns(capsys: pytest.CaptureFixture[str]) -> None:
