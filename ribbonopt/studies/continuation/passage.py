@@ -26,7 +26,8 @@ if TYPE_CHECKING:
     from .ribbons import RibbonEquations
 
 ROUNDING = 1e-11  # a margin below minus that is negative
-CLOSE, MOST_TRIALS = 1e-14, 60
+CLOSE, MOST_TRIALS, MOST_SECANTS = 1e-14, 60, 12
+BEGIN = 0.01  # of a step, over which the slopes of margins are taken
 
 
 def passage(
@@ -44,9 +45,19 @@ def passage(
         point, trial = _on_sheet(equations, point, trial, kind)
     if not trial.converged:
         inside = _lost(point.solution, expected)
-        return _merged(equations, point, float(expected[-1]), inside) if inside else None
+        if inside:
+            return _merged(equations, point, float(expected[-1]), inside)
+        return _ahead(equations, point, expected)
     beyond = [c for c, value in margins(trial.solution).items() if value < -ROUNDING]
-    return _passed(equations, point, trial, beyond) if beyond else None
+    if not beyond:
+        return None
+    try:
+        return _passed(equations, point, trial, beyond)
+    except np.linalg.LinAlgError:
+        found = _ahead(equations, point, expected)
+        if found is None:
+            raise
+        return found
 
 
 def _passed(
@@ -55,7 +66,7 @@ def _passed(
     """Return the first of the changes that a trial is beyond."""
     inside = [change for change in beyond if change.what is What.GONE_INSIDE]
     between = {change.phase for change in beyond if change.what is What.BORN_BETWEEN}
-    way = _Way(equations, a, trial)
+    way = _Way(equations, a, trial.unknowns, trial.solution)
     arcs = {
         change: way.root(change)
         for change in beyond
@@ -65,13 +76,38 @@ def _passed(
     }
     if inside and not any(arc < way.whole / 2 for arc in arcs.values()):
         return _merged(equations, a, float(trial.unknowns[-1]), inside)
-    event = way.point(min(arcs.values()))
+    return _behind(equations, a, way.point(min(arcs.values())), beyond)
+
+
+def _behind(
+    equations: RibbonEquations, a: Point[Solution], event: Point[Solution], beyond: list[Change]
+) -> Passage[Solution]:
+    """Return how a branch goes on behind an event, at which changes are due."""
     ways = leaving(equations, event)
     if not ways:
         raise np.linalg.LinAlgError(_told(a.solution, beyond))
     kind = FOLD if event.tangent[-1] * ways[0].tangent[-1] < 0 else POINT
     crossed = len(ways) > 1 or ways[0].sign * event.sign < 0
     return Passage(a, replace(event, kind=KINK if crossed else kind), ways[0])
+
+
+def _ahead(
+    equations: RibbonEquations, a: Point[Solution], expected: Array
+) -> Passage[Solution] | None:
+    """Return the first change that margins at a point promise before what is expected, or None.
+
+    Regularised laws have a pole behind the change, so that no trial may converge beyond it.
+    """
+    if not a.solution.sheets:
+        return None
+    way = _Way(equations, a, expected)
+    near_by, here = way.margins(way.whole * BEGIN), margins(a.solution)
+    slopes = {c: (near_by[c] - v) / (way.whole * BEGIN) for c, v in here.items() if c in near_by}
+    arcs = {c: -here[c] / slope for c, slope in slopes.items() if slope < 0 < here[c]}
+    change = min(arcs, key=lambda c: arcs[c], default=None)
+    if change is None or not arcs[change] < way.whole:
+        return None
+    return _behind(equations, a, way.point(way.extrapolated(change, arcs[change])), [change])
 
 
 def _on_sheet(
@@ -131,25 +167,30 @@ def _merged(
 
 
 class _Way:
-    """The branch between a point and a trial in its phases, by arclength along the tangent."""
+    """The branch from a point on in its phases, by arclength along the tangent."""
 
     def __init__(
-        self, equations: RibbonEquations, a: Point[Solution], trial: Trial[Solution]
+        self,
+        equations: RibbonEquations,
+        a: Point[Solution],
+        end: Array,
+        solution: Solution | None = None,
     ) -> None:
         self.equations, self.a = equations, a
-        gap = equations.reduced(a.solution, trial.unknowns - a.unknowns)
+        gap = equations.reduced(a.solution, end - a.unknowns)
         along = equations.reduced(a.solution, a.tangent)
         self.whole = equations.metric.product(gap, along)
-        self.known: dict[float, tuple[Solution, Array]] = {
-            0.0: (a.solution, a.unknowns),
-            self.whole: (trial.solution, trial.unknowns),
-        }
+        self.known: dict[float, tuple[Solution, Array]] = {0.0: (a.solution, a.unknowns)}
+        if solution is not None:
+            self.known[self.whole] = solution, end
 
     def at(self, arc: float) -> tuple[Solution, Array]:
         """Return the branch at an arclength, from what is known of it near there."""
         if arc not in self.known:
             nearest = sorted(self.known, key=lambda s: abs(s - arc))[:4]
             guess = np.zeros_like(self.a.unknowns)
+            if len(nearest) == 1:
+                guess = arc * self.a.tangent
             for s in nearest:
                 others = [other for other in nearest if other != s]
                 weight = float(np.prod([(arc - other) / (s - other) for other in others]))
@@ -160,11 +201,28 @@ class _Way:
             self.known[arc] = found.solution, found.unknowns
         return self.known[arc]
 
+    def margins(self, arc: float) -> dict[Change, float]:
+        """Return the margins at an arclength."""
+        return margins(self.at(arc)[0])
+
+    def extrapolated(self, change: Change, arc: float) -> float:
+        """Return the arclength where a margin vanishes, by secants from before; near `arc`."""
+        before, value = 0.0, self.margins(0.0)[change]
+        for _ in range(MOST_SECANTS):
+            found = self.margins(arc).get(change, 1.0)
+            if abs(found) <= CLOSE or found == value:
+                return arc
+            following = arc - found * (arc - before) / (found - value)
+            if abs(following - arc) <= CLOSE * abs(self.whole):
+                return following
+            before, value, arc = arc, found, following
+        raise np.linalg.LinAlgError("no point where phases change was found")
+
     def root(self, change: Change) -> float:
         """Return the arclength where a margin vanishes that is negative at the trial."""
 
         def margin(arc: float) -> float:
-            return margins(self.at(arc)[0]).get(change, 1.0)
+            return self.margins(arc).get(change, 1.0)
 
         return _root(margin, 0.0, self.whole)
 
