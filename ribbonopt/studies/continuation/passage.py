@@ -86,9 +86,11 @@ def _behind(
     ways = leaving(equations, event)
     if not ways:
         raise np.linalg.LinAlgError(_told(a.solution, beyond))
-    kind = FOLD if event.tangent[-1] * ways[0].tangent[-1] < 0 else POINT
-    crossed = len(ways) > 1 or ways[0].sign * event.sign < 0
-    return Passage(a, replace(event, kind=KINK if crossed else kind), ways[0])
+    first, entry = ways[0].first, ways[0].entry
+    beside = first if entry is None else entry
+    kind = FOLD if event.tangent[-1] * beside.tangent[-1] < 0 else POINT
+    crossed = len(ways) > 1 or beside.sign * event.sign < 0
+    return Passage(a, replace(event, kind=KINK if crossed else kind), entry, first)
 
 
 def _ahead(
@@ -163,7 +165,7 @@ def _merged(
     way = admitted(equations, a, found) if found.converged else None
     if way is None:
         raise np.linalg.LinAlgError(_told(a.solution, inside))
-    return Passage(a, a, way)
+    return Passage(a, a, None, way)
 
 
 class _Way:

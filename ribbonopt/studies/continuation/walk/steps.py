@@ -109,6 +109,8 @@ class Stepper(Generic[S]):
         special = self._special(passed.begin, passed.event, goal).points
         if self.range.special and passed.event.kind != POINT:
             special.append(passed.event)
+        if passed.entry is not None and passed.after.unknowns.shape == passed.entry.unknowns.shape:
+            special += self._special(passed.entry, passed.after, goal).points
         after = replace(passed.after, step=abs(prediction.arc))
         if (after.position - goal) * (passed.begin.position - goal) < 0:
             guess = np.append(after.unknowns[:-1], goal)
