@@ -38,13 +38,13 @@ Found = tuple[Trial[Solution], Point[Solution] | None]
 
 @dataclass(frozen=True, eq=False)
 class Way:
-    """A branch that leaves: its first point, and the event itself in its phases if that is known.
+    """A branch that leaves: its first point, and the stretch up to that if it is regular.
 
-    That faces the point.
+    The stretch is the event itself in the new phases, and the point before it was finished.
     """
 
     first: Point[Solution]
-    entry: Point[Solution] | None
+    stretch: tuple[Point[Solution], Point[Solution]] | None
 
 
 def leaving(equations: RibbonEquations, event: Point[Solution]) -> list[Way]:
@@ -72,10 +72,11 @@ def _entered(
             first = admitted(equations, event, trial)
             if first is None:
                 continue
+            way = Way(first, _stretch(equations, entry, trial))
             if (first.position - event.position) * first.tangent[-1] >= 0:
-                yield Way(first, entry)
+                yield way
                 return
-            turned = Way(first, entry)  # a fold is between: nearer by, it is still ahead
+            turned = way  # a fold is between: nearer by, it is still ahead
         away /= 4
     if turned is not None:
         yield turned
@@ -99,6 +100,22 @@ def _along_tangent(
         trial = equations.correct_along(origin, sign * tangent, away, guess)
         if trial.converged:
             yield trial, _facing(equations, origin, sign)
+
+
+def _stretch(
+    equations: RibbonEquations, entry: Point[Solution] | None, trial: Trial[Solution]
+) -> tuple[Point[Solution], Point[Solution]] | None:
+    """Return the way from an event to a trial in one layout."""
+    if entry is None:
+        return None
+    ahead = equations.reduced(entry.solution, entry.tangent)
+    solution, unknowns = trial.solution, trial.unknowns
+    try:
+        found, tangent = near(equations, solution, unknowns, ahead)
+    except np.linalg.LinAlgError:
+        return None
+    parts = replace(entry, solution=solution, unknowns=unknowns)
+    return entry, replace(parts, tangent=tangent, sign=found.sign)
 
 
 def _facing(

@@ -86,11 +86,11 @@ def _behind(
     ways = leaving(equations, event)
     if not ways:
         raise np.linalg.LinAlgError(_told(a.solution, beyond))
-    first, entry = ways[0].first, ways[0].entry
-    beside = first if entry is None else entry
+    first, stretch = ways[0].first, ways[0].stretch
+    beside = stretch[0] if stretch else first
     kind = FOLD if event.tangent[-1] * beside.tangent[-1] < 0 else POINT
     crossed = len(ways) > 1 or beside.sign * event.sign < 0
-    return Passage(a, replace(event, kind=KINK if crossed else kind), entry, first)
+    return Passage(a, replace(event, kind=KINK if crossed else kind), stretch, first)
 
 
 def _ahead(
