@@ -154,15 +154,24 @@ class Straight:
 
 @dataclass(frozen=True)
 class Plain:
-    """Rows of the unknowns, and a condition on them."""
+    """Rows of the unknowns, conditions on them: one of points, one that is met exactly."""
 
     stops: Callable[[Array], bool] = lambda z: False
+    beyond: Callable[[Array], float] | None = None
+    special: tuple[str, int] = ("", 0)
 
     def row(self, point: Point[Unit]) -> dict[str, object]:
         return {"z": np.append(point.unknowns[:-1] * point.solution.size, point.position)}
 
     def stopped(self, row: dict[str, object]) -> str:
-        return "z is far" if self.stops(row["z"]) else ""
+        beyond = self.beyond is not None and self.beyond(row["z"]) > 0
+        return "z is far" if self.stops(row["z"]) or beyond else ""
+
+    def margins(self, point: Point[Unit]) -> dict[str, float]:
+        return {} if self.beyond is None else {"far": self.beyond(self.row(point)["z"])}
+
+    def stopped_at(self, kind: str, count: int) -> str:
+        return kind if (kind, count) == self.special else ""
 
 
 @dataclass(frozen=True)
@@ -173,7 +182,15 @@ class DenseStage:
     range: Straight
     begin: Array
     records: Plain = Plain()
-    switch: bool = False
+    switch: int = 0
+    both: bool = False
+
+    @property
+    def ways(self) -> tuple[Straight, ...]:
+        if not self.both:
+            return (self.range,)
+        back = replace(self.range, start=self.range.goals[-1], goals=(self.range.start,))
+        return back, self.range
 
     def first(self) -> tuple[Unit, Array]:
         return Unit(), self.begin

@@ -147,7 +147,7 @@ def _analysed(solution: Solution, near: Factors | None, keep: bool) -> Analysis:
     witnessed = np.maximum(_witness(better, split), overlooked(trajectory, near_by))
     local, doubt = _more(local, witnessed)
     # Rounding of one element counts as its local error does.
-    more = doubt * (1 + len(local) * UNIT / float(local.sum()))
+    more = doubt * (1 + len(local) * UNIT / (float(local.sum()) or UNIT))
     errors = {name: error * more for name, error in errors.items()}
     # Between the nodes the output starts from the node before, with the error of that element.
     more_inside, inside = gaps_between(trajectory, better, near_by, growth, clear)

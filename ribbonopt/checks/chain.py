@@ -1,6 +1,8 @@
 """Elements of a minimum, linearised one after another: states from the start and the controls.
 
-Shapes: N elements, K stages, nx states, nz controls, n = nx + nz K N independent variables.
+Shapes: N elements, K stages, nx states, nz controls. The own variables y of an element are its
+controls at the stages, m = nz K numbers, and one more where jumps are given: x_e moves by that many
+jumps before the element begins. In all n = nx + m N independent variables [x_0, all y].
 """
 
 from __future__ import annotations
@@ -12,67 +14,96 @@ from ribbonopt.transcription import Tableau
 
 
 class LinearisedChain:
-    """Elements one after another, linearised: all states follow from x_0 and the moments.
+    """Elements one after another, linearised: all states follow from x_0 and the controls.
 
-    `J` (N, K, 7, 9) are the derivatives of the rates at the stages, `slopes` (N, K, 9) of the cost.
+    `J` (N, K, nx, nx + nz) are the derivatives of the rates at the stages, `slopes`
+    (N, K, nx + nz) of the cost, `jumps` (N, nx) of the states at the start of each element.
+    Controls are scaled so that the sum of their squares is an integral along the chain, the
+    elements of which have `widths` (N,), fractions of its `length`.
     """
 
-    def __init__(self, J: Array, slopes: Array, widths: Array, tableau: Tableau) -> None:
+    def __init__(
+        self,
+        J: Array,
+        slopes: Array,
+        widths: Array,
+        tableau: Tableau,
+        length: float = 1.0,
+        jumps: Array | None = None,
+    ) -> None:
         (N, K, nv), nx = slopes.shape, J.shape[2]
-        nz, size = nv - nx, nx + (nv - nx) * K
+        nz = nv - nx
         self.nx = nx
         self.J, self.slopes = J, slopes
         self.integral = widths[:, None, None] * tableau.matrix
         self.weight = widths[:, None] * tableau.weights
-        M = -np.einsum("eij,ejxy->eixjy", self.integral, J[..., :nx]).reshape(N, K * nx, K * nx)
-        self.inverse = np.linalg.inv(M + np.eye(K * nx))
-        # Stages [x; z] (N, K, 9, 7 + 2 K) from the variables of their element.
-        stages = np.zeros((N, K, nv, size))
-        scale = 1 / np.sqrt(self.weight)[..., None, None]
+        # States on which neither rates nor cost depend (positions) need no equations.
+        used = np.flatnonzero(J[..., :nx].any(axis=(0, 1, 2)) | slopes[..., :nx].any(axis=(0, 1)))
+        self.used, n = used, len(used)
+        between = J[:, :, used[:, None], used]
+        M = -np.einsum("eij,ejxy->eixjy", self.integral, between).reshape(N, K * n, K * n)
+        self.inverse = np.linalg.inv(M + np.eye(K * n))
+        # Stages [x; z] (N, K, nx + nz, nx + m) from the variables of their element.
+        stages = np.zeros((N, K, nv, nx + nz * K + (jumps is not None)))
+        controls = slice(nx, nx + nz * K)
+        scale = 1 / np.sqrt(length * self.weight)[..., None, None]
         for j in range(K):
             stages[:, j, nx:, nx + nz * j : nx + nz * (j + 1)] = scale[:, j] * np.eye(nz)
-        sides = np.einsum("eij,ejxc->eixjc", self.integral, scale * J[..., nx:])
-        starts = np.broadcast_to(np.eye(nx), (N, K, nx, nx))
-        sides = np.concatenate([starts, sides.reshape(N, K, nx, -1)], axis=3)
-        stages[:, :, :nx] = (self.inverse @ sides.reshape(N, K * nx, -1)).reshape(N, K, nx, -1)
+        stages[:, :, :nx, :nx] = np.eye(nx)
+        sides = np.einsum("eij,ejxc->eixjc", self.integral, scale * J[:, :, used, nx:])
+        starts = stages[:, :, used, :nx]
+        sides = np.concatenate([starts, sides.reshape(N, K, n, -1)], axis=3)
+        solved = self.inverse @ sides.reshape(N, K * n, -1)
+        stages[:, :, used, : controls.stop] = solved.reshape(sides.shape)
+        rest = np.setdiff1d(np.arange(nx), used)
+        rates = (J[:, :, rest] @ stages).reshape(N, K, -1)
+        stages[:, :, rest] += (self.integral @ rates).reshape(N, K, len(rest), -1)
         self.stages = stages
+        if jumps is not None:
+            stages[..., -1] = (stages[..., :nx] @ jumps[:, None, :, None])[..., 0]
         self.step = np.einsum("ej,ejxs->exs", self.weight, J @ stages)
         self.step[:, :, :nx] += np.eye(nx)
+        if jumps is not None:
+            self.step[..., -1] += jumps
         self.cost = ((self.weight[..., None] * slopes)[:, :, None] @ stages)[:, :, 0].sum(axis=1)
-        # Nodes (N + 1, 7, n) from the independent variables.
-        self.nodes = np.zeros((N + 1, nx, nx + nz * K * N))
-        self.nodes[0, :, :nx] = np.eye(nx)
-        for e, step in enumerate(self.step):
-            a, b = nx + nz * K * e, nx + nz * K * (e + 1)
-            self.nodes[e + 1, :, :a] = step[:, :nx] @ self.nodes[e, :, :a]
-            self.nodes[e + 1, :, a:b] = step[:, nx:]
-        self.ends = np.vstack([self.nodes[0], self.nodes[-1]])
-        self.gradient = np.tensordot(self.cost[:, :nx], self.nodes[:-1], 2)
-        self.gradient[nx:] += self.cost[:, nx:].ravel()
+        self._sweep()
 
-    def weights(self, last: Array) -> Array:
-        """Return d(Lagrangian)/d(rates, cost) (N, K, 8), from the costate (7,) at the end."""
-        after = np.empty((len(self.step), 1, self.nx))
-        for e in reversed(range(len(after))):
-            after[e, 0] = last
-            last = self.cost[e, : self.nx] + last @ self.step[e, :, : self.nx]
-        change = self.slopes[..., : self.nx] + (after[:, :, None] @ self.J[..., : self.nx])[:, :, 0]
+    def _sweep(self) -> None:
+        """Find the derivatives of both ends (2 nx, n) and of the cost (n,) by all variables."""
+        N, nx = len(self.step), self.nx
+        carried, slope = np.empty((N + 1, nx, nx)), np.zeros((N + 1, nx))
+        carried[N] = np.eye(nx)
+        for e in reversed(range(N)):
+            carried[e] = carried[e + 1] @ self.step[e, :, :nx]
+            slope[e] = self.cost[e, :nx] + slope[e + 1] @ self.step[e, :, :nx]
+        own = self.step[:, :, nx:]
+        last = (carried[1:] @ own).swapaxes(0, 1).reshape(nx, -1)
+        first = np.hstack([np.eye(nx), np.zeros_like(last)])
+        self.ends = np.vstack([first, np.hstack([carried[0], last])])
+        by_own = self.cost[:, nx:] + (slope[1:, None] @ own)[:, 0]
+        self.gradient = np.concatenate([slope[0], by_own.ravel()])
+
+    def costates(self, last: Array) -> Array:
+        """Costates (N + 1, nx) of the nodes, from that at the end."""
+        found = np.empty((len(self.step) + 1, self.nx))
+        found[-1] = last
+        for e in reversed(range(len(self.step))):
+            found[e] = self.cost[e, : self.nx] + found[e + 1] @ self.step[e, :, : self.nx]
+        return found
+
+    def weights(self, costates: Array) -> Array:
+        """Return d(Lagrangian)/d(rates, cost) (N, K, nx + 1), from the costates of the nodes."""
+        after = costates[1:, None]
+        used = self.used
+        change = self.slopes[..., used] + (after[:, :, None] @ self.J[..., used])[:, :, 0]
         change *= self.weight[..., None]
         change = (change.reshape(len(after), 1, -1) @ self.inverse).reshape(change.shape)
-        rates = self.weight[..., None] * after + self.integral.swapaxes(1, 2) @ change
+        rates = np.repeat(self.weight[..., None], self.nx, axis=2) * after
+        rates[..., used] += self.integral.swapaxes(1, 2) @ change
         return np.concatenate([rates, self.weight[..., None]], axis=2)
 
-    def hessian(self, H: Array) -> Array:
-        """Hessian (n, n) in the independent variables, from those of the stages (N, K, 9, 9)."""
-        N, n, nx = len(H), self.nodes.shape[2], self.nx
-        V = self.stages.reshape(N, -1, self.stages.shape[3])
-        Q = V.swapaxes(1, 2) @ (H @ self.stages).reshape(V.shape)
-        nodes = self.nodes[:-1]
-        along = Q[:, :, :nx] @ nodes
-        result: Array = nodes.reshape(-1, n).T @ along[:, :nx].reshape(-1, n)
-        result[nx:] += along[:, nx:].reshape(-1, n)
-        result[:, nx:] += along[:, nx:].reshape(-1, n).T
-        own = np.zeros((N, V.shape[2] - nx, N, V.shape[2] - nx))
-        own[np.arange(N), :, np.arange(N)] = Q[:, nx:, nx:]
-        result[nx:, nx:] += own.reshape(n - nx, n - nx)
-        return result
+    def hessians(self, H: Array) -> Array:
+        """Hessians (N, nx + m, nx + m) in the variables [x_e; y_e], from those of the stages."""
+        V = self.stages.reshape(len(H), -1, self.stages.shape[3])
+        found: Array = V.swapaxes(1, 2) @ (H @ self.stages).reshape(V.shape)
+        return found

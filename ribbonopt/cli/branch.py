@@ -163,9 +163,12 @@ def _shown(
 
 
 def _progress(point: Point[Solution], continuation: Continuation) -> str:
+    from ribbonopt.scene.stages import ends_of
+
     row, stage = point.row, continuation.stages[point.stage]
     value = row[stage.parameter]
-    bar = _bar(value, stage.from_, stage.values[-1] if stage.values else stage.to)
+    ends = ends_of(stage)
+    bar = _bar(value, stage.from_, ends[min(point.branch, len(ends) - 1)])
     where = f"stage {point.stage + 1}, " if len(continuation.stages) > 1 else ""
     where += f"branch {point.branch}, " if point.branch else ""
     parts = [f"{bar} {where}{stage.parameter} = {value:.6g}", f"step {point.step:.2g}"]
@@ -176,9 +179,8 @@ def _progress(point: Point[Solution], continuation: Continuation) -> str:
     return ", ".join(parts)
 
 
-def _bar(value: float, begin: float | None, end: float | None) -> str:
+def _bar(value: float, begin: float | None, end: float) -> str:
     assert begin is not None
-    assert end is not None
     share = (value - begin) / (end - begin)
     if value > 0 and begin > 0 and end > 0 and max(begin, end) > 50 * min(begin, end):
         from math import log

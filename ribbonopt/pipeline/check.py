@@ -18,7 +18,7 @@ def check_scene(scene: Scene) -> dict[str, Any]:
     Raises
     ------
     ModelError
-        If conditions and unknowns do not fit.
+        If conditions and unknowns do not fit, or a continuation leads to what is out of reach.
     ConvergenceError
         If the prescribed ends cannot be reached.
     """
@@ -26,6 +26,10 @@ def check_scene(scene: Scene) -> dict[str, Any]:
     structure = Structure.of(posed)
     examine(structure.ribbon, structure.problem, posed)
     refuse_unreachable(posed)
+    if scene.continuation is not None:
+        from ribbonopt.problem.wellposed.reach import refuse_far_goals  # few scenes are continued
+
+        refuse_far_goals(scene)
     nlp, _ = structure.on((scene.transcription.intervals,))
     return {
         "name": scene.name,

@@ -26,6 +26,7 @@ class ContinuationStage:
         Dotted path of a number of the scene, such as law.epsilon or boundary.end.position.x.
     to, from_
         Last and first value; `from` in a file, by default where the scene or an earlier stage is.
+        Two values of `to`, on both sides of `from`, are gone to one after the other.
     values
         In place of `to`: exactly these values, strictly monotonic.
     scale
@@ -35,17 +36,20 @@ class ContinuationStage:
     points
         Most points.
     stop
-        Conditions that end the stage, such as "energy > 30".
+        What ends the stage: conditions such as "energy > 30", and special points such as "fold",
+        "branch point", or "2 folds" for the second.
     special
         Whether folds and branch points are located.
     switch
-        Whether the branches that cross are followed, in both directions.
+        Whether the branches that cross are followed, in both directions; 2 for those as well that
+        cross them, and so on.
     stability
-        Whether negative directions are counted where the scene is conservative.
+        Whether negative directions are counted where the scene is conservative; `eigenvalue` if the
+        smallest eigenvalue of the second variation is recorded besides, as `softest`.
     """
 
     parameter: str
-    to: float | None = None
+    to: float | tuple[float, float] | None = None
     from_: float | None = None
     values: tuple[float, ...] | None = None
     scale: Literal["linear", "log"] = "linear"
@@ -55,5 +59,10 @@ class ContinuationStage:
     points: Annotated[int, Bounds(ge=1)] = 500
     stop: tuple[str, ...] = ()
     special: bool = True
-    switch: bool = False
-    stability: bool = True
+    switch: bool | Annotated[int, Bounds(ge=0)] = False
+    stability: bool | Literal["eigenvalue"] = True
+
+    @property
+    def measured(self) -> bool:
+        """Whether the smallest eigenvalue of the second variation is recorded."""
+        return self.stability == "eigenvalue"

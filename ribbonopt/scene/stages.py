@@ -20,7 +20,11 @@ GRAMMAR = RESERVED - OUTPUTS.keys()
 
 _AT = re.compile(r"(.*)\sat\s(.*)", re.DOTALL)
 _WORD = re.compile(r"(?<![\w.])[A-Za-z_]\w*(?:\.[A-Za-z_]\w*)*")  # not the e of 1e3
-_STOP = "expected 'A > B' or 'A < B', such as 'energy > 30'"
+_SPECIAL = re.compile(r"(?:(\d+) +)?(fold|branch point|buckling point|kink)(s?)")
+_STOP = (
+    "expected 'A > B' or 'A < B', such as 'energy > 30'; or fold, branch point, buckling point, "
+    "kink, or a number of them, such as '2 folds'"
+)
 
 
 def stages_of(scene: Scene) -> tuple[ContinuationStage, ...]:
@@ -59,9 +63,18 @@ def begin_of(stage: ContinuationStage, scene: Scene) -> float:
     return own if stage.from_ is None else stage.from_
 
 
+def ends_of(stage: ContinuationStage) -> tuple[float, ...]:
+    """Return where a stage ends: nowhere that it says, at one value, or at two."""
+    if stage.values:
+        return stage.values[-1:]
+    if isinstance(stage.to, tuple):
+        return stage.to
+    return () if stage.to is None else (stage.to,)
+
+
 def end_of(stage: ContinuationStage) -> float | None:
-    """Return where a stage ends; None where it does not say."""
-    return stage.values[-1] if stage.values else stage.to
+    """Return where a stage ends at last; None where it does not say."""
+    return next(reversed(ends_of(stage)), None)
 
 
 def parse_record(text: str, scene: Scene) -> tuple[str, float]:
@@ -104,6 +117,26 @@ def parse_stop(text: str) -> tuple[str, Literal[">", "<"], str]:
     if not (left and right):
         raise FormulaError(text, text.index(signs[0]), f"found nothing beside it, {_STOP}")
     return left, ">" if signs[0] == ">" else "<", right
+
+
+def special_stop(text: str) -> tuple[str, int] | None:
+    """Return the kind and the number of special points that a text ends a stage at.
+
+    None where it names none, so that it should be a condition.
+
+    Raises
+    ------
+    FormulaError
+        If the number and the word do not go together.
+    """
+    named = _SPECIAL.fullmatch(text.strip())
+    if named is None:
+        return None
+    count, kind, several = int(named[1] or 1), named[2], bool(named[3])
+    if count < 1 or several != (count > 1):
+        example = f"'{kind}', or '2 {kind}s' for the second one"
+        raise FormulaError(text, None, f"found a number that does not fit, expected {example}")
+    return kind, count
 
 
 def parse_scalar(text: str, names: Mapping[str, Shape]) -> None:

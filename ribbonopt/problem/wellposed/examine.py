@@ -15,6 +15,7 @@ from ribbonopt.problem.ribbon import Ribbon
 
 from .linearized import linearize
 from .motions import refuse_motions
+from .reach import held_along
 from .symmetric import refuse_asymmetry
 
 Sample = tuple[Array, Array]
@@ -118,7 +119,10 @@ def _refuse_repeated(names: list[str], samples: list[Sample]) -> None:
 
 
 def refuse_unreachable(posed: Posed) -> None:
-    """Raise ConvergenceError if the prescribed ends are further apart than the ribbon is long."""
+    """Raise ConvergenceError if the prescribed ends are further apart than the ribbon is long.
+
+    And where they are exactly as far apart, unless it is held along the line between them.
+    """
     scene = posed.given
     gap, length = gap_between_ends(scene), scene.interval[1] - scene.interval[0]
     if gap > length * (1 + 1e-12):
@@ -126,6 +130,14 @@ def refuse_unreachable(posed: Posed) -> None:
             f"unreachable: the prescribed positions of the ends are {gap:.6g} apart "
             f"(boundary.start.position, boundary.end.position), the ribbon is {length:.6g} long "
             "(interval); bring them together or lengthen the ribbon",
+            status="unreachable",
+        )
+    if abs(gap - length) <= length * 1e-12 and not held_along(scene):
+        raise ConvergenceError(
+            f"unreachable: the ends are {gap:.6g} apart (boundary.start.position, "
+            f"boundary.end.position), as far as the ribbon is long (interval): it would have to be "
+            "straight, but its directors hold it across that line; bring the ends together, or "
+            "turn d3 along it",
             status="unreachable",
         )
 

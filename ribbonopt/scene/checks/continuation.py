@@ -17,12 +17,15 @@ from ribbonopt.scene.stages import (
     GRAMMAR,
     begin_of,
     end_of,
+    ends_of,
     located_stages,
     parse_record,
     parse_scalar,
     parse_stop,
+    special_stop,
     words_of,
 )
+from ribbonopt.scene.wording import written
 
 Check = Callable[[Scene], list[Problem]]
 
@@ -89,28 +92,43 @@ def _form(stage: ContinuationStage, scene: Scene, path: KeyPath) -> Iterator[Pro
             message = f"step sizes reversed: {small} {a:g} > {large} {b:g}; expected smallest <= "
             yield Problem((*path, small), f"{message}first <= largest, so exchange the two")
     for index, text in enumerate(stage.stop):
-        try:
-            left, _, right = parse_stop(text)
-            # What else is recorded is not known here: any other word may name a number.
-            others = sorted({*words_of(text), *scene.record} - OUTPUTS.keys())
-            for side in (left, right):
-                parse_scalar(side, {**OUTPUTS, **dict.fromkeys(others, "scalar")})
-        except FormulaError as error:
-            yield Problem((*path, "stop", index), str(error))
+        yield from _stop(text, stage, scene, (*path, "stop", index))
+
+
+def _stop(text: str, stage: ContinuationStage, scene: Scene, path: KeyPath) -> Iterator[Problem]:
+    """Yield what is wrong with something that ends a stage."""
+    try:
+        if special := special_stop(text):
+            if not stage.special:
+                message = f"{special[0]}s are not located with special: false; remove one of the"
+                yield Problem(path, f"{message} two", repr(text))
+            return
+        left, _, right = parse_stop(text)
+        # What else is recorded is not known here: any other word may name a number.
+        others = sorted({*words_of(text), *scene.record} - OUTPUTS.keys())
+        for side in (left, right):
+            parse_scalar(side, {**OUTPUTS, **dict.fromkeys(others, "scalar")})
+    except FormulaError as error:
+        yield Problem(path, str(error))
 
 
 def _way(stage: ContinuationStage, scene: Scene, path: KeyPath) -> Iterator[Problem]:
     """Yield what is wrong with where a stage begins and ends."""
-    begin, end = begin_of(stage, scene), end_of(stage)
+    begin, ends = begin_of(stage, scene), ends_of(stage)
     if stage.values and stage.from_ not in (None, stage.values[0]):
         message = f"stands beside `values`, which begin at {stage.values[0]:g}; remove it"
         yield Problem((*path, "from"), message, f"{begin:g}")
-    if not stage.values and begin == end:
+    if isinstance(stage.to, tuple):
+        if not min(stage.to) < begin < max(stage.to):
+            message = f"of which one is to be below and one above where {stage.parameter} begins, "
+            message += f"{begin:g}; for one direction write one number"
+            yield Problem((*path, "to"), message, written(stage.to))
+    elif not stage.values and begin in ends:
         message = f"which is where {stage.parameter} begins; expected another value, or remove the"
-        yield Problem((*path, "to"), f"{message} stage", f"{end:g}")
-    ends = {"values": min(stage.values)} if stage.values else {"from": begin, "to": end}
-    for key, value in ends.items():
-        if stage.scale == "log" and value is not None and value <= 0:
+        yield Problem((*path, "to"), f"{message} stage", f"{begin:g}")
+    named = {"values": min(stage.values)} if stage.values else {"from": begin, "to": min(ends)}
+    for key, value in named.items():
+        if stage.scale == "log" and value <= 0:
             message = 'expected a number > 0, for the logarithm; or write "scale: linear"'
             yield Problem((*path, key), message, f"{value:g}")
 
@@ -119,9 +137,13 @@ def _bad_ends(
     stage: ContinuationStage, scene: Scene, path: KeyPath, check: Check
 ) -> Iterator[Problem]:
     """Yield the end values of a stage that no scene may have."""
-    ends: dict[KeyPath, float | None] = {("from",): stage.from_, ("to",): stage.to}
+    ends: dict[KeyPath, float | None] = {("from",): stage.from_}
     if stage.values:
         ends = {("values", i): stage.values[i] for i in (0, len(stage.values) - 1)}
+    elif isinstance(stage.to, tuple):
+        ends |= {("to", i): value for i, value in enumerate(stage.to)}
+    else:
+        ends |= {("to",): stage.to}
     for key, value in ends.items():
         if value is None:
             continue  # the scene's own value, or where another stage ended

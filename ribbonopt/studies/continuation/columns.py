@@ -8,12 +8,15 @@ COLUMNS: Mapping[str, str] = {
     "number": "place among all points, from 0; figures call points by it",
     "stage": "stage of the continuation, from 0",
     "branch": "0: where the stage begins; 1, 2, ...: branches that cross, each way of each",
+    "origin": "number of the point where its branch leaves another",
     "parameter": "path of the number that the stage moves",
     "PATH": "one column for each number that a stage moves, under its own path (law.epsilon, "
     "parameters.angle): its value at the point, in stages that do not move it too",
     "kind": "point, fold, branch point, buckling point or kink",
     "negative": "negative directions of the second variation, 0: stable; empty: not known",
-    "error": "bound of the relative error of the answer; empty: not known",
+    "error": "bound of the relative error of the answer; of the place of a special point, relative "
+    "to the parameter there; empty: not known",
+    "softest": "smallest eigenvalue of the second variation, where `stability: eigenvalue` asks",
     "energy": "energy of the whole ribbon",
     "H0": "invariant H at the start",
     "n0x, n0y, n0z": "force at the start, lab frame",

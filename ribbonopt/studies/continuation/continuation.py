@@ -14,9 +14,10 @@ from dataclasses import replace
 
 from ribbonopt.errors import ModelError
 from ribbonopt.pipeline.prepared import Prepared, prepare
+from ribbonopt.problem.wellposed.reach import refuse_far_goals
 from ribbonopt.scene import Scene
 from ribbonopt.scene.lens import value_at
-from ribbonopt.scene.stages import stages_of
+from ribbonopt.scene.stages import ends_of, stages_of
 from ribbonopt.scene.units import units_of
 from ribbonopt.solution.solution import Solution
 
@@ -52,10 +53,11 @@ class Continuation:
                 "continuation: the scene has none; add for example "
                 "'continuation: {parameter: law.epsilon, to: 1e-4, scale: log}'"
             )
+        refuse_far_goals(scene)
         first, before = Curve(scene, self.stages[0]), scene
-        self.prepared = prepared or prepare(first.scene_at(first.start))
+        self.prepared = prepared or prepare(first.scene_at(first.begin))
         # The same along all stages, however long or stiff the ribbon becomes.
-        self._units = None if scene.ribbon is not None else units_of(first.scene_at(first.start))
+        self._units = None if scene.ribbon is not None else units_of(first.scene_at(first.begin))
         for stage in self.stages:
             curve = Curve(before, stage, self._units)
             refuse_idle(curve, self.prepared.problem)
@@ -95,7 +97,8 @@ class Continuation:
     @property
     def ending(self) -> Ending:
         """How the whole has ended: as the first stage that did not reach its goal, or the last."""
-        mains = [ending for (_, branch), ending in self.endings.items() if branch == 0]
+        ways = [len(ends_of(stage)) for stage in self.stages]
+        mains = [e for (stage, branch), e in self.endings.items() if branch < ways[stage]]
         return next((ending for ending in mains if not ending.reached), mains[-1])
 
     def _stage(self, number: int, before: Point[Solution] | None) -> RibbonStage:

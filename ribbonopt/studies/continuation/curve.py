@@ -12,13 +12,17 @@ from ribbonopt.arrays import Array
 from ribbonopt.problem import BoundaryValueProblem, Posed
 from ribbonopt.scene import ContinuationStage, Scene
 from ribbonopt.scene.lens import with_value
+from ribbonopt.scene.stages import ends_of
 from ribbonopt.scene.units import Units
 from ribbonopt.solution.solution import Solution
 from ribbonopt.solvers.extended import Line
 from ribbonopt.transcription.structure import Output
 
+from .walk.points import Point
+
 STEPS = 20  # from one end to the other, where the stage says nothing of its steps
 SLOPE = 1e-5  # of the span: half the distance that derivatives by the position are taken over
+SOME = 0.1  # of the span: what errors of smaller values are relative to
 KEPT = 16  # scenes at recent positions
 
 
@@ -42,20 +46,35 @@ class Curve:
     _posed: dict[float, Posed] = field(default_factory=dict)
 
     @property
-    def start(self) -> float:
+    def begin(self) -> float:
         """Position where the stage begins."""
         assert self.stage.from_ is not None
         return self.position(self.stage.from_)
 
     @property
+    def start(self) -> float:
+        """Position of the end that is not the last: where the stage begins, or goes first."""
+        to = self.stage.to
+        return self.position(to[0]) if isinstance(to, tuple) else self.begin
+
+    @property
     def goals(self) -> tuple[float, ...]:
         """Positions that must be met exactly, in order; the last is the end."""
-        values = self.stage.values or (self.stage.to,)
-        return tuple(self.position(value) for value in values if value is not None)
+        return tuple(
+            self.position(value) for value in self.stage.values or ends_of(self.stage)[-1:]
+        )
+
+    @property
+    def ways(self) -> tuple[Curve, ...]:
+        """The curve in each direction that is followed from where it begins."""
+        if not isinstance(self.stage.to, tuple):
+            return (self,)
+        back = replace(self.stage, to=self.stage.to[::-1])
+        return Curve(self.scene, back, self.units), self
 
     @property
     def span(self) -> float:
-        """Distance from the start to the end."""
+        """Distance from end to end."""
         return abs(self.goals[-1] - self.start)
 
     @property
@@ -103,11 +122,21 @@ class Curve:
 
     def value(self, position: float) -> float:
         """Value of the parameter, exactly that of the scene file where it names one."""
-        named = (self.stage.from_, self.stage.to, *(self.stage.values or ()))
+        named = (self.stage.from_, *ends_of(self.stage), *(self.stage.values or ()))
         for value in named:
             if value is not None and self.position(value) == position:
                 return value
         return float(10**position) if self.stage.scale == "log" else position
+
+    def error_of(self, point: Point[Solution]) -> float | None:
+        """Return the bound of the error of a special point's value, relative; None for unknown."""
+        return None if point.error is None else self.relative(point.error, point.position)
+
+    def relative(self, error: float, position: float) -> float:
+        """Return an error of a position relative to the value there, or to what counts as some."""
+        if self.stage.scale == "log":
+            return float(np.log(10)) * error
+        return error / max(abs(position), SOME * self.span)
 
     def scene_at(self, position: float) -> Scene:
         """Return the scene with the parameter's value at a position."""

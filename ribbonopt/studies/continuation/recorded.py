@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from dataclasses import dataclass
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -16,11 +17,11 @@ from ribbonopt.scene import ContinuationStage, Scene
 from ribbonopt.scene.faults import suggestion
 from ribbonopt.scene.lens import value_at
 from ribbonopt.scene.quantities import ANSWERS, START_VECTORS
-from ribbonopt.scene.stages import parse_record, parse_stop, stages_of, words_of
-from ribbonopt.solution.sampling import evaluate_formula
+from ribbonopt.scene.stages import parse_record, stages_of, words_of
 from ribbonopt.solution.solution import Solution
 
 from .curve import Curve
+from .stops import Stops, conditions_of
 from .walk.points import POINT, Point
 
 #: numbers that every row has, besides the parameters and what the scene records
@@ -28,7 +29,8 @@ NUMBERS = (
     *("error", *ANSWERS),
     *("number", "stage", "branch", "negative", "intervals", "iterations"),
 )
-WORDS = ("parameter", "kind", "switches", "note")
+SOFTEST = "softest"  # a number of rows where a stage asks for it
+WORDS = ("parameter", "kind", "origin", "switches", "note")
 VALUE = "value"  # stands for the parameter that a row's own stage moves
 PARAMETERS = "parameters."
 
@@ -46,22 +48,23 @@ class Recorder:
         """
         self.formulas = {name: parse_record(text, scene) for name, text in scene.record.items()}
         self.parameters = tuple(dict.fromkeys(stage.parameter for stage in stages_of(scene)))
+        self.measured = any(stage.measured for stage in stages_of(scene))
         for name in self.formulas:
-            if name in (*NUMBERS, *WORDS, VALUE, *self.parameters):
+            if name in (*NUMBERS, *WORDS, VALUE, SOFTEST, *self.parameters):
                 raise ModelError(
                     f"record.{name}: every row has {name!r} already; choose another name",
                     f"record.{name}",
                 )
         for stage in stages_of(scene):
-            for text in stage.stop:
-                left, _, right = parse_stop(text)
+            for text, left, _, right in conditions_of(stage):
                 if fault := self.fault_of((*words_of(left), *words_of(right))):
                     raise ModelError(f"continuation.stop: {text!r}: {fault}", "continuation")
 
     @property
     def names(self) -> tuple[str, ...]:
         """Names of all numbers of a row."""
-        return (*self.parameters, *NUMBERS, *self.formulas)
+        softest = [SOFTEST] if self.measured else []
+        return (*self.parameters, *NUMBERS, *softest, *self.formulas)
 
     @property
     def short(self) -> dict[str, str]:
@@ -93,17 +96,19 @@ class Recorder:
             "number": point.number,
             "stage": point.stage,
             "branch": point.branch,
+            "origin": point.origin,
             "parameter": stage.parameter,
             **self._parameters(solution.scene, stage, curve.value(point.position)),
             "kind": point.kind,
             "negative": _negative(solution) if stage.stability and point.kind == POINT else None,
             # At a fold the equations at a given parameter are singular: so is their estimate.
-            "error": error_of(solution) if point.kind == POINT else None,
-            **numbers_of(solution),
+            "error": error_of(solution) if point.kind == POINT else curve.error_of(point),
         }
-        row |= sampled(solution, self.formulas)
+        row |= self.varying(point, curve)
         row["switches"] = solution.switch_points.tolist()
         row["intervals"] = solution.dense.blocks.layout.element_count
+        if self.measured:
+            row[SOFTEST] = _softest(solution) if stage.measured and point.kind == POINT else None
         row["iterations"] = solution.iterations
         told = (*unknown_of(solution), *solution.given_up, *solution.fell_back)
         row["note"] = "; ".join(filter(None, [point.note, *told]))
@@ -121,6 +126,12 @@ class Recorder:
         others = {name: row.get(path) for name, path in self.short.items()}
         return {**row, VALUE: row.get(stage.parameter), **others}
 
+    def varying(self, point: Point[Solution], curve: Curve) -> dict[str, float | None]:
+        """Return the numbers of a row that vary along a branch, in the units of the scene."""
+        solution, value = point.solution, curve.value(point.position)
+        found = numbers_of(solution) | sampled(solution, self.formulas)
+        return {**self._parameters(solution.scene, curve.stage, value), **found}
+
 
 @dataclass(frozen=True, eq=False)
 class StageRecords:
@@ -133,10 +144,28 @@ class StageRecords:
         """Return what is recorded of a point."""
         return self.recorder.row(point, self.curve)
 
+    @cached_property
+    def stops(self) -> Stops:
+        """What ends the stage."""
+        return Stops(self.curve.stage)
+
     def stopped(self, row: Mapping[str, Any]) -> str:
         """Return the condition of the stage that a row meets, "" if none."""
-        stage = self.curve.stage
-        return stopped(self.recorder.named(row, stage), stage)
+        return self.stops.met(self.recorder.named(row, self.curve.stage))
+
+    def stopped_at(self, kind: str, count: int) -> str:
+        """Return what ends the stage at the special point of a kind and number, "" if nothing."""
+        return self.stops.met_at(kind, count)
+
+    def margins(self, point: Point[Solution]) -> dict[str, float]:
+        """Return how far a point is beyond the conditions on what varies along the branch.
+
+        Counts jump, and bounds of the error are none: conditions on them are met as they come.
+        """
+        if not self.stops.conditions:
+            return {}
+        varying = self.recorder.varying(point, self.curve)
+        return self.stops.margins(self.recorder.named(varying, self.curve.stage))
 
 
 def value_of(row: Mapping[str, Any]) -> float:
@@ -175,25 +204,14 @@ def numbers_of(solution: Solution) -> dict[str, float]:
     return row
 
 
-def stopped(row: Mapping[str, Any], stage: ContinuationStage) -> str:
-    """Return the condition of a stage that a row meets, "" if none."""
-    values = {
-        name: np.array([float(value)])
-        for name, value in row.items()
-        if isinstance(value, int | float)
-    }
-    for text in stage.stop:
-        left, sign, right = parse_stop(text)
-        if any(word not in values for word in (*words_of(left), *words_of(right))):
-            continue  # not known here
-        with np.errstate(all="ignore"):  # what is not a number meets no condition
-            a, b = (float(evaluate_formula(side, values)[0]) for side in (left, right))
-        if a > b if sign == ">" else a < b:
-            return text
-    return ""
-
-
 def _negative(solution: Solution) -> int | None:
     from ribbonopt.checks.stability import negative_directions  # builds second derivatives
 
     return negative_directions(solution)
+
+
+def _softest(solution: Solution) -> float | None:
+    from ribbonopt.checks.softest import softest  # builds second derivatives
+
+    found = softest(solution)
+    return None if isinstance(found, str) else found.eigenvalue

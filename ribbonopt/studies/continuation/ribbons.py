@@ -13,7 +13,6 @@ import numpy as np
 
 from ribbonopt.arrays import Array
 from ribbonopt.attempt.attempt import Attempt, verified
-from ribbonopt.checks.stability import negative_directions
 from ribbonopt.checks.zero_moment import unbent_share
 from ribbonopt.pipeline.prepared import Prepared
 from ribbonopt.solution.solution import Solution
@@ -25,7 +24,7 @@ from ribbonopt.transcription import Mesh
 from .buckled import StageBuckling
 from .coordinates import metric_at, reduced, row_of
 from .curve import Curve
-from .finishing import STEEP, elsewhere, finished
+from .finishing import elsewhere, finished
 from .leaving import leaving
 from .passage import passage
 from .phases import orientation
@@ -144,13 +143,9 @@ class RibbonEquations:
         """Say what change of the count of negative directions no special point explains."""
         if not self.curve.stage.stability:
             return ""
-        before, after = negative_directions(a), negative_directions(b)
-        if before is None or after is None:
-            return ""
-        change = abs(after - before)
-        if change <= changes and (change - changes) % 2 == 0:
-            return ""
-        return f"a change of the count of negative directions from {before} to {after}"
+        from .counts import unexplained  # builds second derivatives
+
+        return unexplained(a, b, changes)
 
     def departure(self, point: Point[Solution]) -> Array | None:
         """Return the infinitesimal deflection at a buckling point, None at others."""
@@ -187,7 +182,7 @@ class RibbonEquations:
     def enough(self, error: float, position: float) -> bool:
         """Whether the position of a special point is as exact as asked."""
         tolerance = self.curve.scene.tolerance
-        return tolerance is None or error <= tolerance * max(abs(position), STEEP * self.curve.span)
+        return tolerance is None or self.curve.relative(error, position) <= tolerance
 
     def restored(self, origin: Solution, unknowns: Array) -> Solution:
         """Return a solution of known unknowns on the mesh and in the phases of another."""

@@ -33,14 +33,19 @@ class RibbonStage:
         return self.curve
 
     @property
+    def ways(self) -> tuple[Curve, ...]:
+        """The same in each direction from where it begins."""
+        return self.curve.ways
+
+    @property
     def records(self) -> StageRecords:
         """What is recorded of its points."""
         return StageRecords(self.recorder, self.curve)
 
     @property
-    def switch(self) -> bool:
-        """Whether the branches that cross are followed."""
-        return self.curve.stage.switch
+    def switch(self) -> int:
+        """How deep branches that cross are followed."""
+        return int(self.curve.stage.switch)
 
     def first(self) -> tuple[Solution, Array]:
         """Solve where it begins.
@@ -51,7 +56,7 @@ class RibbonStage:
             If no solution is found.
         """
         curve = self.curve
-        scene = curve.scene_at(curve.start)
+        scene = curve.scene_at(curve.begin)
         found = self.prepared.solve(scene, guess=self.before, fallback=self.before is None)
         if not found.verified:
             raise ConvergenceError(
@@ -59,7 +64,7 @@ class RibbonStage:
                 f"{found.message}",
                 found.status.name.lower(),
             )
-        return found, np.append(found.dense.w, curve.start)
+        return found, np.append(found.dense.w, curve.begin)
 
     def equations(self, first: Solution) -> RibbonEquations:
         """Return its equations, with the metric of a stage that begins at a solution."""

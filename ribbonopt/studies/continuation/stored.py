@@ -38,7 +38,9 @@ class Stored:
                 self._lines.setdefault((row["stage"], row["branch"]), []).append(line)
         for i in range(len(continuation.stages)):
             self._curves.append(continuation.curve(i, scene))
-            regular = [x for x in self._lines.get((i, 0), []) if x["row"]["kind"] == POINT]
+            ways = range(len(self._curves[-1].ways))
+            lines = [line for way in ways for line in self._lines.get((i, way), [])]
+            regular = [line for line in lines if line["row"]["kind"] == POINT]
             if regular:  # where a stage ended, at its goal or before
                 scene = self._curves[-1].scene_at(regular[-1]["state"]["position"])
 
@@ -66,6 +68,7 @@ class Stored:
             row["branch"],
             row["kind"],
             row,
+            origin=row["origin"],
         )
 
 

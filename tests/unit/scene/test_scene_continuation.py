@@ -36,7 +36,15 @@ from ribbonopt.scene.faults import InvalidSceneError
 from ribbonopt.scene.formulas.parsing import FormulaError
 from ribbonopt.scene.lens import fault_of, paths_of, value_at, with_value
 from ribbonopt.scene.schema.validation import validate
-from ribbonopt.scene.stages import parse_record, parse_stop, stages_of
+from ribbonopt.scene.stages import (
+    end_of,
+    ends_of,
+    parse_record,
+    parse_stop,
+    special_stop,
+    stages_of,
+    words_of,
+)
 
 HEAD = """\
 name: arch
@@ -154,6 +162,41 @@ def test_stages_begin_where_earlier_ones_ended() -> None:
     assert stages_of(scene()) == ()
 
 
+def test_two_ways_from_where_a_stage_begins() -> None:
+    text = (
+        HEAD
+        + """continuation:
+  - {parameter: law.epsilon, to: [1, 1e-4], scale: log, switch: 2, stop: [2 folds]}
+  - {parameter: law.epsilon, to: 1}
+"""
+    )
+    read = loads_scene(text)
+    first, second = stages_of(read)
+    assert (first.from_, first.to, first.switch) == (0.01, (1.0, 1e-4), 2)
+    # from the end that is named last
+    assert (second.from_, second.to) == (1e-4, 1.0)
+    assert (ends_of(first), end_of(first), ends_of(second)) == ((1.0, 1e-4), 1e-4, (1.0,))
+    again = dump_scene(read)
+    assert "to: [1, 0.0001]" in again
+    assert loads_scene(again) == read
+
+
+@pytest.mark.parametrize(
+    ("text", "found"),
+    [
+        ("fold", ("fold", 1)),
+        ("branch point", ("branch point", 1)),
+        (" 1 fold", ("fold", 1)),
+        ("3 branch points", ("branch point", 3)),
+        ("buckling point", ("buckling point", 1)),
+        ("energy > 30", None),
+        ("fold > 1", None),
+    ],
+)
+def test_special_points_that_end_a_stage(text: str, found: tuple[str, int] | None) -> None:
+    assert special_stop(text) == found
+
+
 OF_STAGES = [
     (
         "parameter: law.epsilom, to: 1",
@@ -204,6 +247,22 @@ OF_EPSILON = [
     ("to: 1, stop: [energy > (3]", "stop.0: formula '(3', column 1: cannot be read"),
     ("to: 1, stop: [r > 1]", "stop.0: formula 'r': found a vector, expected a scalar"),
     ("to: 1, stop: energy > 1", "stop: found 'energy > 1', expected a list, each item text"),
+    ("to: 1, stop: [folds]", "stop.0: formula 'folds': found a number that does not fit, expected"),
+    ("to: 1, stop: [0 folds]", "stop.0: formula '0 folds': found a number that does not fit"),
+    ("to: 1, stop: [2 fold]", "expected 'fold', or '2 folds' for the second one"),
+    ("to: 1, stop: [turn]", "found no sign > or <, expected 'A > B' or 'A < B', such as 'energy"),
+    ("to: 1, stop: [turn]", "or fold, branch point, buckling point, or a number of them"),
+    ("to: 1, stop: [fold], special: false", "stop.0: found 'fold', folds are not located with"),
+    ("to: [0.001, 0.005]", "to: found [0.001, 0.005], of which one is to be below and one above"),
+    ("from: 2, to: [3, 2]", "one above where law.epsilon begins, 2; for one direction write one"),
+    ("from: 2, to: [1, 2, 3]", "to: found [1, 2, 3], expected a list of 2 items, each a number"),
+    ("from: 2, to: [1]", "to: found [1], expected a list of 2 items, each a number"),
+    ("from: 2, to: [-1, 3]", "to.0: found -1, which makes no valid scene"),
+    ("from: 2, to: [3, 0], scale: log", "to: found 0, expected a number > 0, for the logarithm"),
+    ("to: [0, 1], values: [1, 2]", "to: stands beside `values`, which say where the stage ends"),
+    ("to: 1, switch: -1", "switch: found -1, expected a whole number >= 0"),
+    ("to: 1, switch: 1.5", "switch: found 1.5, expected a whole number >= 0"),
+    ("to: 1, switch: deep", "switch: found 'deep', expected true or false or a whole number >= 0"),
 ]
 
 
@@ -437,3 +496,16 @@ def test_values_become_floats() -> None:
     assert isinstance(changed.law, Homotopy)
     assert type(changed.law.rho) is float
     assert math.isnan(value_at(with_value(SEEN, "law.rho", math.nan), "law.rho"))
+
+
+@pytest.mark.parametrize(
+    ("text", "words"),
+    [
+        ("1e9", []),
+        ("2.5E-3 + 1.e5 - .1e2", []),
+        ("shortening*1e3 + e1", ["shortening", "e1"]),
+        ("sqrt(n0z)/x2", ["n0z", "x2"]),
+    ],
+)
+def test_exponents_are_no_words(text: str, words: list[str]) -> None:
+    assert words_of(text) == words

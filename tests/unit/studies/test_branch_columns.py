@@ -14,9 +14,9 @@ from ribbonopt.studies.continuation.recorded import (
     NUMBERS,
     WORDS,
     Recorder,
-    stopped,
     value_of,
 )
+from ribbonopt.studies.continuation.stops import Stops
 
 ROOT = Path(__file__).parents[3]
 SCENE = """\
@@ -75,7 +75,7 @@ def test_a_record_has_its_own_name() -> None:
     stage = loads_scene(
         SCENE.format(record="load: 'dot(r, ex)'", more=", stop: [load > 2, value > 4]")
     ).continuation[0]
-    assert stopped(found.named(row, stage), stage) == "value > 4"
+    assert Stops(stage).met(found.named(row, stage)) == "value > 4"
 
 
 @pytest.mark.parametrize(
@@ -90,10 +90,10 @@ def test_conditions_name_numbers_that_move(condition: str) -> None:
     found = recorder(more=more)
     stage = loads_scene(SCENE.format(record="", more=more)).continuation[0]
     row = {"parameter": "parameters.load", "parameters.load": 1.6, "law.epsilon": 0.1}
-    assert stopped(found.named(row, stage), stage) == condition
+    assert Stops(stage).met(found.named(row, stage)) == condition
     assert value_of(row) == 1.6
     none = row | {"parameters.load": 1.4, "law.epsilon": 1e-3}
-    assert stopped(found.named(none, stage), stage) == (condition if "1e3" in condition else "")
+    assert Stops(stage).met(found.named(none, stage)) == (condition if "1e3" in condition else "")
 
 
 @pytest.mark.parametrize("condition", ["law.delta > 1", "epsilon < 1", "r.x > 1", "load.x > 1"])

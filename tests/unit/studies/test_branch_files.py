@@ -67,8 +67,23 @@ continuation:
   - {parameter: law.B3, to: 2.5, largest: 0.2}
 """
 )
-SCENES = {"branches and stages": COLUMN, "phases and meshes": MOEBIUS, "stopped": STOPPED}
-START = ["number", "stage", "branch", "parameter"]
+#: both ways from a start, with what crosses; special points and conditions that end a stage
+WAYS = (
+    COLUMN[: COLUMN.index("continuation:")]
+    + """\
+continuation:
+  - {parameter: parameters.P, from: 39.6, to: [39.3, 39.8], switch: 2, stability: false}
+  - {parameter: parameters.P, to: 45, stop: [shortening > 0.01, value > 40.1], stability: false}
+  - {parameter: parameters.P, to: 39, stop: [branch point], stability: false}
+"""
+).replace("tolerance: 1e-9", "tolerance: 1e-7")
+SCENES = {
+    "branches and stages": COLUMN,
+    "phases and meshes": MOEBIUS,
+    "stopped": STOPPED,
+    "ways": WAYS,
+}
+START = ["number", "stage", "branch", "origin", "parameter"]
 HEAD = [
     *("kind", "negative", "error", "energy"),
     *("H0", "n0x", "n0y", "n0z", "m0x", "m0y", "m0z", "u1", "u2", "u3"),
@@ -378,7 +393,7 @@ def test_going_on_after_every_line_is_the_same(
 ) -> None:
     of = followed[name]
     table = (of.folder / TABLE).read_bytes()
-    for count in range(1, len(of.lines), 1 if name == "stopped" else 6):
+    for count in range(1, len(of.lines), {"stopped": 1, "ways": 12}.get(name, 6)):
         path = copied(of, tmp_path / str(count), of.lines[:count])
         continuation = Continuation(of.scene)
         list(BranchFolder(path, of.scene, resume=True).follow(continuation))

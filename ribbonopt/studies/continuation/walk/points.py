@@ -12,6 +12,7 @@ POINT, FOLD, BRANCH_POINT, BUCKLING = "point", "fold", "branch point", "buckling
 KINK = "kink"  # branches meet at an angle where the equations change, as phases begin or end
 # Where other branches cross; at the last two without a derivative.
 CROSSINGS = (BRANCH_POINT, BUCKLING, KINK)
+SPECIAL = (FOLD, *CROSSINGS)
 
 S = TypeVar("S")  # what a solution is, is the business of the equations
 
@@ -40,6 +41,8 @@ class Point(Generic[S]):
         What is recorded, by name.
     note : str
         What is to be told of it: how it is other than the continuation of the point before.
+    origin : int or None
+        Number of the point where its branch leaves another; None on the first branch.
     error : float or None
         Of the position of a special point, a bound; None where it is not known.
     """
@@ -55,6 +58,7 @@ class Point(Generic[S]):
     kind: str = POINT
     row: Mapping[str, Any] = field(default_factory=dict)
     note: str = ""
+    origin: int | None = None
     error: float | None = None
 
     @property

@@ -236,3 +236,9 @@ class Records(Protocol[S]):
 
     def stopped(self, row: Mapping[str, Any]) -> str:
         """Return the condition that ends a branch at a row, "" if it goes on."""
+
+    def margins(self, point: Point[S]) -> Mapping[str, float]:
+        """Return how far a point is beyond each condition that is met exactly; > 0 where met."""
+
+    def stopped_at(self, kind: str, count: int) -> str:
+        """Return what ends a branch at its special point of a kind and number from 1, or ""."""

@@ -1,16 +1,22 @@
 """Stage after stage: each begins where the one before has ended; branches that cross are followed.
 
-Where a stage ends short of its goal, no other follows.
+A stage that goes two ways from where it begins follows one after the other: the second way is a
+branch of its own that leaves the first where that begins. Where a stage ends short of a goal, no
+other follows; else the next begins where the last way has ended.
 """
 
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator
-from typing import Protocol
+from dataclasses import replace
+from functools import partial
+from typing import Generic, Protocol
 
 from ribbonopt.arrays import Array
 
-from .branches import Branch, History, Register
+from .branches import Branch, Common, History, Register
+from .endless import CLOSED
+from .known import Atlas
 from .points import POINT, Point, S
 from .protocol import Equations, Range, Records
 from .switching import switched
@@ -22,15 +28,19 @@ class WalkStage(Protocol[S]):
 
     @property
     def range(self) -> Range:
-        """Where it goes."""
+        """Where it goes, from end to end."""
+
+    @property
+    def ways(self) -> tuple[Range, ...]:
+        """The same in each direction from where it begins, which is one of them, or two."""
 
     @property
     def records(self) -> Records[S]:
         """What is recorded of its points."""
 
     @property
-    def switch(self) -> bool:
-        """Whether the branches that cross are followed, in both directions."""
+    def switch(self) -> int:
+        """How deep branches that cross are followed, in both directions: 2 for those of those."""
 
     def first(self) -> tuple[S, Array]:
         """Solve where it begins: a solution and its unknowns (n + k,)."""
@@ -64,39 +74,61 @@ def followed(
         if stage.range.span == 0:
             register.endings[number, 0] = Ending(True, "its goal is where it begins")
             continue
-        branch = _main(stage, number, register, history)
-        yield from branch.points()
+        ways = _Ways(stage, number, register, history)
+        yield from ways.points()
         if stage.switch:
-            yield from _crossing(branch, history)
-        if not register.endings[number, 0].reached or branch.last is None:
+            yield from ways.crossing()
+        if not all(register.endings[number, way].reached for way in range(len(stage.ways))):
             return
-        before = branch.last
+        before = ways.branches[len(stage.ways) - 1].last or ways.branches[0].first
 
 
-def _main(stage: WalkStage[S], number: int, register: Register, history: History[S]) -> Branch[S]:
-    """Return the branch that a stage begins on."""
-    known = history.points(number, 0, POINT)
-    solution, unknowns = (known[0].solution, known[0].unknowns) if known else stage.first()
-    direction = 1 if stage.range.goals[-1] > stage.range.start else -1
-    walk = Walk(stage.equations(solution), stage.range, direction)
+class _Ways(Generic[S]):
+    """The branches of one stage, in the order of their numbers."""
 
-    def begin() -> Point[S]:
-        return walk.begin(solution, unknowns)
+    def __init__(
+        self, stage: WalkStage[S], number: int, register: Register, history: History[S]
+    ) -> None:
+        """Solve where it begins, unless that is known."""
+        known = history.points(number, 0, POINT)
+        begin = (known[0].solution, known[0].unknowns) if known else stage.first()
+        self.stage, self.solution, self.unknowns = stage, *begin
+        self.equations = stage.equations(self.solution)
+        self.common = Common(number, register, stage.records, history, Atlas(self.equations))
+        self.branches: list[Branch[S]] = []
 
-    return Branch(register, walk, stage.records, (number, 0), history, begin)
+    def points(self) -> Iterator[Point[S]]:
+        """Follow the branch that the stage begins on, each way."""
+        for way in self.stage.ways:
+            first = self.branches[0].first if self.branches else None
+            walk = Walk(self.equations, way, 1 if way.goals[-1] > way.start else -1)
 
+            def begin(walk: Walk[S] = walk, first: Point[S] | None = first) -> Point[S]:
+                point = walk.begin(self.solution, self.unknowns)
+                return point if first is None else replace(point, row=first.row)
 
-def _crossing(main: Branch[S], history: History[S]) -> Iterator[Point[S]]:
-    """Follow the branches that cross at the branch points of another, in both directions."""
-    number = 0
-    for point in main.branch_points:
-        for sign in (1, -1):
-            number += 1
-            walk = Walk(main.walk.equations, main.walk.range, 0)
-
-            def begin(point: Point[S] = point, sign: int = sign) -> Point[S]:
-                return switched(main.walk.equations, point, sign)
-
-            key = main.key[0], number
-            branch = Branch(main.register, walk, main.records, key, history, begin)
+            branch = self._branch(walk, begin, first)
+            if first is not None and self.branches[0].closed:
+                branch.ended = Ending(False, f"is branch 0 already, which is {CLOSED}")
             yield from branch.points()
+
+    def crossing(self) -> Iterator[Point[S]]:
+        """Follow the branches that cross, in both directions, and those that cross them."""
+        level = self.branches
+        for _ in range(self.stage.switch):
+            known = len(self.branches)
+            for left, origin in [(b, point) for b in level for point in b.branch_points]:
+                itself = partial(self.common.atlas.leads_to, left.trace)
+                for sign in (1, -1):
+                    begin = partial(switched, self.equations, origin, sign, itself)
+                    walk = Walk(self.equations, self.stage.range, 0)
+                    yield from self._branch(walk, begin, origin).points()
+            level = self.branches[known:]
+
+    def _branch(
+        self, walk: Walk[S], begin: Callable[[], Point[S]], origin: Point[S] | None
+    ) -> Branch[S]:
+        """Return the next branch."""
+        branch = Branch(self.common, len(self.branches), walk, begin, origin)
+        self.branches = [*self.branches, branch]
+        return branch

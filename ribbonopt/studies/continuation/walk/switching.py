@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import replace
 
 import numpy as np
@@ -19,15 +20,24 @@ PITCHFORK, TRANSCRITICAL = "pitchfork", "transcritical"
 BESIDE = (0.0, 1e-12, 1e-10, 1e-8)  # arclength from a point where equations are nearly singular
 
 
-def switched(equations: Equations[S], point: Point[S], sign: int) -> Point[S]:
-    """Return the first point on the branch that crosses at a branch point; LinAlgError for none."""
+def switched(
+    equations: Equations[S],
+    point: Point[S],
+    sign: int,
+    itself: Callable[[Point[S]], bool] = lambda point: False,
+) -> Point[S]:
+    """Return the first point on the branch that crosses at a branch point; LinAlgError for none.
+
+    `itself` tells whether a point is on the branch that is left. Such a one is returned only where
+    none nearer is on another: that branch may cross itself.
+    """
     equations = equations.measured(point.solution)
     point = renewed(equations, point)
     if point.kind == KINK:
         return _left(equations, point, sign)
     known = equations.departure(point)
     direction = sign * (null_direction(equations, point) if known is None else known)
-    away = AWAY
+    away, own = AWAY, None
     while away > LEAST_AWAY:
         guess = point.unknowns + away * direction
         trial = equations.correct_along(point, direction, away, guess)
@@ -42,7 +52,7 @@ def switched(equations: Equations[S], point: Point[S], sign: int) -> Point[S]:
                 away /= 2
                 continue
             found, tangent = near(equations, trial.solution, trial.unknowns, ahead)
-            return replace(
+            first = replace(
                 point,
                 solution=trial.solution,
                 unknowns=trial.unknowns,
@@ -51,8 +61,15 @@ def switched(equations: Equations[S], point: Point[S], sign: int) -> Point[S]:
                 step=away,
                 kind=POINT,
                 note=trial.note,
+                row={},
+                error=None,
             )
+            if not itself(first):
+                return first
+            own = own or first
         away /= 2
+    if own is not None:
+        return own
     raise np.linalg.LinAlgError("no point was found on the branch that crosses")
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass
 from typing import Generic
 
@@ -13,7 +13,10 @@ from ribbonopt.arrays import Array
 from .points import FOLD, Point, S
 from .protocol import Equations, Range
 from .steps import DIGITS, Stepper
+from .strides import Stride
 from .tangents import near
+
+Land = Callable[[Point[S], Stride[S]], Stride[S]]  # a point, and the step from there
 
 
 @dataclass(frozen=True)
@@ -42,8 +45,8 @@ class Walk(Generic[S]):
         length = self.stepper.first_length(tangent)
         return Point(solution, unknowns, tangent, found.sign, length)
 
-    def points(self, point: Point[S]) -> Iterator[Point[S]]:
-        """Points after a given one, special points among them."""
+    def points(self, point: Point[S], land: Land[S] | None = None) -> Iterator[Point[S]]:
+        """Points after a given one, special points among them; `land` may shorten each step."""
         while True:
             goal = self._goal(point)
             if goal is None:
@@ -52,6 +55,7 @@ class Walk(Generic[S]):
             if step is None:
                 self.ending = self._stuck(point)
                 return
+            step = land(point, step) if land else step
             for found in step.special:
                 yield found
                 if found.kind == FOLD:

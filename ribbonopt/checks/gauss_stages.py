@@ -1,0 +1,134 @@
+"""The shape of a solution at the stages of a Gauss scheme, whichever equations it was found by."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import numpy as np
+from numpy.typing import NDArray
+
+from ribbonopt.accuracy.estimate import relative_error
+from ribbonopt.arrays import Array
+from ribbonopt.mechanics.section import RodFields
+from ribbonopt.problem import Ribbon
+from ribbonopt.solution.solution import Solution
+from ribbonopt.transcription import Tableau, gauss
+from ribbonopt.transcription.tableaus import MAX_DEGREE
+
+from .zero_moment import lacks_linearisation
+
+STAGES = 100  # in all where others are taken; more only on fine meshes, with four in each element
+LEAST_ELEMENTS, HIGHEST_DEGREE = 10, 8
+SAME = 1e-12  # of the length: places of stages
+
+
+@dataclass(frozen=True, eq=False)
+class GaussStages:
+    """A shape at the stages of N elements with K stages each, units Dw = L = 1.
+
+    Attributes
+    ----------
+    widths : (N,) array
+        Widths of the elements, fractions of the length.
+    tableau : Tableau
+        The scheme.
+    places : (N K,) array
+        Fractions at which the stages are.
+    x, z : (N K, nx), (N K, nz) arrays
+        States of the reduced model, and moments along the directors of the free strains.
+    ends : (2, nx) array
+        States at the start and at the end.
+    firsts : (k,) integer array
+        Elements that begin at a switch.
+    x_switch, z_switch : (k, nx), (k, nz) arrays
+        States and moments there.
+    switching : (N K,) array
+        What changes its sign where the law switches.
+    error : float
+        Relative error of the shape as estimated; zero where it shows elsewhere.
+    """
+
+    widths: Array
+    tableau: Tableau
+    places: Array
+    x: Array
+    z: Array
+    ends: Array
+    firsts: NDArray[np.intp]
+    x_switch: Array
+    z_switch: Array
+    switching: Array
+    error: float
+
+
+def gauss_stages(solution: Solution, ribbon: Ribbon) -> GaussStages:
+    """Return a solution at its own stages where they are those of a Gauss scheme, else at others.
+
+    At its own stages it is an equilibrium of the discrete energy too, to rounding, whatever its
+    mesh: there the estimated error tells how near it is to the true one. At others it is not, and
+    the gradient of the energy tells.
+    """
+    trajectory, degree = solution.trajectory, solution.dense.blocks.degree
+    widths, parts = np.diff(trajectory.nodes), 1
+    own, error = trajectory.stages[1], None
+    if len(own) == len(widths) * degree and degree <= MAX_DEGREE:
+        places = _places(widths, degree)
+        if np.abs(own - places).max() < SAME:
+            error = _known_error(solution)
+    if error is not None:
+        along = trajectory.at_stages
+    else:
+        parts = -(-LEAST_ELEMENTS // len(widths))
+        widths = np.repeat(widths / parts, parts)
+        degree = min(degree, max(4, STAGES // len(widths)), HIGHEST_DEGREE)
+        places = _places(widths, degree)
+        along = trajectory.outputs(places)
+    lengths = np.array(trajectory.dense.blocks.layout.elements)
+    firsts = parts * np.cumsum(lengths)[:-1]
+    points = {k: v[[0, *(firsts // parts), -1]] for k, v in trajectory.at_nodes.items()}
+    # Packed together, in order, for quaternions that do not change their sign.
+    at = np.concatenate([[0], degree * firsts, [len(places)]])
+    pairs = zip(_fields(along), _fields(points), strict=True)
+    fields = RodFields(*(np.insert(a, at, b, axis=0) for a, b in pairs))
+    # Any point of reference will do: it is for constants, which the energy does without.
+    x, _ = ribbon.model.pack(fields, fields.r[0])
+    z = np.einsum("ki,kij->kj", fields.m, fields.frames)[:, list(ribbon.law.components)]
+    rows = at + np.arange(len(at))
+    inside = np.delete(np.arange(len(x)), rows)
+    between = rows[1:-1]
+    return GaussStages(
+        widths,
+        gauss(degree),
+        places,
+        x[inside],
+        z[inside],
+        x[rows[[0, -1]]],
+        firsts,
+        x[between],
+        z[between],
+        along["switching"],
+        error or 0.0,
+    )
+
+
+def _places(widths: Array, degree: int) -> Array:
+    """Fractions (N K,) of the stages."""
+    starts = np.append(0.0, np.cumsum(widths)[:-1])
+    places: Array = (starts[:, None] + widths[:, None] * gauss(degree).nodes).ravel()
+    return places
+
+
+def _fields(o: Mapping[str, Array]) -> tuple[Array, Array, Array, Array]:
+    """Return r, frames, n and m of named outputs, in the order of `RodFields`."""
+    return o["r"], np.stack([o["d1"], o["d2"], o["d3"]], axis=2), o["n"], o["m"]
+
+
+def _known_error(solution: Solution) -> float | None:
+    """Relative error of a solution; None where it cannot be told."""
+    if solution.problem.recovered or lacks_linearisation(solution):
+        return None
+    try:
+        return relative_error(solution)[0]
+    except np.linalg.LinAlgError:
+        return None

@@ -1,0 +1,106 @@
+"""Switches of a kinked law that move: the second variation where strains leap.
+
+Each side of a switch at s has the law of its phase. When the switch moves by k, a stretch of that
+length changes sides: the shape turns there by [u] k, [u] being the leap of the strains, and since
+m . [u] is zero at the switch and grows as m' . [u] beside it, that costs (m' . [u]) k^2 / 2. The
+states beside a switch so jump by [f] k, and what else they take part in, they do at the middle of
+the jump. It is the limit of a smooth law: its layer, that bends easily, shrinks to a point, and as
+the square of a moment over no length a switch weighs nothing in the metric.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+from dataclasses import dataclass
+
+import casadi as ca
+import numpy as np
+from numpy.typing import NDArray
+
+from ribbonopt.arrays import Array
+from ribbonopt.mechanics.laws.law import Stress
+from ribbonopt.problem import BoundaryValueProblem, Ribbon
+from ribbonopt.solution.solution import Solution
+from ribbonopt.transcription.buffered import Buffered
+from ribbonopt.transcription.functions import stage_functions
+
+from .gauss_stages import GaussStages
+
+NO_LEAP = 1e-9  # of the largest strain
+
+
+@dataclass(frozen=True, eq=False)
+class Moved:
+    """What moves with k switches, each scaled to a leap of one: `jumps` (N, nx) of the states.
+
+    Jumps are those at the start of each element; `firsts` are the elements that begin at a switch,
+    `turning` (k, nx, nx) the Jacobians of their jumps and `stiffness` (k,) what moving costs.
+    """
+
+    jumps: Array
+    firsts: NDArray[np.intp]
+    turning: Array
+    stiffness: Array
+
+    def add_to(self, Q: Array, costates: Array) -> None:
+        """Add to the Hessians (N, nx + m, nx + m) of elements, whose last variables are the moves.
+
+        `costates` (N + 1, nx) are those of the nodes.
+        """
+        nx = costates.shape[1]
+        Q[:, -1, -1] += 1.0  # where nothing moves: a variable without effect
+        for e, turning, stiffness in zip(self.firsts, self.turning, self.stiffness, strict=True):
+            coupling = costates[e] @ turning
+            Q[e, -1, :nx] += coupling
+            Q[e, :nx, -1] += coupling
+            Q[e, -1, -1] += stiffness + coupling @ self.jumps[e] - 1.0
+
+
+@dataclass(frozen=True, eq=False)
+class MovingSwitches:
+    """The leap at a switch as a function of a stage.
+
+    By how much rates and strains of the side +1 are above those of -1, and the Jacobian of the
+    former by the states.
+    """
+
+    leap: Buffered
+
+    @classmethod
+    def of(cls, ribbon: Ribbon, sides: Mapping[int, BoundaryValueProblem]) -> MovingSwitches:
+        """Build from the problems of least energy of both sides, +1 and -1."""
+        law, problem = ribbon.law, sides[1]
+        above, below = (stage_functions(sides[kind])[0] for kind in (1, -1))
+        inputs = list(above.inputs)
+        change = above.equations - below.values(*inputs)
+        free = len(law.components)
+        stress = Stress.of_moment(law.whole(inputs[0][-free:]))
+        strains = law.branch(1).strain(stress) - law.branch(-1).strain(stress)
+        place = problem.start + inputs[3][0] * problem.phases[0].length
+        strains = ca.substitute(strains, ribbon.position, place)
+        jacobian = ca.jacobian(change, inputs[0])[:, :-free]
+        outputs = [ca.densify(each) for each in (change, strains, jacobian)]
+        return cls(Buffered(ca.Function("leap", inputs, outputs)))
+
+    def at(self, solution: Solution, stages: GaussStages, theta: Array) -> Moved:
+        """Return what moves at the switches of a solution."""
+        trajectory, firsts = solution.trajectory, stages.firsts
+        nx, switches = stages.x.shape[1], trajectory.ends[1:-1]
+        o = {name: value for name, value in trajectory.outputs(switches).items() if name in "num"}
+        frames = solution.fields(switches).frames
+        n, m = (np.einsum("ki,kij->kj", o[name], frames) for name in "nm")
+        slope = -np.cross(o["u"], m) - np.cross([0.0, 0.0, 1.0], n)  # m' of eq. (2.7)
+        most = NO_LEAP * float(np.abs(trajectory.at_stages["u"]).max())
+        jumps = np.zeros((len(stages.widths), nx))
+        turning, stiffness = np.zeros((len(firsts), nx, nx)), np.ones(len(firsts))
+        for i, e in enumerate(firsts):
+            v = np.concatenate([stages.x_switch[i], stages.z_switch[i]])
+            change, strains, jacobian = self.leap(v, np.empty(0), theta, switches[i : i + 1])
+            size = float(np.linalg.norm(strains))
+            if size <= most:
+                continue  # nothing leaps: there is nothing to move
+            sign = np.sign(solution.sheets[i + 1] - solution.sheets[i])
+            jumps[e] = sign * change / size
+            turning[i] = sign * jacobian.reshape(nx, nx).T / size
+            stiffness[i] = trajectory.length**2 * sign * slope[i] @ strains / size**2
+        return Moved(jumps, firsts, turning, stiffness)
