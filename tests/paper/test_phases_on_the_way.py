@@ -40,6 +40,7 @@ tolerance: 1e-8
 continuation: {parameter: parameters.angle, from: 0, to: 180, largest: 10}
 """
 THRESHOLD = 0.25060501787  # of the sheared arch
+SECOND = 0.38286571873  # where the state of height zero loses its symmetry
 M2 = -0.02729  # at the clamp, where the shear is .251711: without phases there it is -.0775
 
 
@@ -128,6 +129,18 @@ def test_signs_are_those_of_stability_in_any_phases(
             assert point.sign == (-1 if point.position < THRESHOLD else 1)
         elif point.kind == POINT:  # stable, as the arch was
             assert point.sign == -1
+
+
+@pytest.mark.slow
+def test_asymmetric_arches_come_to_the_state_of_height_zero() -> None:
+    # There m2 = m3 = 0 in the middle, and the law has no derivative.
+    text = ARCH.replace("largest: 0.02", "largest: 0.02, stop: [middle < 3e-4]")
+    text = text.replace("continuation", 'record: {middle: "dot(r, ex) at 0.5"}\ncontinuation')
+    points, _ = followed(text, to=0.39, switch=True)
+    for branch in (1, 2):
+        last = [p for p in points if p.branch == branch and p.kind == POINT][-4:]
+        middle, shear = [p.row["middle"] for p in last], [p.position for p in last]
+        assert np.polyval(np.polyfit(middle, shear, 3), 0.0) == pytest.approx(SECOND, abs=1e-6)
 
 
 @pytest.mark.slow

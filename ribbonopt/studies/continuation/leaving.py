@@ -9,7 +9,7 @@ maybe more: then branches cross, and leave linearly.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from itertools import combinations
 from typing import TYPE_CHECKING
 
@@ -33,8 +33,22 @@ SHORT = 0.02  # of the length: phase born inside, to begin with
 SPLITTING = (What.BORN_INSIDE, What.BORN_BETWEEN, What.LEFT)
 
 
-def leaving(equations: RibbonEquations, event: Point[Solution]) -> list[Point[Solution]]:
-    """Return the first points on the branches that leave a change of phases, the straightest first.
+Found = tuple[Trial[Solution], Point[Solution] | None]
+
+
+@dataclass(frozen=True, eq=False)
+class Way:
+    """A branch that leaves: its first point, and the stretch up to that if it is regular.
+
+    The stretch is the event itself in the new phases, and the point before it was finished.
+    """
+
+    first: Point[Solution]
+    stretch: tuple[Point[Solution], Point[Solution]] | None
+
+
+def leaving(equations: RibbonEquations, event: Point[Solution]) -> list[Way]:
+    """Return the branches that leave a change of phases, the straightest first.
 
     `event` is in the phases of the branch that leads there, and its tangent that branch's.
     """
@@ -44,21 +58,22 @@ def leaving(equations: RibbonEquations, event: Point[Solution]) -> list[Point[So
     for count in range(len(at_once), 0, -1):
         for changes in combinations(at_once, count):
             found += list(_entered(equations, event, changes))
-    return sorted(found, key=lambda way: -_cosine(equations, event, way))
+    return sorted(found, key=lambda way: -_cosine(equations, event, way.first))
 
 
 def _entered(
     equations: RibbonEquations, event: Point[Solution], changes: tuple[Change, ...]
-) -> Iterator[Point[Solution]]:
-    """Yield the point behind an event on the branch where these phases change, if there is one."""
+) -> Iterator[Way]:
+    """Yield the branch behind an event where these phases change, if there is one."""
     enter = _split if any(change.what in SPLITTING for change in changes) else _along_tangent
     away, turned = AWAY, None
     while away > LEAST_AWAY:
-        for trial in enter(equations, event, changes, away):
-            way = admitted(equations, event, trial)
-            if way is None:
+        for trial, entry in enter(equations, event, changes, away):
+            first = admitted(equations, event, trial)
+            if first is None:
                 continue
-            if (way.position - event.position) * way.tangent[-1] >= 0:
+            way = Way(first, _stretch(equations, entry, trial))
+            if (first.position - event.position) * first.tangent[-1] >= 0:
                 yield way
                 return
             turned = way  # a fold is between: nearer by, it is still ahead
@@ -69,7 +84,7 @@ def _entered(
 
 def _along_tangent(
     equations: RibbonEquations, event: Point[Solution], changes: tuple[Change, ...], away: float
-) -> Iterator[Trial[Solution]]:
+) -> Iterator[Found]:
     """Yield what is found both ways along the tangent in other phases at the ends."""
     search = equations.prepared.search(equations.curve.posed_at(event.position))
     try:
@@ -84,12 +99,40 @@ def _along_tangent(
         guess = unknowns + sign * away * tangent
         trial = equations.correct_along(origin, sign * tangent, away, guess)
         if trial.converged:
-            yield trial
+            yield trial, _facing(equations, origin, sign)
+
+
+def _stretch(
+    equations: RibbonEquations, entry: Point[Solution] | None, trial: Trial[Solution]
+) -> tuple[Point[Solution], Point[Solution]] | None:
+    """Return the way from an event to a trial in one layout."""
+    if entry is None:
+        return None
+    ahead = equations.reduced(entry.solution, entry.tangent)
+    solution, unknowns = trial.solution, trial.unknowns
+    try:
+        found, tangent = near(equations, solution, unknowns, ahead)
+    except np.linalg.LinAlgError:
+        return None
+    parts = replace(entry, solution=solution, unknowns=unknowns)
+    return entry, replace(parts, tangent=tangent, sign=found.sign)
+
+
+def _facing(
+    equations: RibbonEquations, point: Point[Solution], sign: int
+) -> Point[Solution] | None:
+    """Return a point that faces along its tangent or against it."""
+    ahead = sign * equations.reduced(point.solution, point.tangent)
+    try:
+        found, tangent = near(equations, point.solution, point.unknowns, ahead)
+    except np.linalg.LinAlgError:
+        return None
+    return replace(point, tangent=tangent, sign=found.sign)
 
 
 def _split(
     equations: RibbonEquations, event: Point[Solution], changes: tuple[Change, ...], away: float
-) -> Iterator[Trial[Solution]]:
+) -> Iterator[Found]:
     """Yield what is found with short phases where the switch touches zero inside others.
 
     These are mixtures where both sides of the law drive the switch back to zero, or else of the
@@ -113,7 +156,7 @@ def _split(
         value = len(born) * width * solution.trajectory.length
         trial = equations.correct_with(there, row, value, np.append(w, event.position))
         if trial.converged:
-            yield trial
+            yield trial, None
 
 
 def admitted(

@@ -6,7 +6,6 @@ located there, where all is smooth. Behind it one of the branches that leave goe
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
@@ -18,15 +17,15 @@ from ribbonopt.solution.solution import Solution
 from .leaving import admitted, leaving
 from .phases import Change, What, margins, one_sign
 from .relaid import in_other_phases
+from .segment import Segment
 from .walk.points import FOLD, KINK, POINT, Point
 from .walk.protocol import Passage, Trial
-from .walk.tangents import near
 
 if TYPE_CHECKING:
     from .ribbons import RibbonEquations
 
 ROUNDING = 1e-11  # a margin below minus that is negative
-CLOSE, MOST_TRIALS = 1e-14, 60
+BEGIN = 0.01  # of a step, over which the slopes of margins are taken
 
 
 def passage(
@@ -44,9 +43,19 @@ def passage(
         point, trial = _on_sheet(equations, point, trial, kind)
     if not trial.converged:
         inside = _lost(point.solution, expected)
-        return _merged(equations, point, float(expected[-1]), inside) if inside else None
+        if inside:
+            return _merged(equations, point, float(expected[-1]), inside)
+        return _ahead(equations, point, expected)
     beyond = [c for c, value in margins(trial.solution).items() if value < -ROUNDING]
-    return _passed(equations, point, trial, beyond) if beyond else None
+    if not beyond:
+        return None
+    try:
+        return _passed(equations, point, trial, beyond)
+    except np.linalg.LinAlgError:
+        found = _ahead(equations, point, expected)
+        if found is None:
+            raise
+        return found
 
 
 def _passed(
@@ -55,7 +64,7 @@ def _passed(
     """Return the first of the changes that a trial is beyond."""
     inside = [change for change in beyond if change.what is What.GONE_INSIDE]
     between = {change.phase for change in beyond if change.what is What.BORN_BETWEEN}
-    way = _Way(equations, a, trial)
+    way = Segment(equations, a, trial.unknowns, trial.solution)
     arcs = {
         change: way.root(change)
         for change in beyond
@@ -65,13 +74,40 @@ def _passed(
     }
     if inside and not any(arc < way.whole / 2 for arc in arcs.values()):
         return _merged(equations, a, float(trial.unknowns[-1]), inside)
-    event = way.point(min(arcs.values()))
+    return _behind(equations, a, way.point(min(arcs.values())), beyond)
+
+
+def _behind(
+    equations: RibbonEquations, a: Point[Solution], event: Point[Solution], beyond: list[Change]
+) -> Passage[Solution]:
+    """Return how a branch goes on behind an event, at which changes are due."""
     ways = leaving(equations, event)
     if not ways:
         raise np.linalg.LinAlgError(_told(a.solution, beyond))
-    kind = FOLD if event.tangent[-1] * ways[0].tangent[-1] < 0 else POINT
-    crossed = len(ways) > 1 or ways[0].sign * event.sign < 0
-    return Passage(a, replace(event, kind=KINK if crossed else kind), ways[0])
+    first, stretch = ways[0].first, ways[0].stretch
+    beside = stretch[0] if stretch else first
+    kind = FOLD if event.tangent[-1] * beside.tangent[-1] < 0 else POINT
+    crossed = len(ways) > 1 or beside.sign * event.sign < 0
+    return Passage(a, replace(event, kind=KINK if crossed else kind), stretch, first)
+
+
+def _ahead(
+    equations: RibbonEquations, a: Point[Solution], expected: Array
+) -> Passage[Solution] | None:
+    """Return the first change that margins at a point promise before what is expected, or None.
+
+    Regularised laws have a pole behind the change, so that no trial may converge beyond it.
+    """
+    if not a.solution.sheets:
+        return None
+    way = Segment(equations, a, expected)
+    near_by, here = way.margins(way.whole * BEGIN), margins(a.solution)
+    slopes = {c: (near_by[c] - v) / (way.whole * BEGIN) for c, v in here.items() if c in near_by}
+    arcs = {c: -here[c] / slope for c, slope in slopes.items() if slope < 0 < here[c]}
+    change = min(arcs, key=lambda c: arcs[c], default=None)
+    if change is None or not arcs[change] < way.whole:
+        return None
+    return _behind(equations, a, way.point(way.extrapolated(change, arcs[change])), [change])
 
 
 def _on_sheet(
@@ -127,75 +163,4 @@ def _merged(
     way = admitted(equations, a, found) if found.converged else None
     if way is None:
         raise np.linalg.LinAlgError(_told(a.solution, inside))
-    return Passage(a, a, way)
-
-
-class _Way:
-    """The branch between a point and a trial in its phases, by arclength along the tangent."""
-
-    def __init__(
-        self, equations: RibbonEquations, a: Point[Solution], trial: Trial[Solution]
-    ) -> None:
-        self.equations, self.a = equations, a
-        gap = equations.reduced(a.solution, trial.unknowns - a.unknowns)
-        along = equations.reduced(a.solution, a.tangent)
-        self.whole = equations.metric.product(gap, along)
-        self.known: dict[float, tuple[Solution, Array]] = {
-            0.0: (a.solution, a.unknowns),
-            self.whole: (trial.solution, trial.unknowns),
-        }
-
-    def at(self, arc: float) -> tuple[Solution, Array]:
-        """Return the branch at an arclength, from what is known of it near there."""
-        if arc not in self.known:
-            nearest = sorted(self.known, key=lambda s: abs(s - arc))[:4]
-            guess = np.zeros_like(self.a.unknowns)
-            for s in nearest:
-                others = [other for other in nearest if other != s]
-                weight = float(np.prod([(arc - other) / (s - other) for other in others]))
-                guess += weight * self.known[s][1]
-            found = self.equations.correct_along(self.a, self.a.tangent, arc, guess)
-            if not found.converged:
-                raise np.linalg.LinAlgError(f"no point where phases change: {found.message}")
-            self.known[arc] = found.solution, found.unknowns
-        return self.known[arc]
-
-    def root(self, change: Change) -> float:
-        """Return the arclength where a margin vanishes that is negative at the trial."""
-
-        def margin(arc: float) -> float:
-            return margins(self.at(arc)[0]).get(change, 1.0)
-
-        return _root(margin, 0.0, self.whole)
-
-    def point(self, arc: float) -> Point[Solution]:
-        """Return the point at an arclength."""
-        solution, unknowns = self.at(arc)
-        ahead = self.equations.reduced(solution, self.a.tangent)
-        found, tangent = near(self.equations, solution, unknowns, ahead)
-        return replace(
-            self.a,
-            solution=solution,
-            unknowns=unknowns,
-            tangent=tangent,
-            sign=found.sign,
-            note="",
-        )
-
-
-def _root(f: Callable[[float], float], a: float, b: float) -> float:
-    """Return a root by false position with halved weights (Illinois)."""
-    fa, fb, whole = f(a), f(b), abs(b - a)
-    if fa <= 0:
-        return a
-    for _ in range(MOST_TRIALS):
-        if abs(fb) <= CLOSE or abs(b - a) <= CLOSE * whole:
-            break
-        c = (a * fb - b * fa) / (fb - fa)
-        fc = f(c)
-        if fc * fb < 0:
-            a, fa = b, fb
-        else:
-            fa /= 2
-        b, fb = c, fc
-    return b
+    return Passage(a, a, None, way)

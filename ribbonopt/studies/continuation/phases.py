@@ -73,17 +73,8 @@ def margins(solution: Solution) -> dict[Change, float]:
 
 def profile(solution: Solution, phase: int) -> tuple[Array, Array]:
     """Return positions in a phase (k,), 0 to 1, and there the switch times the phase's kind."""
-    dense, scale = solution.dense, moment(solution)
-    s = dense.blocks.layout.phase_slices[phase]
-    _, stages, _ = dense.blocks.layout.unpack(dense.w)
-    positions = dense.blocks.stage_positions(dense.p)[s].ravel()
-    rows = solution.trajectory.stages[3] == phase
-    nodes = solution.trajectory.at_nodes["switching"][s.start : s.stop + 1]
-    places = np.concatenate([dense.nodes(phase), positions if stages.size else []])
-    inner = solution.trajectory.at_stages["switching"][rows] if stages.size else np.empty(0)
-    order = np.argsort(places, kind="stable")
-    values = np.concatenate([nodes, inner])[order] * solution.sheets[phase] / scale
-    return places[order], values
+    sigma, (value,) = _along(solution, phase, "switching")
+    return sigma, value * solution.sheets[phase] / moment(solution)
 
 
 def minima(solution: Solution, phase: int, sigma: Array, value: Array) -> list[tuple[float, float]]:
@@ -99,20 +90,29 @@ def minima(solution: Solution, phase: int, sigma: Array, value: Array) -> list[t
 def spares(solution: Solution, phase: int) -> list[tuple[float, float, int]]:
     """Return what a mixture has to spare where that is least: at either end, or inside.
 
-    Position in the phase, 0 to 1; by how much |u2| is below |u3|, relative to that; sign of u2.
+    Position in the phase, 0 to 1; by how much |u2| = 2 |n2 u3 / K| is below |u3|, relative to that
+    (see `ribbonopt.mechanics.laws.sadowsky.MixtureLaw`); sign of u2.
     """
-    degree, rows = solution.dense.blocks.layout.stages, solution.trajectory.stages[3] == phase
-    u = solution.trajectory.at_stages["u"][rows]
-    _, sigma, _ = solution.dense.stages(phase)
-    share = 1 - np.abs(u[:, 1] / u[:, 2])
-    first, last = (
-        float(np.linalg.solve(np.vander(sigma[part] - at), share[part])[-1])
-        for part, at in ((slice(None, degree), 0.0), (slice(-degree, None), 1.0))
-    )
-    signs = np.sign(u[:, 1]).astype(int)
+    sigma, (n2, n3, m1, m3) = _along(solution, phase, "n2", "n3", "m1", "m3")
+    ratio = 2 * n2 / (n3 + (m3**2 - m1**2) / 4)
+    share, signs = 1 - np.abs(ratio), np.sign(ratio * m3).astype(int)
     lowest = 1 + np.flatnonzero((share[1:-1] <= share[:-2]) & (share[1:-1] < share[2:]))
-    inside = [(float(sigma[j]), float(share[j]), int(signs[j])) for j in lowest]
-    return [(0.0, first, int(signs[0])), *inside, (1.0, last, int(signs[-1]))]
+    return [(float(sigma[j]), float(share[j]), int(signs[j])) for j in (0, *lowest, -1)]
+
+
+def _along(solution: Solution, phase: int, *names: str) -> tuple[Array, list[Array]]:
+    """Return positions (k,) of nodes and stages in a phase, 0 to 1, and outputs."""
+    dense, trajectory = solution.dense, solution.trajectory
+    s = dense.blocks.layout.phase_slices[phase]
+    rows = trajectory.stages[3] == phase
+    _, inner, _ = dense.stages(phase)
+    places = np.concatenate([dense.nodes(phase), inner])
+    order = np.argsort(places, kind="stable")
+    values = [
+        np.concatenate([trajectory.at_nodes[name][s.start : s.stop + 1], at[rows]])[order]
+        for name, at in ((name, trajectory.at_stages[name]) for name in names)
+    ]
+    return places[order], values
 
 
 def _slope_at_end(solution: Solution, phase: int) -> float:

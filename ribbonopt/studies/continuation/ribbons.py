@@ -131,7 +131,7 @@ class RibbonEquations:
 
     def leaving(self, point: Point[Solution]) -> list[Point[Solution]]:
         """Return the first points on the branches that leave a kink, the main branch's first."""
-        return leaving(self, replace(point, kind=POINT))
+        return [way.first for way in leaving(self, replace(point, kind=POINT))]
 
     def crossings(self, a: Point[Solution], b: Point[Solution]) -> list[Point[Solution]]:
         """Return the buckling points between two points where m2 = m3 = 0 along the ribbon."""

@@ -18,7 +18,7 @@ from ribbonopt.arrays import Array
 
 from .course import COSINE
 from .metric import Metric
-from .points import CROSSINGS, POINT, Point, S
+from .points import CROSSINGS, KINK, POINT, Point, S
 from .protocol import Equations
 from .tangents import near, renewed
 
@@ -99,9 +99,14 @@ class Atlas(Generic[S]):
         """Whether a branch has been at a point."""
         place, metric = self.place(point), self.metric(point)
         return any(
-            _beside(metric, place, *ends) and any(self.passes(point, end) for end in ends)
+            _beside(metric, place, *ends)
+            and any(self.passes(point, end) for end in ends if not self._corner(end))
             for ends in self._pieces(trace, metric)
         )
+
+    def _corner(self, place: Array) -> bool:
+        """Whether a place is a kink: whatever leaves there passes it, at one angle or another."""
+        return any(c.kind == KINK and np.array_equal(place, at) for c, at in self.crossings)
 
     def passes(self, point: Point[S], place: Array) -> bool:
         """Whether the branch through a point passes a place, which is near."""

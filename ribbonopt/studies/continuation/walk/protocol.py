@@ -55,12 +55,16 @@ class Passage(Generic[S]):
         The point that the step began with, in the layout that is left.
     event : Point
         The last point in that layout; a KINK where other branches cross, a FOLD where it turns.
+    stretch : pair of Points or None
+        The same in the next layout, and the point `after` before it was finished; None where that
+        is singular.
     after : Point
         The first point in the next layout, finished.
     """
 
     begin: Point[S]
     event: Point[S]
+    stretch: tuple[Point[S], Point[S]] | None
     after: Point[S]
 
 

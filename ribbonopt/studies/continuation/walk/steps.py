@@ -106,10 +106,17 @@ class Stepper(Generic[S]):
 
     def _passed(self, passed: Passage[S], prediction: Prediction, goal: float) -> Stride[S] | None:
         """Return the step up to the first point in another layout, or to the goal before that."""
-        special = self._special(passed.begin, passed.event, goal).points
+        parts = [self._special(passed.begin, passed.event, goal)]
+        special = list(parts[0].points)
         if self.range.special and passed.event.kind != POINT:
             special.append(passed.event)
-        after = replace(passed.after, step=abs(prediction.arc))
+        if passed.stretch is not None:
+            parts.append(self._special(*passed.stretch, goal))
+            special += parts[1].points
+        doubts = [name for part in parts for name in part.unresolved]
+        notes = [passed.after.note, UNRESOLVED.format(" and ".join(doubts)) if doubts else ""]
+        note = "; ".join(filter(None, notes))
+        after = replace(passed.after, step=abs(prediction.arc), note=note)
         if (after.position - goal) * (passed.begin.position - goal) < 0:
             guess = np.append(after.unknowns[:-1], goal)
             trial = self.equations.correct_at(after.solution, guess)
