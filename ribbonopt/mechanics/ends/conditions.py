@@ -24,8 +24,8 @@ from ribbonopt.mechanics.section import Section
 EndName = Literal["start", "end"]
 Named = dict[str, ca.SX]
 
-#: an orthonormal frame (rows) that is askew to all that scenes have
-_ASKEW = np.array([[0.48, 0.64, 0.6], [-0.8, 0.6, 0.0], [-0.36, -0.48, 0.8]])
+#: weights of the lab axes: which of them is nearest does not change at 45 degrees, where scenes are
+_NEARER = np.array([1.0, 1.07, 1.13])
 
 
 @dataclass(frozen=True, eq=False)
@@ -189,14 +189,19 @@ class Direction(Condition):
 
 
 def _across(target: Array) -> Array:
-    """Two unit vectors (2, 3) across a unit vector (3,) and each other, that move smoothly with it.
+    """Two unit vectors (2, 3) across a unit vector (3,) and each other, that move with it.
 
-    The mirror that takes a fixed direction to the target takes what is across the one to what is
-    across the other. That direction is none that a scene is likely to point against.
+    The least turn of the nearest lab axis to the target takes the other two to what is across it.
+    With the target they are a right-handed frame, so that the sign of the equations never jumps.
     """
-    mirrored = target - _ASKEW[0]
-    normal = mirrored / max(float(np.linalg.norm(mirrored)), 1e-300)
-    across: Array = _ASKEW[1:] - 2 * np.outer(_ASKEW[1:] @ normal, normal)
+    axis = int((_NEARER * np.abs(target)).argmax())
+    sign = float(np.copysign(1.0, target[axis]))
+    others = np.eye(3)[[(axis + 1) % 3, (axis + 2) % 3]]
+    others[0] *= sign
+    nearest = sign * np.eye(3)[axis]
+    by = np.cross(nearest, target)
+    once = np.cross(by, others)
+    across: Array = others + once + np.cross(by, once) / (1 + nearest @ target)
     return across
 
 
