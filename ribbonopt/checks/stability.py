@@ -30,6 +30,11 @@ T = TypeVar("T")
 ROUNDING = 1e-9  # of the largest eigenvalue: error of the others, at least,
 MOST = 1e-2  # and at most
 
+TOLD = 1.0  # of what is usual along the ribbon: neutral eigenvalues are no larger
+TOO_STEEP = (
+    "second derivatives of the energy differ too much along the ribbon: its moments nearly vanish "
+    "somewhere, or the mesh is too coarse"
+)
 NO_EQUILIBRIUM = "this is no equilibrium"
 
 
@@ -86,6 +91,8 @@ def _judged(variation: Variation | str) -> SecondVariation | str:
         return variation
     largest, error = variation.largest, variation.error
     neutral = max(error, ROUNDING) * largest
+    if neutral > TOLD * variation.usual:
+        return TOO_STEEP
     negative = factored(variation.form, neutral).negative
     return SecondVariation(negative, neutral, error, largest)
 

@@ -18,6 +18,7 @@ from ribbonopt.pipeline.prepared import Prepared, prepare
 from ribbonopt.problem import Posed
 from ribbonopt.scene import loads_scene
 from ribbonopt.solution.solution import Solution
+from ribbonopt.solvers import Status
 
 BORN, LEVEL = 0.25060501787, 0.38286571873  # a phase at each clamp; the level state is symmetric
 
@@ -128,7 +129,9 @@ def test_neither_place_nor_size_matter(length: float) -> None:
 
 def test_where_it_cannot_be_told_it_is_said() -> None:
     off = arch(SADOWSKY, 0.1, NEAR[0.1])
-    crossed = prepare(replace(off, switching="off")).solve(replace(off, switching="off"))
+    off = replace(off, switching="off")
+    crossed = prepare(off).solve(off, fallback=False)
+    assert crossed.status is Status.WRONG_SOLUTION
     assert negative_directions(crossed) is None
     assert "no phases meet there" in why_not(crossed)
 
