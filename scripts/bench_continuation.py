@@ -1,10 +1,12 @@
-"""What branches cost: half and whole Moebius ribbon, epsilon going to zero; Figure 5d of the paper.
+"""What branches cost, in CPU seconds and per point, beside another checkout and scipy.
 
-    python scripts/bench_continuation.py [--out results/continuation] [--repeat 7]
+    python scripts/bench_continuation.py [--against CHECKOUT] [--peers] [--repeat 5]
+        [--out results/continuation]
 
-Writes `continuation.json` (median and minimum seconds of wall clock and CPU, cold and with the
-structure built, steps apart) and `continuation.png` (u2(0) against epsilon, and against delta of
-the variational law). AUTO needs 0.98 s for the half ribbon at the same error (DESIGN 4.11).
+The branches are those of `branch_cases`. Each checkout has a process of its own, in which all is
+built before it is measured; contenders take turns in one run, so that ratios hold on a noisy
+machine, and all that is told is a median. A branch that ends short of its goal is followed once.
+Writes `bench_continuation.json` and `bench_continuation.png`.
 """
 
 from __future__ import annotations
@@ -13,177 +15,216 @@ import argparse
 import json
 import os
 import statistics
-import time
+import subprocess
+import sys
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
+# Small matrices: threads of the linear algebra cost more than they bring, for all contenders.
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 
 import numpy as np
-from stopwatches import stopwatches
+import peer_branch
+from branch_cases import CASES, CONFIGS
 
-from ribbonopt.accuracy import estimate
-from ribbonopt.pipeline.prepared import Prepared
-from ribbonopt.scene import Scene, load_scene
-from ribbonopt.solvers.newton import NewtonSolver
-from ribbonopt.studies.continuation import recorded
-from ribbonopt.studies.continuation.continuation import Continuation
-from ribbonopt.studies.continuation.recorded import value_of
-from ribbonopt.studies.continuation.walk import steps
+from ribbonopt.pipeline.prepared import solve
+from ribbonopt.scene import load_scene
 
-CONFIGS = Path(__file__).resolve().parent.parent / "configs"
-LIMIT = 3.38657617297834557330  # u2(0) of Sadowsky's ribbon, 28 digits (SCIENCE, section 5)
-# name: scene, settings, targets in seconds.
-CASES: dict[str, tuple[str, list[str], float]] = {
-    "half, epsilon 0.1 to 1e-4": (
-        "moebius_half.yaml",
-        [
-            "law={type: regularized, epsilon: 0.1}",
-            "continuation={parameter: law.epsilon, to: 1e-4, scale: log, largest: 0.15}",
-            *("tolerance=2e-9", "transcription.degree=6", "transcription.intervals=8"),
-        ],
-        0.12,
-    ),
-    "whole, epsilon 0.1 to 1e-8": (
-        "moebius_regularized.yaml",
-        [
-            "continuation={parameter: law.epsilon, from: 0.1, to: 1e-8, scale: log, largest: 0.28}",
-            *("tolerance=1e-8", "transcription.degree=8", "transcription.intervals=10"),
-        ],
-        1.0,
-    ),
-}
-DELTA = [
-    "law={type: variational, delta: 0.1}",
-    "continuation={parameter: law.delta, to: 1e-3, scale: log, stability: false}",
-    "tolerance=1e-8",
-]
+ROOT = Path(__file__).resolve().parent.parent
+HALF = next(iter(CASES))  # what the peer follows too
+THIS, OTHER, PEER = "this checkout", "the other", "scipy solve_bvp"
+
+Runs = dict[str, list[dict[str, Any]]]
 
 
-WATCHED = (
-    (NewtonSolver, "solve", "Newton"),
-    (steps, "near", "tangents and determinants"),
-    (estimate, "_analysed", "estimates"),
-    (steps, "special_points", "special points"),
-    (recorded.Recorder, "row", "recording"),
-)
+class Checkout:
+    """A process that follows branches with the package of a checkout."""
+
+    def __init__(self, path: Path) -> None:
+        """Start it."""
+        self._process = subprocess.Popen(
+            [sys.executable, str(ROOT / "scripts" / "branch_cases.py")],
+            stdin=subprocess.PIPE,
+            stdout=subprocess.PIPE,
+            text=True,
+            env=os.environ | {"PYTHONPATH": str(path.resolve())},
+        )
+
+    def follow(self, name: str) -> dict[str, Any]:
+        """Follow a branch of `CASES`."""
+        process = self._process
+        assert process.stdin is not None and process.stdout is not None
+        print(name, file=process.stdin, flush=True)
+        found: dict[str, Any] = json.loads(process.stdout.readline())
+        return found
+
+    def close(self) -> None:
+        """End it."""
+        self._process.communicate()
 
 
 def main() -> None:
     """Measure, print, write JSON and figure."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
+    parser.add_argument("--against", type=Path, help="another checkout of this package")
+    parser.add_argument("--peers", action="store_true", help="solve_bvp in a loop as well")
+    parser.add_argument("--repeat", type=int, default=5)
     parser.add_argument("--out", type=Path, default=Path("results") / "continuation")
-    parser.add_argument("--repeat", type=int, default=7)
     options = parser.parse_args()
     options.out.mkdir(parents=True, exist_ok=True)
-    scenes = {name: load_scene(CONFIGS / file, sets) for name, (file, sets, _) in CASES.items()}
-    runs: dict[str, list[dict[str, Any]]] = {name: [] for name in scenes}
-    rows, built = {}, {}
-    for name, scene in scenes.items():
-        first, rows[name], built[name] = followed(scene, None)
-        runs[name].append(first)
-    for _ in range(options.repeat):
-        for name, scene in scenes.items():
-            runs[name].append(followed(scene, built[name])[0])
-    result = {name: summary(runs[name], rows[name], CASES[name][2]) for name in scenes}
-    delta = followed(load_scene(CONFIGS / "moebius_half.yaml", DELTA), None)[1]
-    result["slopes"] = {
-        "epsilon": slope(rows["whole, epsilon 0.1 to 1e-8"], 1e-8),
-        "delta": slope(delta, 1e-8),
-    }
-    report(result)
-    text = json.dumps(result, indent=2) + "\n"
-    (options.out / "continuation.json").write_text(text, encoding="utf-8")
-    draw(rows["whole, epsilon 0.1 to 1e-8"], delta, options.out / "continuation.png")
-    print(f"written: {options.out}: continuation.json, continuation.png")
-
-
-def followed(
-    scene: Scene, prepared: Prepared | None
-) -> tuple[dict[str, Any], list[dict[str, Any]], Prepared]:
-    """Follow a branch: seconds, rows, and the structure that was built."""
-    with stopwatches(WATCHED) as spent_on:
-        wall, cpu = time.perf_counter(), time.process_time()
-        continuation = Continuation(scene, prepared)
-        rows = [dict(point.row) for point in continuation]
-        seconds = {"cpu": time.process_time() - cpu, "wall": time.perf_counter() - wall}
-    assert continuation.ending.reached, continuation.ending.reason
-    sums: dict[str, float] = {}
-    for label, spent in spent_on:
-        sums[label] = sums.get(label, 0.0) + spent
-    return seconds | {"steps": sums}, rows, continuation.prepared
-
-
-def summary(
-    runs: list[dict[str, Any]], rows: list[dict[str, Any]], target: float
-) -> dict[str, Any]:
-    """Medians; the first run built everything."""
-    again = sorted(runs[1:], key=lambda run: run["cpu"])
-    median = again[len(again) // 2]
-    return {
-        "target_s": target,
-        "points": len(rows),
-        "largest_error": max(row["error"] for row in rows),
-        "cold_s": {kind: runs[0][kind] for kind in ("cpu", "wall")},
-        "cpu_s": median["cpu"],
-        "wall_s": statistics.median(run["wall"] for run in again),
-        "minimum_s": {kind: min(run[kind] for run in again) for kind in ("cpu", "wall")},
-        "steps_s": median["steps"],
-    }
-
-
-def slope(rows: list[dict[str, Any]], least: float) -> float:
-    """Order of u2(0) - limit in the parameter, from the smaller half of its values."""
-    rows = [row for row in rows if row["kind"] == "point"]
-    pairs = [(value_of(row), abs(row["u2"] - LIMIT)) for row in rows[len(rows) // 2 :]]
-    known = np.log([pair for pair in pairs if pair[1] > 10 * least * LIMIT])
-    return float(np.polyfit(known[:, 0], known[:, 1], 1)[0])
-
-
-def report(result: dict[str, Any]) -> None:
-    """Print the table."""
+    checkouts = {THIS: Checkout(ROOT)}
+    if options.against:
+        checkouts[OTHER] = Checkout(options.against)
+    load = [os.getloadavg()[0]]
+    branches = {}
     for name in CASES:
-        row = result[name]
-        print(
-            f"{name}: {row['points']} points, error at most {row['largest_error']:.0e}: "
-            f"{row['cpu_s']:.3f} s of CPU (target {row['target_s']:g}; minimum "
-            f"{row['minimum_s']['cpu']:.3f}; wall {row['wall_s']:.3f}; first time "
-            f"{row['cold_s']['cpu']:.3f})"
+        follow = {label: checkout.follow for label, checkout in checkouts.items()}
+        runs = interleaved(name, follow, options.repeat, options.peers and name == HALF)
+        branches[name] = {label: summary(found) for label, found in runs.items()}
+        if OTHER in runs:
+            branches[name]["ratio"] = ratio(runs[THIS], runs[OTHER])
+        report(name, branches[name])
+    load.append(os.getloadavg()[0])
+    for checkout in checkouts.values():
+        checkout.close()
+    result: dict[str, Any] = {
+        "repeat": options.repeat,
+        "cpus": os.cpu_count(),
+        "load_average": load,
+        "against": str(options.against) if options.against else None,
+        "branches": branches,
+        "error_at_the_end": errors({k: v for k, v in branches[HALF].items() if k != "ratio"}),
+    }
+    for label, error in result["error_at_the_end"].items():
+        print(f"{HALF}: error of the last n(0), m(0) by {label}: {error:.1e}")
+    print(f"load average {load[0]:.2f} before, {load[1]:.2f} behind, on {os.cpu_count()} cores")
+    text = json.dumps(result, indent=2) + "\n"
+    (options.out / "bench_continuation.json").write_text(text, encoding="utf-8")
+    draw(branches, options.out / "bench_continuation.png")
+    print(f"written: {options.out}: bench_continuation.json, bench_continuation.png")
+
+
+def interleaved(
+    name: str, follow: dict[str, Callable[[str], dict[str, Any]]], repeat: int, peer: bool
+) -> Runs:
+    """Follow a branch by turns; the first time, when all is built, is the first of the runs."""
+    contenders = dict(follow)
+    if peer:
+        contenders[PEER] = lambda _: peer_branch.follow()
+    runs: Runs = {label: [run(name)] for label, run in contenders.items()}
+    for _ in range(repeat):
+        for label, run in contenders.items():
+            if runs[label][0].get("reached", True):
+                runs[label].append(run(name))
+    return runs
+
+
+def summary(runs: list[dict[str, Any]]) -> dict[str, Any]:
+    """Return medians, and what the branch was."""
+    again = runs[1:] or runs
+    middle = sorted(again, key=lambda run: run["cpu_s"])[len(again) // 2]
+    cpu = statistics.median(run["cpu_s"] for run in again)
+    found = middle | {
+        "first_s": runs[0]["cpu_s"],
+        "cpu_s": cpu,
+        "wall_s": statistics.median(run["wall_s"] for run in again),
+        "least_s": min(run["cpu_s"] for run in again),
+        "point_ms": 1e3 * cpu / middle["points"],
+    }
+    if middle.get("counted"):
+        found["stability_ms"] = 1e3 * middle["parts_s"]["stability"] / middle["counted"]
+    return found
+
+
+def ratio(these: list[dict[str, Any]], others: list[dict[str, Any]]) -> float | None:
+    """Median of the other's CPU over this one's, turn by turn; None if one falls short."""
+    if not (these[0]["reached"] and others[0]["reached"]):
+        return None
+    pairs = zip(these[1:] or these, others[1:] or others, strict=True)
+    return statistics.median(b["cpu_s"] / a["cpu_s"] for a, b in pairs)
+
+
+def errors(found: dict[str, dict[str, Any]]) -> dict[str, float]:
+    """Relative errors of n(0), m(0) at the last epsilon, against an answer to 1e-12."""
+    settings = ["law={type: regularized, epsilon: 1e-4}", "tolerance=1e-12"]
+    exact = solve(load_scene(CONFIGS / "moebius_half.yaml", [*settings, "transcription.degree=8"]))
+    truth = np.array([*exact.n0, *exact.m0])
+    return {
+        label: float(np.abs(np.array(one["loads"]) - truth).max() / np.abs(truth).max())
+        for label, one in found.items()
+    }
+
+
+def report(name: str, branch: dict[str, Any]) -> None:
+    """Print a branch: a line for each contender."""
+    print(f"{name}{target(name)}")
+    for label, one in branch.items():
+        if label == "ratio":
+            continue
+        text = (
+            f"  {label}: {one['cpu_s']:.3f} s of CPU (least {one['least_s']:.3f}, first "
+            f"{one['first_s']:.3f}), {one['points']} points, {one['point_ms']:.1f} ms a point"
         )
-        parts = ", ".join(f"{label} {1e3 * s:.0f}" for label, s in row["steps_s"].items())
-        print(f"  in ms: {parts}")
-    slopes = result["slopes"]
-    print(
-        f"u2(0) against its limit: order {slopes['epsilon']:.3f} in epsilon, "
-        f"{slopes['delta']:.2f} in delta"
-    )
+        if one.get("stability_ms") is not None:
+            text += f", stability {one['stability_ms']:.1f} ms where counted ({one['counted']})"
+        if one.get("special"):
+            text += f"; {', '.join(one['special'])}"
+        if not one.get("reached", True):
+            text += f"; ENDS SHORT: {one['ending']}"
+        print(text)
+        if parts := ", ".join(f"{k} {1e3 * s:.0f}" for k, s in one.get("parts_s", {}).items()):
+            print(f"    in ms: {parts}")
+    if branch.get("ratio"):
+        print(f"  the other takes {branch['ratio']:.2f} times as long")
 
 
-def draw(epsilon: list[dict[str, Any]], delta: list[dict[str, Any]], path: Path) -> None:
-    """Draw Figure 5d: u2(0) against both parameters, and the distance from the limit."""
+def target(name: str) -> str:
+    """Say what a branch is to cost; empty where nothing is asked."""
+    case = CASES[name]
+    if case.seconds is not None:
+        return f" (target {case.seconds:g} s)"
+    return "" if case.point_ms is None else f" (target {case.point_ms:g} ms a point)"
+
+
+def draw(branches: dict[str, dict[str, Any]], path: Path) -> None:
+    """Draw milliseconds a point: bars, what of them is stability, and the targets."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
-    figure = Figure(figsize=(10, 4.2), layout="constrained")
+    figure = Figure(figsize=(9, 4.6), layout="constrained")
     FigureCanvasAgg(figure)
-    left, right = figure.subplots(1, 2)
-    curves = (
-        (epsilon, "o-", "#1f5fa8", "eq. (6.1), epsilon"),
-        (delta, "s-", "#c0501a", "variational, delta"),
-    )
-    for rows, mark, colour, label in curves:
-        values = np.array([(value_of(row), row["u2"]) for row in rows if row["kind"] == "point"])
-        left.semilogx(*values.T, mark, ms=3.5, color=colour, label=label)
-        gap = np.abs(values[:, 1] - LIMIT)
-        right.loglog(values[:, 0], gap, mark, ms=3.5, color=colour, label=label)
-    left.axhline(LIMIT, color="0.5", lw=0.8, ls="--", label="Sadowsky")
-    left.set(xlabel="epsilon or delta", ylabel="u2(0)", title="Moebius ribbon, Figure 5d")
-    right.set(xlabel="epsilon or delta", ylabel="|u2(0) - limit|", title="distance from the limit")
-    for axes in (left, right):
-        axes.grid(True, which="major", alpha=0.3)
-        axes.legend()
+    axes = figure.subplots()
+    colours = {THIS: "#1f5fa8", OTHER: "#c0501a", PEER: "#5a8f3c"}
+    height, told = 0.26, set()
+    for row, (name, branch) in enumerate(branches.items()):
+        labels = [label for label in colours if label in branch]
+        for k, label in enumerate(labels):
+            one, y = branch[label], row + height * (k - (len(labels) - 1) / 2)
+            bar = {"color": colours[label], "label": None if label in told else label}
+            axes.barh(y, one["point_ms"], 0.9 * height, **bar)
+            told.add(label)
+            short = "" if one.get("reached", True) else ", ends short"
+            text = f" {one['cpu_s']:.2f} s, {one['points']} points{short}"
+            axes.text(one["point_ms"], y, text, va="center", fontsize=8)
+        case, points = CASES[name], branch[THIS]["points"]
+        wanted = 1e3 * case.seconds / points if case.seconds else case.point_ms
+        if wanted:
+            axes.plot([wanted] * 2, [row - 0.45, row + 0.45], "k--", lw=1.2)
+            axes.text(wanted, row - 0.46, "target", ha="center", fontsize=8)
+    axes.set(xscale="log", xlabel="CPU, milliseconds a point", title="Branches, all built before")
+    axes.set_xlim(5, 10 * max(one["point_ms"] for b in branches.values() for one in each(b)))
+    axes.set_yticks(range(len(branches)), list(branches))
+    axes.set_ylim(len(branches) - 0.4, -0.7)
+    axes.grid(True, axis="x", which="major", alpha=0.3)
+    axes.legend(loc="lower right")
     figure.savefig(path, dpi=150)
+
+
+def each(branch: dict[str, Any]) -> list[dict[str, Any]]:
+    """Return the contenders of a branch."""
+    return [one for one in branch.values() if isinstance(one, dict)]
 
 
 if __name__ == "__main__":
