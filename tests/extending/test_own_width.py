@@ -10,7 +10,8 @@ from user_modules import Import
 
 from ribbonopt import save_solution, solve
 from ribbonopt.scene import Boundary, Collocation, Directors, End, Loads, Scene, Shooting
-from ribbonopt.studies.comparison.measure import SAMPLES, LawResidual
+from ribbonopt.studies.comparison.measure import LawResidual
+from ribbonopt.studies.comparison.profile import SAMPLES
 
 TIP_LOADED = (-0.356148547888, 0.916335210590)
 HEAVY, ROOT = (-0.326452366854, 0.936274162831), -1.28159628887

@@ -17,7 +17,8 @@ from ribbonopt.errors import ModelError
 from ribbonopt.pipeline.prepared import prepare
 from ribbonopt.scene import Scene, loads_scene
 from ribbonopt.scene.lens import with_value
-from ribbonopt.studies.buckling.buckling import Buckling, buckling_loads
+from ribbonopt.studies.buckling.buckling import buckling_loads
+from ribbonopt.studies.buckling.found import Buckling
 
 Strains = Callable[[float, float, float], tuple[float, float]]
 

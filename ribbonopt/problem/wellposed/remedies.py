@@ -1,8 +1,6 @@
-"""Words for what `motions` finds: which motion is free, what to exchange for what."""
+"""Remedies for what `motions` finds: what to exchange for what."""
 
 from __future__ import annotations
-
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -10,35 +8,20 @@ from ribbonopt.arrays import Array
 from ribbonopt.errors import ModelError
 
 from .linearized import Linearized
+from .wording import SMALL, Ends, separated, words
 
-SMALL = 1e-6  # of directions, and of positions relative to the length
 TELLING = 0.3  # share of the largest effect on a motion that makes a condition worth proposing
-AXES = np.eye(3)
-
-
-@dataclass(frozen=True, eq=False)
-class _Ends:
-    """Both ends at the unknowns z: positions relative to the reference and the length, frames."""
-
-    r: Array  # (2, 3)
-    frames: Array  # (2, 3, 3), columns d1, d2, d3
-    origin: Array  # (3,), of the lab frame
-
-    @property
-    def chord(self) -> Array:
-        """From the start to the end."""
-        return np.asarray(self.r[1] - self.r[0])
 
 
 def motion_refusal(conditions: Linearized, z: Array, free: Array) -> ModelError:
     """Return the error that names free motions (6, k), and what to exchange for what."""
     ends = _ends(conditions, z)
-    shifts, turns = _separated(free)
+    shifts, turns = separated(free)
     which, key = _superfluous(conditions, z, free.shape[1])
     remedy = _proposal(ends, np.vstack([shifts, turns]))
     hinge = _hinge(conditions, z) if _about_chord(shifts, turns, ends) else ""
     return ModelError(
-        f"boundary: the conditions leave the ribbon free {_words(shifts, turns, ends)}. Exchange "
+        f"boundary: the conditions leave the ribbon free {words(shifts, turns, ends)}. Exchange "
         f"{which} for what opposes it, for example {remedy}{hinge}",
         key,
     )
@@ -66,89 +49,12 @@ def sliding_refusal(conditions: Linearized, z: Array) -> ModelError:
     )
 
 
-def _ends(conditions: Linearized, z: Array) -> _Ends:
+def _ends(conditions: Linearized, z: Array) -> Ends:
     states = conditions.parts(z)[:2]
     places = [conditions.ribbon.model.place(x) for x in states]
     r = np.array([r for r, _ in places]) - conditions.reference
     frames = np.array([frame for _, frame in places])
-    return _Ends(r / conditions.length, frames, -conditions.reference / conditions.length)
-
-
-def _separated(free: Array) -> tuple[Array, Array]:
-    """Pure translations and others (rows of 6) that span the motions (6, k), along the lab axes."""
-    _, sizes, right = np.linalg.svd(free[3:])
-    rank = int((sizes > SMALL * np.abs(free).max()).sum())
-    shifts = _reduced((free @ right[rank:].T).T[:, :3])
-    turns = (free @ right[:rank].T).T
-    turns = _reduced(turns[:, [3, 4, 5, 0, 1, 2]])[:, [3, 4, 5, 0, 1, 2]]
-    across = np.linalg.qr(shifts.T)[0]
-    turns[:, :3] -= turns[:, :3] @ across @ across.T
-    return np.hstack([shifts, np.zeros_like(shifts)]), turns
-
-
-def _reduced(rows: Array) -> Array:
-    """Rows (k, n) of the same span, each with a one where the others have a zero."""
-    rows = rows.copy()
-    for i in range(len(rows)):
-        below = np.abs(rows[i:])
-        columns = np.flatnonzero(below.max(axis=0) > SMALL * below.max())
-        column = columns[0]
-        best = i + int(below[:, column].argmax())
-        rows[[i, best]] = rows[[best, i]]
-        rows[i] /= rows[i, column]
-        others = np.arange(len(rows)) != i
-        rows[others] -= np.outer(rows[others, column], rows[i])
-    return rows
-
-
-def _words(shifts: Array, turns: Array, ends: _Ends) -> str:
-    """Say what is free, after "free"."""
-    if len(shifts) == len(turns) == 3:
-        return "to move and to turn as a whole"
-    parts = [f"to move along {_direction(shift[:3], ends)}" for shift in shifts]
-    if len(shifts) == 3:
-        parts = ["to move in every direction"]
-    if len(turns) == 3:
-        return " and ".join([*parts, "to turn in every direction"])
-    return " and ".join([*parts, *(_turning(turn, shifts, ends) for turn in turns)])
-
-
-def _turning(turn: Array, shifts: Array, ends: _Ends) -> str:
-    """Say which turn; where its axis is, unless free translations may shift it."""
-    shift, w = turn[:3], turn[3:] / np.linalg.norm(turn[3:])
-    shift = shift / np.linalg.norm(turn[3:])
-    direction = _direction(w, ends)
-    if (np.abs(np.cross(shifts[:, :3], w)) > SMALL).any():
-        return f"to turn about {direction}"
-    if abs(shift @ w) > SMALL:
-        return f"to move on a screw along {direction}"
-    distances = [np.linalg.norm(shift + np.cross(w, p)) for p in (*ends.r, ends.origin)]
-    if max(distances[:2]) < SMALL:
-        return "to turn about the line through its ends"
-    if distances[2] < SMALL and direction in AXES_BY_NAME:
-        return f"to turn about the {direction} axis"
-    for name, distance in zip(("start", "end"), distances, strict=False):
-        if distance < SMALL:
-            return f"to turn about the line through its {name} along {direction}"
-    return f"to turn about a line along {direction}"
-
-
-AXES_BY_NAME = dict(zip("xyz", AXES, strict=True))
-
-
-def _direction(vector: Array, ends: _Ends) -> str:
-    """Name a direction: a lab axis, the chord, a director, or numbers."""
-    vector = vector / np.linalg.norm(vector)
-    named = dict(AXES_BY_NAME)
-    size = float(np.linalg.norm(ends.chord))
-    if size > SMALL:
-        named["the line through its ends"] = ends.chord / size
-    for end, frame in zip(("start", "end"), ends.frames, strict=True):
-        named |= {f"d{i + 1} of the {end}": frame[:, i] for i in range(3)}
-    for name, direction in named.items():
-        if np.linalg.norm(np.cross(vector, direction)) < SMALL:
-            return name
-    return f"({', '.join(f'{v:.3g}' for v in np.round(vector, 6) + 0.0)})"
+    return Ends(r / conditions.length, frames, -conditions.reference / conditions.length)
 
 
 def _superfluous(conditions: Linearized, z: Array, count: int) -> tuple[str, str]:
@@ -181,7 +87,7 @@ def _listed(names: list[str]) -> str:
     return ", ".join(result)
 
 
-def _proposal(ends: _Ends, motions: Array) -> str:
+def _proposal(ends: Ends, motions: Array) -> str:
     """Conditions to add that oppose motions (k, 6): the first in the scene's order that tell."""
     names, rates = [], []
     for end, r, frame in zip(("start", "end"), ends.r, ends.frames, strict=True):
@@ -221,8 +127,8 @@ def _lines(chosen: dict[tuple[str, str], list[str]]) -> list[str]:
     return result
 
 
-def _about_chord(shifts: Array, turns: Array, ends: _Ends) -> bool:
-    return (len(shifts), len(turns)) == (0, 1) and "ends" in _words(shifts, turns, ends)
+def _about_chord(shifts: Array, turns: Array, ends: Ends) -> bool:
+    return (len(shifts), len(turns)) == (0, 1) and "ends" in words(shifts, turns, ends)
 
 
 def _hinge(conditions: Linearized, z: Array) -> str:

@@ -20,8 +20,9 @@ from ribbonopt.scene import Scene
 from ribbonopt.studies.machine import machine
 
 from .compare import TOLERANCES
-from .measure import Measurement, Profile, Repeated, errors_of, measure
+from .measure import Measurement, Repeated, measure
 from .pairs import Mesh, Pair, pairs_of
+from .profile import Profile, errors_of
 from .rows import PairRow, cheapest, row_of
 from .truth import UNKNOWN, Numbers, SourcedLoads, fine_solves, reference_of, truth_of
 

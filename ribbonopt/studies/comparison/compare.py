@@ -17,8 +17,9 @@ from ribbonopt.output.summary import versions
 from ribbonopt.scene import Scene
 from ribbonopt.studies.machine import machine
 
-from .measure import Measurement, Repeated, errors_of, measure
+from .measure import Measurement, Repeated, measure
 from .pairs import Pair, pairs_of
+from .profile import errors_of
 from .rows import Cheapest, PairRow, cheapest, row_of
 from .truth import UNKNOWN, SourcedLoads, Truth, fine_solves, reference_of, truth_of
 

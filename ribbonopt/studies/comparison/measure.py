@@ -29,24 +29,9 @@ from ribbonopt.scene.units import Units
 from ribbonopt.solution.solution import Solution
 
 from .pairs import Mesh, Pair
+from .profile import SAMPLES, Profile, errors_of, relative
 
-SAMPLES = 101
 SLOW = 0.1  # seconds of a solve that is not repeated for a median
-
-
-@dataclass(frozen=True, eq=False)
-class Profile:
-    """What errors are measured on: n, m (3,) at the start, lab frame, and u (SAMPLES, 3) along s.
-
-    u is taken in the middles of equal parts of the ribbon, because it may jump at the ends (at the
-    end of half a Moebius ribbon m2 changes sign, and at epsilon = 0 that throws u2 over). All in
-    the scene's `units`, with which n and m can be compared.
-    """
-
-    n0: Array
-    m0: Array
-    u: Array
-    units: Units
 
 
 @dataclass(frozen=True, eq=False)
@@ -95,7 +80,7 @@ class LawResidual:
         own = [outputs[own_name(state)] for state in capabilities(self.posed.scene.law).states]
         expected = np.array(self._strain(np.stack([*known, *own, s / units.length])))
         found = outputs["u"].T / units.strain
-        return _relative(found - expected, found)
+        return relative(found - expected, found)
 
     @cached_property
     def _strain(self) -> ca.Function:
@@ -199,35 +184,6 @@ def _estimate(solution: Solution, profile: Profile) -> float | None:
     n0, m0 = better["n"][0] * units.force, better["m"][0] * units.moment
     errors = errors_of(replace(profile, n0=n0, m0=m0), profile)
     return max(errors["error_n0"], errors["error_m0"], ROUNDING)
-
-
-def load_sizes(profile: Profile) -> tuple[float, float]:
-    """Sizes of n(0) and m(0); one that vanishes is measured by the other, and both by one."""
-    units = profile.units
-    n = float(np.linalg.norm(profile.n0)) / units.force
-    m = float(np.linalg.norm(profile.m0)) / units.moment
-    tiny = 1e-9 * max(n, m)
-    if n <= tiny:
-        n = m
-    if m <= tiny:
-        m = n
-    return (n or 1.0) * units.force, (m or 1.0) * units.moment
-
-
-def errors_of(found: Profile, true: Profile) -> dict[str, float]:
-    """Relative errors of n(0), m(0) and of u along s."""
-    sizes = load_sizes(true)
-    return {
-        "error_n0": float(np.linalg.norm(found.n0 - true.n0)) / sizes[0],
-        "error_m0": float(np.linalg.norm(found.m0 - true.m0)) / sizes[1],
-        "error_u": _relative(found.u - true.u, true.u),
-    }
-
-
-def _relative(difference: Array, whole: Array) -> float:
-    size = float(np.abs(whole).max())
-    largest = float(np.abs(difference).max())
-    return largest / size if size > 0 else largest
 
 
 def _failed(pair: Pair, mesh: Mesh, status: str, error: Exception) -> Measurement:

@@ -9,7 +9,8 @@ from typing import Any
 
 from ribbonopt.plain import finite
 
-from .measure import Measurement, Profile, errors_of
+from .measure import Measurement
+from .profile import Profile, errors_of
 
 
 @dataclass(frozen=True)

@@ -9,8 +9,9 @@ import numpy as np
 
 from ribbonopt.scene import Collocation, Scene
 
-from .measure import Measurement, Profile, measure
+from .measure import Measurement, measure
 from .pairs import Pair
+from .profile import Profile
 from .rows import row_of
 
 FINE = Pair("inverted", "reduced", "gauss")

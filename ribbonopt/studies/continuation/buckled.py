@@ -18,7 +18,7 @@ from .walk.points import BUCKLING, Point
 from .walk.protocol import Equations
 
 if TYPE_CHECKING:
-    from ribbonopt.studies.buckling.buckling import Buckling
+    from ribbonopt.studies.buckling.found import Buckling
 
 AMPLITUDE = 1e-5  # of a deflection, relative to the length, that stands for its direction
 
