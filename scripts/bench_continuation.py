@@ -43,7 +43,9 @@ class Checkout:
     """A process that follows branches with the package of a checkout."""
 
     def __init__(self, path: Path) -> None:
-        """Start it."""
+        """Start it; without a package there Python would take the one that is installed."""
+        if not (path / "ribbonopt").is_dir():
+            raise SystemExit(f"--against: found {path}, expected a folder that has ribbonopt/")
         self._process = subprocess.Popen(
             [sys.executable, str(ROOT / "scripts" / "branch_cases.py")],
             stdin=subprocess.PIPE,
@@ -57,7 +59,10 @@ class Checkout:
         process = self._process
         assert process.stdin is not None and process.stdout is not None
         print(name, file=process.stdin, flush=True)
-        found: dict[str, Any] = json.loads(process.stdout.readline())
+        line = process.stdout.readline()
+        if not line:
+            raise SystemExit(f"{name}: a process has ended, for the reason above")
+        found: dict[str, Any] = json.loads(line)
         return found
 
     def close(self) -> None:
