@@ -22,7 +22,7 @@ from ribbonopt.solution.solution import Solution
 from .arcs import NEGLIGIBLE, sign_changes
 from .elimination import factored
 from .variation import Energy, Variation
-from .zero_moment import unbent_share
+from .zero_moment import faded_share, unbent_share
 
 T = TypeVar("T")
 
@@ -30,11 +30,6 @@ T = TypeVar("T")
 ROUNDING = 1e-9  # of the largest eigenvalue: error of the others, at least,
 MOST = 1e-2  # and at most
 
-TOLD = 1.0  # of what is usual along the ribbon: neutral eigenvalues are no larger
-TOO_STEEP = (
-    "second derivatives of the energy differ too much along the ribbon: its moments nearly vanish "
-    "somewhere, or the mesh is too coarse"
-)
 NO_EQUILIBRIUM = "this is no equilibrium"
 
 
@@ -91,8 +86,6 @@ def _judged(variation: Variation | str) -> SecondVariation | str:
         return variation
     largest, error = variation.largest, variation.error
     neutral = max(error, ROUNDING) * largest
-    if neutral > TOLD * variation.usual:
-        return TOO_STEEP
     negative = factored(variation.form, neutral).negative
     return SecondVariation(negative, neutral, error, largest)
 
@@ -109,6 +102,8 @@ def variation_of(solution: Solution) -> Variation | str:
     none = f"the energy of the law {name} has no second derivatives"
     if unbent_share(solution, law):
         return f"{none} where m2 = m3 = 0"
+    if faded_share(solution, law):
+        return f"{none} that are known where m2 and m3 fade away"
     if not law.smooth:
         kinked = _on_the_kink(solution) if law.kinked else "at its kinks"
         if kinked:

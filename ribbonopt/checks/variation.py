@@ -45,14 +45,12 @@ class Variation(NamedTuple):
     """A second variation as a quadratic form.
 
     `residual` is the part of the gradient of the energy that no multipliers balance; `largest`
-    about the largest eigenvalue, `usual` the middle one of those of single stages; `chain` gives
-    states from independent variables.
+    about the largest eigenvalue; `chain` gives states from independent variables.
     """
 
     form: ChainForm
     residual: float
     largest: float
-    usual: float
     stages: GaussStages
     chain: LinearisedChain
 
@@ -147,9 +145,9 @@ class Energy:
         C = (left / singular).T @ B
         A, own = chain.step[..., :nx], chain.step[..., nx:]
         form = ChainForm(Q, A, own, bent.reshape(2 * nx, 2 * nx), C, mass)
-        stiff = np.abs(np.linalg.eigvalsh(H[..., nx:, nx:])).max(axis=-1) / length
-        largest = max(float(stiff.max()), _largest(form, right))
-        return Variation(form, float(residual), largest, float(np.median(stiff)), at, chain)
+        stiff = float(np.abs(np.linalg.eigvalsh(H[..., nx:, nx:])).max()) / length
+        largest = max(stiff, _largest(form, right))
+        return Variation(form, float(residual), largest, at, chain)
 
     def _kinds(self, solution: Solution, at: GaussStages) -> NDArray[np.intp]:
         """Side of the law (N K,) at every stage: of its phase, or by the sign of the switch."""

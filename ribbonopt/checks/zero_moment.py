@@ -9,7 +9,9 @@ is the stiffness of the guard. Buckling loads are another matter: `ribbonopt.stu
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
+from ribbonopt.arrays import Array
 from ribbonopt.mechanics.laws.catalogue import capabilities
 from ribbonopt.mechanics.laws.law import ConstitutiveLaw
 from ribbonopt.solution.solution import Solution
@@ -23,6 +25,9 @@ WORDS = (
     "m2 = m3 = 0 along {where}, where the law {law} has no linearisation: errors, stability and "
     "branch points are not known there"
 )
+FADED = (
+    "m2 and m3 fade away into rounding along the ribbon: stability and branch points are not known"
+)
 
 
 def unbent_share(solution: Solution, law: ConstitutiveLaw) -> float:
@@ -32,17 +37,42 @@ def unbent_share(solution: Solution, law: ConstitutiveLaw) -> float:
     return share_without_moment(solution, law)
 
 
+def faded_share(solution: Solution, law: ConstitutiveLaw, below: float = FADES) -> float:
+    """Share of the length along which such a law has no moment, or one that fades away.
+
+    `below` is what counts as none, of the largest load.
+    """
+    if law.linear_at_zero or law.natural:
+        return 0.0
+    free, largest = _moments(solution, law)
+    return _share(solution, free <= max(below * largest, LEAST))
+
+
+def unseen(solution: Solution, law: ConstitutiveLaw) -> bool:
+    """Whether moments vanish in rounding along a part, so that no determinant can be trusted."""
+    return faded_share(solution, law, ZERO) > 0
+
+
 def share_without_moment(solution: Solution, law: ConstitutiveLaw) -> float:
     """Share of the length along which the moments of a law's free strains vanish."""
-    values = solution.trajectory.at_stages
-    free = np.max([np.abs(values[f"m{i + 1}"]) for i in law.components], axis=0)
-    largest = max(float(np.abs(values[name]).max()) for name in ("n", "m"))
+    free, largest = _moments(solution, law)
     zero = free <= max(ZERO * largest, LEAST)
     ends = np.flatnonzero(zero[1:] != zero[:-1])
     beside = np.maximum(free[ends], free[ends + 1])
     if not zero.any() or (len(ends) and beside.max() <= FADES * largest):
         return 0.0
-    # One stage alone is a point.
+    return _share(solution, zero)
+
+
+def _moments(solution: Solution, law: ConstitutiveLaw) -> tuple[Array, float]:
+    """Largest moment of a law's free strains at every stage, and the largest load of all."""
+    values = solution.trajectory.at_stages
+    free = np.max([np.abs(values[f"m{i + 1}"]) for i in law.components], axis=0)
+    return free, max(float(np.abs(values[name]).max()) for name in ("n", "m"))
+
+
+def _share(solution: Solution, zero: NDArray[np.bool_]) -> float:
+    """Share of the length of stages that are no point alone."""
     padded = np.concatenate([[False], zero, [False]])
     zero = zero & (padded[:-2] | padded[2:])
     share = float(solution.trajectory.stages[2][zero].sum())
@@ -56,9 +86,10 @@ def lacks_linearisation(solution: Solution) -> bool:
 
 def unknown_of(solution: Solution) -> list[str]:
     """Say what is not known of such a state; nothing of all others."""
-    share = unbent_share(solution, capabilities(solution.scene.law))
+    law = capabilities(solution.scene.law)
+    share = unbent_share(solution, law)
     if not share:
-        return []
+        return [FADED] if unseen(solution, law) else []
     where = "the ribbon" if share > 1 - SHORTEST else f"{share:.0%} of the ribbon"
     return [WORDS.format(where=where, law=solution.scene.law.type)]
 
@@ -66,4 +97,4 @@ def unknown_of(solution: Solution) -> list[str]:
 def zero_moment_problems(solution: Solution) -> list[str]:
     """Say the same with what finds out more."""
     more = "`continue` finds the loads that buckle it; `switch: true` follows the buckled ribbon"
-    return [f"{words} ({more})" for words in unknown_of(solution)]
+    return [f"{words} ({more})" for words in unknown_of(solution) if words != FADED]

@@ -65,6 +65,18 @@ def elsewhere(
     return Trial(found, unknowns, True, found.message, note) if found.verified else None
 
 
+def _on_a_mesh(equations: RibbonEquations, solution: Solution) -> Solution:
+    """Return a solution on a mesh that meets its tolerance: one grown from its own, or anew.
+
+    Layers that have become thin since the mesh was made may be too much for one that grows.
+    """
+    found = equations.prepared.refined(solution, SPARE)
+    if found.status is not Status.TOLERANCE_MISSED:
+        return found
+    again = equations.prepared.solve(solution.posed, guess=solution, fallback=False)
+    return again if again.verified else found
+
+
 def _refined(
     equations: RibbonEquations,
     origin: Point[Solution],
@@ -76,12 +88,12 @@ def _refined(
     prepared, curve = equations.prepared, equations.curve
     ahead = equations.metric.dual(equations.reduced(origin.solution, origin.tangent))
     if abs(origin.tangent[-1]) > GENTLE * equations.metric.sizes[-1]:
-        return prepared.refined(solution, SPARE), ""
+        return _on_a_mesh(equations, solution), ""
     for _ in range(2):
         error = error_along(solution, curve, position, row_of(solution, ahead))
         if error <= min(tolerance, STEEP * relative_error(solution)[0]):
             return verified(solution, prepared.ribbon), NEXT_TO_FOLD
-        solution = prepared.refined(solution, SPARE)
+        solution = _on_a_mesh(equations, solution)
         if solution.verified:
             break
     return solution, ""

@@ -13,7 +13,7 @@ import numpy as np
 
 from ribbonopt.arrays import Array
 from ribbonopt.attempt.attempt import Attempt, verified
-from ribbonopt.checks.zero_moment import unbent_share
+from ribbonopt.checks.zero_moment import unbent_share, unseen
 from ribbonopt.pipeline.prepared import Prepared
 from ribbonopt.solution.solution import Solution
 from ribbonopt.solvers.extended import ExtendedSystem, Local, local
@@ -77,7 +77,8 @@ class RibbonEquations:
             # Conditions with slack keep a ribbon in its phases: their zeros are no branch points.
             return replace(found, sign=1.0)
         # Its determinant would be that of the law's guard.
-        sign = 0.0 if unbent else orientation(solution.sheets) * found.sign
+        told = not (unbent or unseen(solution, self.prepared.ribbon.law))
+        sign = orientation(solution.sheets) * found.sign if told else 0.0
         return replace(found, sign=sign)
 
     def correct_at(self, origin: Solution, guess: Array) -> Trial[Solution]:
