@@ -177,7 +177,7 @@ def report(name: str, branch: dict[str, Any]) -> None:
         if one.get("special"):
             text += f"; {', '.join(one['special'])}"
         if not one.get("reached", True):
-            text += f"; ENDS SHORT: {one['ending']}"
+            text += f"; ENDS SHORT: {one['ending'].partition(':')[0]}"
         print(text)
         if parts := ", ".join(f"{k} {1e3 * s:.0f}" for k, s in one.get("parts_s", {}).items()):
             print(f"    in ms: {parts}")
@@ -194,7 +194,7 @@ def target(name: str) -> str:
 
 
 def draw(branches: dict[str, dict[str, Any]], path: Path) -> None:
-    """Draw milliseconds a point: bars, what of them is stability, and the targets."""
+    """Draw milliseconds a point: bars, and the targets."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.figure import Figure
 
@@ -211,7 +211,9 @@ def draw(branches: dict[str, dict[str, Any]], path: Path) -> None:
             axes.barh(y, one["point_ms"], 0.9 * height, **bar)
             told.add(label)
             short = "" if one.get("reached", True) else ", ends short"
-            text = f" {one['cpu_s']:.2f} s, {one['points']} points{short}"
+            judged = one.get("stability_ms") or 0.0
+            share = f", stability {judged:.0f} ms each" if judged >= 1 else ""
+            text = f"  {one['cpu_s']:.2f} s, {one['points']} points{share}{short}"
             axes.text(one["point_ms"], y, text, va="center", fontsize=8)
         case, points = CASES[name], branch[THIS]["points"]
         wanted = 1e3 * case.seconds / points if case.seconds else case.point_ms
@@ -219,11 +221,11 @@ def draw(branches: dict[str, dict[str, Any]], path: Path) -> None:
             axes.plot([wanted] * 2, [row - 0.45, row + 0.45], "k--", lw=1.2)
             axes.text(wanted, row - 0.46, "target", ha="center", fontsize=8)
     axes.set(xscale="log", xlabel="CPU, milliseconds a point", title="Branches, all built before")
-    axes.set_xlim(5, 10 * max(one["point_ms"] for b in branches.values() for one in each(b)))
+    axes.set_xlim(5, 40 * max(one["point_ms"] for b in branches.values() for one in each(b)))
     axes.set_yticks(range(len(branches)), list(branches))
     axes.set_ylim(len(branches) - 0.4, -0.7)
     axes.grid(True, axis="x", which="major", alpha=0.3)
-    axes.legend(loc="lower right")
+    axes.legend(loc="upper right")
     figure.savefig(path, dpi=150)
 
 
