@@ -134,15 +134,20 @@ def loop_problems(solution: Solution, loop: Loop, allowed: float) -> list[str]:
 
 
 def _counted(band: ClosedBand, asked: int | None) -> tuple[int, float]:
-    """Half twists of a band; those asked for where it is midway between them and others."""
+    """Return the half twists of a band, and how far from whole.
+
+    Of one that passes through itself those nearest to what is asked.
+    """
     found, off = band.half_twists()
     if asked is not None and found != asked:
         # Passing through itself a line gains or loses four: the figure of eight has 2 or -2.
         rest, crossings = writhe_and_crossings(band.line(POINTS[1]))
-        middle = 2 * (band.twist + rest)
-        passed = (asked - middle) / 4 + crossings / 2
-        if abs(passed - round(passed)) < WHOLE and 0 <= round(passed) <= crossings:
-            return asked, off
+        if crossings:
+            least = 2 * (band.twist + rest) - 2 * crossings
+            nearest = min(
+                (least + 4 * k for k in range(crossings + 1)), key=lambda n: abs(n - asked)
+            )
+            return round(nearest), abs(nearest - round(nearest))
     return found, off
 
 
