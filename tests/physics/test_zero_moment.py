@@ -160,12 +160,7 @@ def followed(text: str) -> tuple[Continuation, list[Any]]:
 
 
 @pytest.mark.parametrize(
-    ("law", "load"),
-    [
-        (HOMOGENEOUS[0], 6.729347255),
-        pytest.param(HOMOGENEOUS[1], 6.7257477, marks=pytest.mark.slow),
-        pytest.param(HOMOGENEOUS[2], 6.7343797, marks=pytest.mark.slow),
-    ],
+    ("law", "load"), [*zip(HOMOGENEOUS, [6.729347255, 6.7257477, 6.7343797], strict=True)]
 )
 def test_a_branch_of_straight_ribbons(law: str, load: float) -> None:
     continuation, points = followed(TIP.format(law=law, x=0) + FOLLOWED)
@@ -218,7 +213,6 @@ def test_without_special_points_nothing_is_sought() -> None:
     assert {point.kind for point in points} == {POINT}
 
 
-@pytest.mark.slow
 def test_a_branch_goes_on_after_a_break(tmp_path: Path) -> None:
     scene = loads_scene(TIP.format(law="sadowsky", x=0) + FOLLOWED)
     whole = BranchFolder(tmp_path / "whole", scene, resume=False)

@@ -6,8 +6,8 @@ changes of m2 do. So a layout is a mesh and its phases.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
-from functools import cached_property
+from dataclasses import dataclass, field, replace
+from typing import Any
 
 import numpy as np
 
@@ -53,6 +53,7 @@ class RibbonEquations:
     prepared: Prepared
     curve: Curve
     metric: Metric
+    _kept: dict[str, Any] = field(default_factory=dict)  # the same for all metrics
 
     def measured(self, solution: Solution) -> RibbonEquations:
         """Return the same with the metric that fits a solution."""
@@ -156,18 +157,25 @@ class RibbonEquations:
         direction = self.buckling.direction(attempt, point)
         return np.asarray(direction / self.metric.length(reduced(point.solution, direction)))
 
-    @cached_property
+    @property
     def buckling(self) -> StageBuckling:
         """Buckling loads of straight states, found when they are first asked for."""
-        return StageBuckling(self.prepared, self.curve)
+        if "buckling" not in self._kept:
+            self._kept["buckling"] = StageBuckling(self.prepared, self.curve)
+        found: StageBuckling = self._kept["buckling"]
+        return found
 
-    @cached_property
+    @property
     def _rod(self) -> RibbonEquations | None:
         """The same with a linear law, where straight states have a linearisation."""
-        if not has_twin(self.prepared.ribbon.law, self.curve.name):
-            return None
-        curve = Curve(twin_scene(self.curve.scene), self.curve.stage)
-        return RibbonEquations(twin_of(curve.scene_at(curve.start)), curve, self.metric)
+        if "rod" not in self._kept:
+            self._kept["rod"] = None
+            if has_twin(self.prepared.ribbon.law, self.curve.name):
+                curve = Curve(twin_scene(self.curve.scene), self.curve.stage)
+                twin = twin_of(curve.scene_at(curve.start))
+                self._kept["rod"] = RibbonEquations(twin, curve, self.metric)
+        found: RibbonEquations | None = self._kept["rod"]
+        return found
 
     def finer(self, origin: Solution, unknowns: Array) -> tuple[Solution, Array] | None:
         """Return a solution of known unknowns on halved elements, None without a tolerance."""
