@@ -46,7 +46,10 @@ TRUTHS = {
     "variational .01": Truth(Variational(delta=0.01), 0.251239158, 0.38306546, 1e-8),
     "sadowsky": Truth(Sadowsky(), 0.25060501787, 0.38286571873, 1e-9, KINK),
 }
-each_law = pytest.mark.parametrize("name", TRUTHS)
+SLOW = {"variational .01"}
+each_law = pytest.mark.parametrize(
+    "name", [pytest.param(law, marks=[pytest.mark.slow] * (law in SLOW)) for law in TRUTHS]
+)
 GOALS = (0.28, 0.3, 0.31, 0.32, 0.3333, 0.35, 0.4, 0.5)
 STEPS = (None, 0.01, 0.02, 0.03, 0.05)
 
@@ -134,6 +137,7 @@ def test_asymmetric_arches_pass_the_state_of_height_zero(name: str, largest: flo
     assert all(truth.first <= p.position <= truth.second + 1e-9 for p in between)
 
 
+@pytest.mark.slow
 @each_law
 def test_asymmetric_arches_come_to_the_state_of_height_zero(name: str) -> None:
     truth = TRUTHS[name]
