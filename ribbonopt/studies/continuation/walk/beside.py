@@ -156,15 +156,18 @@ def strays(equations: Equations[S], a: Point[S], b: Point[S]) -> bool:
     A branch that crosses can be tangent enough at the other point to be taken for the same one: it
     has left this one between them. On one curve the distance is of fourth order in the step.
     """
-    try:
-        beside = Beside(equations, a, b)
-    except np.linalg.LinAlgError:
-        return False
-    arc = PART * beside.whole
-    guess = beside.unknowns(arc)
-    trial = equations.correct_along(a, a.tangent, arc, guess, ENOUGH)
-    off = equations.metric.length(equations.reduced(a.solution, trial.unknowns - guess))
-    return not (trial.converged and off <= STRAY * abs(beside.whole))
+    metric, along = equations.metric, equations.reduced(a.solution, a.tangent)
+    gap = b.unknowns - a.unknowns
+    whole = metric.product(equations.reduced(a.solution, gap), along)
+    begin, end = (
+        p.tangent * whole / metric.product(equations.reduced(a.solution, p.tangent), along)
+        for p in (a, b)
+    )
+    x = PART
+    guess = a.unknowns + x * x * (3 - 2 * x) * gap + x * (1 - x) * ((1 - x) * begin - x * end)
+    trial = equations.correct_along(a, a.tangent, x * whole, guess, ENOUGH)
+    off = metric.length(equations.reduced(a.solution, trial.unknowns - guess))
+    return not (trial.converged and off <= STRAY * abs(whole))
 
 
 def _crossing(values: dict[float, float]) -> float:
