@@ -30,6 +30,8 @@ DOUBTED = 1e-7  # the same, above which there is no root
 OFF = 0.3  # most distance of a point from its guess, of the arclength to the nearest known point
 ENOUGH = 1e-11  # last relative step of Newton's method: rounding may leave no smaller ones
 KNOTS = 4  # points that a guess is interpolated from
+PART = 2 / 3  # of the way between two points: where it is looked whether one curve joins them
+STRAY = 2e-3  # of that way: distance from the cubics there, above which none that is smooth does
 
 
 @dataclass(frozen=True, eq=False)
@@ -146,6 +148,26 @@ class Beside(Generic[S]):
         """Differentiate the unknowns by the arclength along the first tangent."""
         along = self.equations.reduced(self.a.solution, probe.tangent)
         return probe.tangent / self.equations.metric.product(along, self.along)
+
+
+def strays(equations: Equations[S], a: Point[S], b: Point[S]) -> bool:
+    """Whether the branch from a point leaves the cubics that join it to another of its layout.
+
+    A branch that crosses can be tangent enough at the other point to be taken for the same one: it
+    has left this one between them. On one curve the distance is of fourth order in the step.
+    """
+    metric, along = equations.metric, equations.reduced(a.solution, a.tangent)
+    gap = b.unknowns - a.unknowns
+    whole = metric.product(equations.reduced(a.solution, gap), along)
+    begin, end = (
+        p.tangent * whole / metric.product(equations.reduced(a.solution, p.tangent), along)
+        for p in (a, b)
+    )
+    x = PART
+    guess = a.unknowns + x * x * (3 - 2 * x) * gap + x * (1 - x) * ((1 - x) * begin - x * end)
+    trial = equations.correct_along(a, a.tangent, x * whole, guess, ENOUGH)
+    off = metric.length(equations.reduced(a.solution, trial.unknowns - guess))
+    return not (trial.converged and off <= STRAY * abs(whole))
 
 
 def _crossing(values: dict[float, float]) -> float:

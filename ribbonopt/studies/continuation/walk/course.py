@@ -16,6 +16,7 @@ AIM = 0.02  # wanted distance of a prediction from the curve, in arclength
 FARTHEST = 5.0  # times that: a point that is further off is none of this curve
 COSINE = 0.7  # least one of the angle between tangents one step apart
 SKEW, WANTED_SKEW = 0.2, 0.05  # of the way against the mean of the tangents: most, and wanted
+STRAIGHT, EVEN = 0.99, 0.005  # cosine and skew of steps that are taken without a look between
 
 
 @dataclass(frozen=True, eq=False)
@@ -57,6 +58,11 @@ class Course:
     def same(self) -> bool:
         """Whether the point is where the branch was going."""
         return not self.trouble
+
+    @property
+    def sharp(self) -> bool:
+        """Whether it bends so that another branch may have been met, which crosses this one."""
+        return self.cosine < STRAIGHT or self.skew > EVEN
 
     @property
     def growth(self) -> float:

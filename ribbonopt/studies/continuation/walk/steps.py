@@ -14,12 +14,13 @@ import numpy as np
 
 from ribbonopt.arrays import Array
 
+from .beside import strays
 from .course import Course, joined, leaving
 from .points import FOLD, POINT, Point, S
 from .protocol import Equations, Passage, Range, Trial
 from .special import Special, special_points
 from .strides import Prediction, Stride
-from .tangents import near, renewed
+from .tangents import moved, near, renewed
 
 NATURAL = 0.1  # least share of the position in the tangent for natural continuation
 GROWTH, SHRINK = 2.0, 0.25  # of a step, after success and failure
@@ -94,6 +95,8 @@ class Stepper(Generic[S]):
         if special.unresolved and not least and self._doubted():
             self.trouble = UNRESOLVED.format(" and ".join(special.unresolved))
             return None
+        if course.sharp and not (special.changes or least) and self._strays(point, following):
+            return None
         final = self.equations.finished(point, trial)
         self.trouble = final.message
         if not final.converged:
@@ -124,17 +127,15 @@ class Stepper(Generic[S]):
             self.trouble = trial.message
             if not trial.converged:
                 return None
-            after = self._moved(after, trial)
+            after = moved(self.equations, after, trial)
         return Stride(after, special)
 
-    def _moved(self, point: Point[S], trial: Trial[S]) -> Point[S]:
-        """Return a trial next to a point in its place, facing the same way."""
-        solution, unknowns = trial.solution, trial.unknowns
-        ahead = self.equations.reduced(point.solution, point.tangent)
-        found, tangent = near(self.equations, solution, unknowns, ahead)
-        return replace(
-            point, solution=solution, unknowns=unknowns, tangent=tangent, sign=found.sign
-        )
+    def _strays(self, point: Point[S], following: Point[S]) -> bool:
+        """Whether a step is to be shortened because no smooth curve seems to join its ends."""
+        if not (self.range.special and strays(self.equations, point, following)):
+            return False
+        self.trouble = "another branch may cross on the way"
+        return self._doubted()
 
     def _doubted(self) -> bool:
         """Whether a step in doubt is to be shortened once more."""

@@ -7,7 +7,7 @@ from dataclasses import replace
 from ribbonopt.arrays import Array
 
 from .points import Point, S
-from .protocol import Equations, Linearised
+from .protocol import Equations, Linearised, Trial
 
 
 def near(
@@ -30,3 +30,11 @@ def renewed(equations: Equations[S], point: Point[S]) -> Point[S]:
     """Return a point with its tangent and its step in the metric of equations; the same way."""
     length = equations.metric.length(equations.reduced(point.solution, point.tangent))
     return replace(point, tangent=point.tangent / length, step=point.step * length)
+
+
+def moved(equations: Equations[S], point: Point[S], trial: Trial[S]) -> Point[S]:
+    """Return a trial next to a point in its place, facing the same way."""
+    solution, unknowns = trial.solution, trial.unknowns
+    ahead = equations.reduced(point.solution, point.tangent)
+    found, tangent = near(equations, solution, unknowns, ahead)
+    return replace(point, solution=solution, unknowns=unknowns, tangent=tangent, sign=found.sign)
