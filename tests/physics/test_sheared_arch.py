@@ -115,16 +115,13 @@ def test_goals_short_of_the_first_threshold_and_beyond(name: str, short: float) 
     assert (kind, position) == (truth.kind, pytest.approx(truth.first, abs=truth.digits))
 
 
-SMOOTH = [name for name, truth in TRUTHS.items() if truth.kind == BRANCH_POINT]
-
-
 @pytest.mark.slow
 @pytest.mark.parametrize("largest", [None, 0.02, 0.05])
-@pytest.mark.parametrize("name", SMOOTH)
-def test_asymmetric_arches_pass_the_state_of_height_zero(name: str, largest: float | None) -> None:
-    truth = TRUTHS[name]
+def test_asymmetric_rods_pass_the_state_of_height_zero(largest: float | None) -> None:
+    # Ribbons do not: there m2 = m3 = 0 in the middle, where homogeneous laws are not smooth.
+    truth = TRUTHS["rod"]
     points, continuation = followed(arch(truth.law, 0.5, largest, switch=True))
-    assert {branch for _, branch in continuation.endings} == {0, 1}
+    assert {point.branch for point in points} == {0, 1}
     crossings = [p for p in points if p.branch == 1 and p.kind == BRANCH_POINT]
     assert {p.note for p in crossings} == {FROM_THE_SIDE}
     places = [truth.second, truth.first, truth.second]  # up, over, and down on the other side
@@ -147,9 +144,8 @@ def test_asymmetric_arches_come_to_the_state_of_height_zero(name: str) -> None:
     for k, side in enumerate(sides, start=1):
         assert "stopped" in continuation.endings[0, k].reason
         middle, shear = (np.array(v) for v in zip(*(side_row(p) for p in side[-4:]), strict=True))
-        # Even in the height for a smooth law, not so for that of Sadowsky.
-        height = middle**2 if truth.kind == BRANCH_POINT else middle
-        power = 2 if truth.kind == BRANCH_POINT else 3
+        # Even in the height for a rod, not so for homogeneous laws.
+        height, power = (middle**2, 2) if name == "rod" else (middle, 3)
         found = np.polyval(np.polyfit(height, shear, power), 0.0)
         assert found == pytest.approx(truth.second, abs=2e-6)
     one, other = (side[-1].row for side in sides)
