@@ -85,18 +85,23 @@ def assert_turned(seed: int, law: Law) -> None:
     assert ways[1][-1].row["energy"] == pytest.approx(ways[0][0].row["energy"], rel=1e-7)
 
 
+SEEDS = [
+    pytest.param(seed, marks=pytest.mark.slow if seed < 12 else pytest.mark.sweep)
+    for seed in (2, *range(4, 100))
+]
+
+
 @pytest.mark.parametrize("seed", (0, 1, 3))
 def test_a_rod_is_turned_around_and_back(seed: int) -> None:
     assert_turned(seed, ROD)
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("seed", (2, *range(4, 100)))
+@pytest.mark.parametrize("seed", SEEDS)
 def test_many_rods_are_turned_around_and_back(seed: int) -> None:
     assert_turned(seed, ROD)
 
 
-@pytest.mark.slow
+@pytest.mark.sweep
 @pytest.mark.parametrize("seed", range(100, 110))
 def test_ribbons_are_turned_around_and_back(seed: int) -> None:
     assert_turned(seed, RIBBON)

@@ -46,9 +46,9 @@ TRUTHS = {
     "variational .01": Truth(Variational(delta=0.01), 0.251239158, 0.38306546, 1e-8),
     "sadowsky": Truth(Sadowsky(), 0.25060501787, 0.38286571873, 1e-9, KINK),
 }
-SLOW = {"variational .01"}
+WIDE = {"variational .01"}
 each_law = pytest.mark.parametrize(
-    "name", [pytest.param(law, marks=[pytest.mark.slow] * (law in SLOW)) for law in TRUTHS]
+    "name", [pytest.param(law, marks=[pytest.mark.sweep] * (law in WIDE)) for law in TRUTHS]
 )
 GOALS = (0.28, 0.3, 0.31, 0.32, 0.3333, 0.35, 0.4, 0.5)
 STEPS = (None, 0.01, 0.02, 0.03, 0.05)
@@ -91,10 +91,15 @@ def test_the_first_threshold(name: str, to: float, largest: float | None) -> Non
     assert_first_threshold(name, to, largest)
 
 
-@pytest.mark.slow
 @pytest.mark.parametrize("largest", STEPS)
 @pytest.mark.parametrize("to", GOALS)
-@each_law
+@pytest.mark.parametrize(
+    "name",
+    [
+        pytest.param(law, marks=pytest.mark.slow if law == "rod" else pytest.mark.sweep)
+        for law in TRUTHS
+    ],
+)
 def test_the_first_threshold_by_any_steps(name: str, to: float, largest: float | None) -> None:
     if to < TRUTHS[name].first:
         # Before it: nothing special, not even just before.
@@ -134,7 +139,7 @@ def test_asymmetric_rods_pass_the_state_of_height_zero(largest: float | None) ->
     assert all(truth.first <= p.position <= truth.second + 1e-9 for p in between)
 
 
-@pytest.mark.slow
+@pytest.mark.sweep
 @each_law
 def test_asymmetric_arches_come_to_the_state_of_height_zero(name: str) -> None:
     truth = TRUTHS[name]
@@ -157,7 +162,7 @@ def side_row(point: Point[Solution]) -> tuple[float, float]:
     return point.row["middle"], point.position
 
 
-@pytest.mark.slow
+@pytest.mark.sweep
 def test_steps_of_any_length_stay_on_the_symmetric_arch() -> None:
     # One of .03 once landed on the branch that crosses at .5048: nothing told, another energy.
     runs = [followed(arch(Variational(delta=0.01), 0.6, largest)) for largest in (0.01, 0.03)]
