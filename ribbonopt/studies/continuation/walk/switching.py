@@ -36,7 +36,8 @@ def switched(
     if point.kind == KINK:
         return _left(equations, point, sign)
     known = equations.departure(point)
-    direction = sign * (null_direction(equations, point) if known is None else known)
+    direction = null_direction(equations, point) if known is None else known
+    direction = sign * _oriented(equations, point, direction)
     away, own = AWAY, None
     while away > LEAST_AWAY:
         guess = point.unknowns + away * direction
@@ -129,7 +130,12 @@ def null_direction(equations: Equations[S], point: Point[S]) -> Array:
         direction
         - metric.product(equations.reduced(point.solution, direction), ahead) * point.tangent
     )
-    part = equations.reduced(point.solution, direction) / metric.sizes
-    # One of the two ways, the same in every run.
-    sign = np.sign(part[np.abs(part).argmax()])
+    return _oriented(equations, point, direction)
+
+
+def _oriented(equations: Equations[S], point: Point[S], direction: Array) -> Array:
+    """Return one of the two ways of a direction (n + k,), the same in every run; of unit length."""
+    part = equations.reduced(point.solution, direction) / equations.metric.sizes
+    # Components may be alike by symmetry, so that none of them can decide.
+    sign = 1.0 if part @ np.cos(np.arange(len(part)) ** 1.5) >= 0 else -1.0
     return np.asarray(sign * direction / np.linalg.norm(part))
