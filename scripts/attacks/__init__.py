@@ -1,0 +1,1 @@
+"""Attacks on ribbonopt: hostile scenes, studies, files, names, environments and kills; seeded."""
