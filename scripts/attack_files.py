@@ -23,7 +23,7 @@ from collections import Counter
 from collections.abc import Callable, Iterator
 from contextlib import contextmanager, suppress
 from pathlib import Path
-from typing import Any, NamedTuple
+from typing import NamedTuple
 
 from mutators import archived, bytewise, jsonwise, odd_node
 
@@ -281,8 +281,9 @@ def main() -> int:
             counts[mutation.kind, mutation.file, word] += 1
             if word == "fault":
                 faults.setdefault(told, f"{mutation.kind}/{mutation.file}: {mutation.label}")
-            if given.messages and told:
-                print(f"{mutation.file}: {mutation.label}\n    {told.replace(place, '')}")
+            if given.messages:
+                told = told.replace(place, "")
+                print(f"{word}: {mutation.file}: {mutation.label}\n    {told}")
     for kind, names in FILES.items():
         for name in names if kind in given.kinds else ():
             words = (

@@ -127,7 +127,8 @@ def jsonwise(chance: random.Random, path: Path, other: Path) -> str:
             return f"line {at + 1}, {key}: {raw[:20]}"
     texts[at] = json.dumps(data)
     path.write_text("\n".join(texts) + "\n")
-    return f"line {at + 1}, {key}: {word}: {str(holder.get(key) if isinstance(holder, dict) else '')[:40]!r}"
+    there = key in holder if isinstance(holder, dict) else key < len(holder)
+    return f"line {at + 1}, {key}: {word}: {str(holder[key])[:40] if there else ''!r}"
 
 
 def _place(chance: random.Random, data: Any) -> tuple[Any, Any]:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
 from typing import Any
@@ -13,6 +14,7 @@ from ribbonopt.errors import OutputError, SceneError
 from ribbonopt.problem import BoundaryValueProblem, Posed
 from ribbonopt.reading import is_file
 from ribbonopt.scene import Scene, load_scene, validate_scene
+from ribbonopt.scene.faults import shown
 from ribbonopt.scene.units import Units, units_of
 from ribbonopt.solution.made import solution_at
 from ribbonopt.solution.solution import Solution
@@ -32,6 +34,10 @@ from .saved import (
     refuse_other,
 )
 from .staging import OWN_FILES, unwritable
+from .summary import settings_of
+
+#: what a summary says of its scene that decides what the numbers are
+SETTINGS = ("name", "formulation", "states", "transcription", "scheme", "parameters", "interval")
 
 
 def save_solution(
@@ -101,7 +107,7 @@ def load_solution(path: str | Path, scene: Scene | None = None) -> Solution:
     folder = Path(path)
     folder = folder.parent if is_file(folder) else folder
     needed = [SUMMARY, NUMBERS] + (["scene.yaml"] if scene is None else [])
-    missing = [name for name in needed if not is_file(folder / name)]
+    missing = [name for name in needed if not os.path.exists(folder / name)]
     if missing == ["scene.yaml"]:
         raise OutputError(
             f"{path}: scene.yaml missing; if the scene was declared in Python, give it: "
@@ -119,7 +125,7 @@ def load_solution(path: str | Path, scene: Scene | None = None) -> Solution:
         posed = Posed.of(scene, _units(scene, saved.units))
         structure = Structure.of(posed).in_phases(saved.sheets)
         problem, (nlp, _) = structure.problem, structure.on(saved.elements)
-        _refuse_other_scene(summary, saved, posed, problem, nlp.unknowns)
+        _refuse_other_scene(plain, saved, posed, problem, nlp.unknowns)
         # The saved parameters, because some follow from the solution (loads from costates).
         p = np.concatenate([saved.theta, saved.widths])
         solution = solution_at(
@@ -155,7 +161,7 @@ def _scene_of(folder: Path) -> Scene:
 
 
 def _refuse_other_scene(
-    summary: SavedSummary,
+    plain: Mapping[str, Any],
     saved: SavedNumbers,
     posed: Posed,
     problem: BoundaryValueProblem,
@@ -165,8 +171,10 @@ def _refuse_other_scene(
     names, theta, given = problem.parameter_names, saved.theta, posed.values
     if len(saved.w) != unknowns or len(theta) != len(names):
         raise ValueError(f"{len(saved.w)} unknowns, its scene has {unknowns}")
-    if summary.name not in (None, posed.given.name):
-        raise ValueError(f"{SUMMARY} says that it is the result of another scene")
+    settings = settings_of(posed.given)
+    for key, value in ((key, settings[key]) for key in SETTINGS):
+        if plain.get(key, value) != value:
+            raise ValueError(f"{SUMMARY} says {key}: {shown(plain[key])}, its scene {shown(value)}")
     for name, here, there in zip(names, theta, given, strict=True):
         if name not in problem.recovered and not np.isclose(here, there, rtol=SAME, atol=1e-12):
             raise ValueError(f"it was solved at {name} = {here:.6g}, its scene says {there:.6g}")

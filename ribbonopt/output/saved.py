@@ -147,9 +147,14 @@ def read_numbers(folder: Path, summary: SavedSummary) -> SavedNumbers:
                 raise ValueError(f"{SUMMARY} says other {name}")
     except ValueError as error:
         raise RESULT.damaged(path, str(error)) from None
-    arrays = (found[name] for name in ("w", "widths", "theta", "multipliers"))
     return SavedNumbers(
-        *arrays, sheets, elements, None if units is None else tuple(map(float, units))
+        found["w"],
+        found["widths"],
+        found["theta"],
+        found["multipliers"],
+        sheets,
+        elements,
+        None if units is None else tuple(map(float, units)),
     )
 
 

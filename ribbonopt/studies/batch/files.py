@@ -9,6 +9,7 @@ from __future__ import annotations
 import contextlib
 import csv
 import json
+import os
 from collections.abc import Sequence
 from pathlib import Path
 from typing import IO, Any
@@ -17,11 +18,12 @@ from ribbonopt.errors import OutputError
 from ribbonopt.output.declared import BATCH_PICTURES, foreign_in
 from ribbonopt.output.staging import beside, replacing, unwritable
 from ribbonopt.plain import Row
-from ribbonopt.studies.lines import whole_lines
+from ribbonopt.reading import is_file
 
+from .saved import ROWS, STUDY, read_rows, read_study
 from .study import Study
 
-ROWS, TABLE, STUDY, SOLUTIONS = "rows.jsonl", "table.csv", "study.json", "solutions"
+TABLE, SOLUTIONS = "table.csv", "solutions"
 
 
 class BatchFolder:
@@ -121,7 +123,7 @@ class BatchFolder:
             refused.pop_all()  # the folder is ours until it is closed
 
     def _go_on(self, digest: str, resume: bool) -> None:
-        known = _record_of(self.folder)
+        known = read_study(self.folder)
         if known["digest"] != digest:
             raise OutputError(
                 f"{self.folder}: holds rows of another study ({known['name']}); choose another "
@@ -132,7 +134,7 @@ class BatchFolder:
                 f"{self.folder}: holds rows of this study already; go on by --resume, or choose "
                 "another folder"
             )
-        for row in _read(self.folder / ROWS):
+        for row in read_rows(self.folder, known):
             self._count(row)
 
 
@@ -153,16 +155,16 @@ def load_batch(folder: str | Path) -> tuple[dict[str, Any], list[Row]]:
         If it holds none, or is damaged.
     """
     folder = Path(folder)
-    try:
-        return _record_of(folder), _read(folder / ROWS)
-    except FileNotFoundError:
-        raise OutputError(
-            f"{folder}: no batch; expected a folder written by ribbonopt batch"
-        ) from None
+    if not os.path.exists(folder / STUDY):
+        raise OutputError(f"{folder}: no batch; expected a folder written by ribbonopt batch")
+    study = read_study(folder)
+    return study, read_rows(folder, study)
 
 
 def _locked(path: Path) -> IO[bytes]:
     """Open a file so that no other batch can; the system forgets it with this process."""
+    if os.path.exists(path) and not is_file(path):
+        raise OutputError(f"{path}: is no file; choose another folder")
     file = open(path, "ab")
     try:
         import fcntl  # where there is none, nothing is locked
@@ -178,23 +180,3 @@ def _locked(path: Path) -> IO[bytes]:
             f"{path.parent}: is being written by another batch; wait for its end, or stop it"
         ) from None
     return file
-
-
-def _record_of(folder: Path) -> dict[str, Any]:
-    path = folder / STUDY
-    try:
-        record = json.loads(path.read_text(encoding="utf-8"))
-    except ValueError:
-        record = None
-    if not isinstance(record, dict) or not {"name", "ribbons", "inputs", "digest"} <= record.keys():
-        raise OutputError(f"{path}: is damaged; choose another folder")
-    return record
-
-
-def _read(path: Path) -> list[Row]:
-    return whole_lines(path, _sound) if path.exists() else []
-
-
-def _sound(row: Any) -> bool:
-    """Whether a line holds what `BatchFolder` writes."""
-    return isinstance(row, dict) and {"number", "status", "verified"} <= row.keys()
