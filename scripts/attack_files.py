@@ -85,7 +85,7 @@ class Originals:
         for name, given in (("solution", []), ("solution.other", ["parameters.P=31"])):
             (folder / name).mkdir(parents=True)
             save_solution(solve(loads_scene(COLUMN, overrides=given)), folder / name)
-        for name, given in (("branch", []), ("branch.other", ["law.B3=2.5"])):
+        for name, given in (("branch", []), ("branch.other", ["law.B2=1.1"])):
             scene = loads_scene(BRANCH, overrides=given)
             list(BranchFolder(folder / name, scene, resume=False).follow(Continuation(scene)))
         for name, text in (("study", CSV), ("study.other", CSV.replace("31", "31.5"))):
@@ -192,13 +192,14 @@ def _branch(folder: Path, originals: Originals) -> None:
 
 
 def _batch(folder: Path, originals: Originals) -> None:
-    from ribbonopt.cli.batch import draw
     from ribbonopt.studies.batch.files import BatchFolder, load_batch
     from ribbonopt.studies.batch.sweep import load_study
+    from ribbonopt.views.report import write_report
 
     rows = _lines(folder / "rows.jsonl")
-    draw(folder, folder, [])
-    _, loaded = load_batch(folder)
+    record, loaded = load_batch(folder)
+    name, count = record["name"], record["ribbons"]
+    write_report(loaded, record["inputs"], folder / "report.html", name=name, count=count)
     if len(loaded) < rows:
         raise AssertionError("deceived: rows are dropped in silence")
     study = load_study([originals.folder / "study" / "study.yaml"])

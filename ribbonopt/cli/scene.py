@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 import argparse
+import os
 import sys
 from typing import TYPE_CHECKING, Any
 
 from ribbonopt.errors import SceneError
+from ribbonopt.reading import is_file
 
 from .common import NOT_CONVERGED, default_folder, load, pairs_of, print_json, say_left_out
 
@@ -107,11 +109,11 @@ def plot(options: argparse.Namespace) -> int:
     from ribbonopt.views.files import draw_figures
 
     result, pairs = Path(options.result), pairs_of(options.plot) or []
-    if (result / "branch.jsonl").is_file():
+    if is_file(result / "branch.jsonl"):
         from .branch import draw as draw_branch
 
         paths = draw_branch(result, picture_folder(options.out or result), pairs)
-    elif (result / "rows.jsonl").is_file():
+    elif is_file(result / "rows.jsonl"):
         from .batch import draw as draw_batch
 
         paths = draw_batch(result, picture_folder(options.out or result), pairs)
@@ -119,9 +121,9 @@ def plot(options: argparse.Namespace) -> int:
         raise SceneError(
             f"--plot: {result} is no branch and no batch, whose columns could be drawn"
         )
-    elif not result.is_dir():
-        beside = Path(f"{result}-branch")
-        near = f"; did you mean {beside}?" if beside.is_dir() else ""
+    elif not os.path.isdir(result):
+        beside = f"{result}-branch"
+        near = f"; did you mean {beside}?" if os.path.isdir(beside) else ""
         wanted = "expected one written by ribbonopt solve, continue or batch"
         raise SceneError(f"{result}: no such folder; {wanted}{near}")
     else:

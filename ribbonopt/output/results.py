@@ -186,6 +186,7 @@ def _refuse_other_numbers(solution: Solution, told: Mapping[str, Any]) -> None:
     refuse_other(
         {
             "energy": (solution.energy, units.moment),
+            "H0": (solution.start["H"], units.force),
             "n0": (solution.n0, units.force),
             "m0": (solution.m0, units.moment),
             "u0": (solution.u0, units.strain),

@@ -35,7 +35,7 @@ def whole_lines(path: Path, kind: Kind, checked: Callable[[Any, str], T]) -> lis
         try:
             data = parsed(text)
         except ValueError as error:
-            if not text.endswith(b"\n"):
+            if not text.endswith(b"\n") and (text.startswith(b"{") or not text.strip(b"\0")):
                 break  # cut short when the process died, and nothing after it
             raise kind.damaged(where, str(error)) from None
         lines.append(checked(data, where))

@@ -134,7 +134,7 @@ class BatchFolder:
                 f"{self.folder}: holds rows of this study already; go on by --resume, or choose "
                 "another folder"
             )
-        for row in read_rows(self.folder, known):
+        for row in read_rows(self.folder, known, self.study):
             self._count(row)
 
 

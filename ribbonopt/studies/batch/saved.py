@@ -2,16 +2,20 @@
 
 from __future__ import annotations
 
+import os
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any
 
 from ribbonopt.output.records import checked
-from ribbonopt.plain import Row
+from ribbonopt.plain import Row, finite, is_number
 from ribbonopt.reading import MEGA, Kind, read_json
+from ribbonopt.scene.faults import shown
 from ribbonopt.scene.quantities import ANSWERS
 from ribbonopt.scene.schema.bounds import Bounds
 from ribbonopt.studies.lines import whole_lines
+
+from .study import Study
 
 ROWS, STUDY = "rows.jsonl", "study.json"
 
@@ -60,8 +64,15 @@ def read_study(folder: Path) -> dict[str, Any]:
     return record
 
 
-def read_rows(folder: Path, study: dict[str, Any]) -> list[Row]:
+def read_rows(folder: Path, record: dict[str, Any], study: Study | None = None) -> list[Row]:
     """Return the rows of a batch folder, none if none was begun.
+
+    Parameters
+    ----------
+    folder, record
+        The folder, and what it says of its study.
+    study
+        The study itself, where it is at hand: then rows must be of its ribbons.
 
     Raises
     ------
@@ -69,16 +80,23 @@ def read_rows(folder: Path, study: dict[str, Any]) -> list[Row]:
         Names the first line that is none of its study, and says what to do.
     """
     path = folder / ROWS
+    if not os.path.exists(path):
+        return []
+    given = {} if study is None else {ribbon.number: ribbon.inputs for ribbon in study.ribbons}
 
     def row_of(data: Any, where: str) -> Row:
-        found = checked(SavedRow, data, where, LINES)
-        if found.number > study["ribbons"]:
-            fault = f"number: found {found.number}, the study has {study['ribbons']} ribbons"
+        row = checked(SavedRow, data, where, LINES)
+        if row.number > record["ribbons"]:
+            fault = f"number: found {row.number}, the study has {record['ribbons']} ribbons"
             raise LINES.damaged(where, fault)
         for name in ANSWERS:
-            if not isinstance(data.get(name), int | float | None):
+            if data.get(name) is not None and not is_number(data[name]):
                 raise LINES.damaged(where, f"{name}: expected a number")
-        row: Row = data
-        return row
+        for key, value in finite(given.get(row.number, {})).items():
+            if data.get(key, value) != value:
+                fault = f"{key}: found {shown(data[key])}, its study has {shown(value)}"
+                raise LINES.damaged(where, fault)
+        found: Row = data
+        return found
 
-    return whole_lines(path, LINES, row_of) if path.exists() else []
+    return whole_lines(path, LINES, row_of)

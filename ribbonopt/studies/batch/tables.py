@@ -26,7 +26,7 @@ def table_of(text: str, source: str) -> list[dict[str, Any]]:
     SceneError
         If it is no table, or none of its keys is one of a scene.
     """
-    lines = csv.reader(io.StringIO(text))
+    lines = csv.reader(io.StringIO(text, newline=None))
     try:
         # Lines of a spreadsheet's end may hold nothing but separators.
         rows = [(lines.line_num, row) for row in lines if any(cell.strip() for cell in row)]

@@ -115,6 +115,8 @@ class _Course:
         line = {**line, "row": _renamed(line["row"])}
         _refuse_values(line["row"], self.scene)
         _refuse_state(state)
+        if row.intervals not in (None, sum(state.elements)):
+            raise ValueError("intervals: expected as many as there are elements")
         self.count += 1
         return line
 

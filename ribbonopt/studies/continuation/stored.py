@@ -81,11 +81,11 @@ class Stored:
             arrays = {name: unpacked(state[name]) for name in ARRAYS}
             solution = self._solution(line, arrays["w"], arrays["widths"])
             units = solution.units
-            told = {"energy": row.get("energy")}
+            told = {"energy": row.get("energy"), "H": row.get("H0")}
             told |= {
                 name: _vector(row, parts) for name, parts in zip("nmu", START_VECTORS, strict=True)
             }
-            start = {"n": units.force, "m": units.moment, "u": units.strain}
+            start = {"n": units.force, "m": units.moment, "u": units.strain, "H": units.force}
             found = {name: (solution.start[name], unit) for name, unit in start.items()}
             refuse_other({"energy": (solution.energy, units.moment), **found}, told)
         except (ValueError, ArithmeticError, RuntimeError) as error:
