@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Sequence
 from dataclasses import replace
 from typing import Any
 
@@ -92,7 +92,7 @@ def loads_scene(text: str, source: str = "<string>", overrides: Sequence[str] = 
     if not isinstance(written.data, dict):
         kind = "a list" if isinstance(written.data, list) else "a single value"
         raise SceneError(f"{source}: is {kind}; expected keys such as name, law, boundary")
-    refuse_foreign(written.data, source, written_keys(Scene))
+    refuse_foreign(written, source, written_keys(Scene))
     plain = written
     if overrides:
         from .text.overrides import override  # only scenes that are overridden pay for it
@@ -108,7 +108,7 @@ def loads_scene(text: str, source: str = "<string>", overrides: Sequence[str] = 
     return scene
 
 
-def refuse_foreign(data: Mapping[str, Any], source: str, known: Sequence[str]) -> None:
+def refuse_foreign(found: PlainData, source: str, known: Sequence[str]) -> None:
     """Refuse what has no key that it might have: no message is to quote what is no scene.
 
     Raises
@@ -116,12 +116,13 @@ def refuse_foreign(data: Mapping[str, Any], source: str, known: Sequence[str]) -
     SceneError
         If all keys are foreign, and none is a known one misspelt.
     """
-    if not data or any(key in known for key in data):
+    keys = list(found.data) if isinstance(found.data, dict) else []
+    if any(key in known for key in keys) or not (keys or found.problems):
         return
-    if not any(nearest(key[:LONGEST], known) for key in list(data)[:LOOKED_AT]):
+    if not any(nearest(key[:LONGEST], known) for key in keys[:LOOKED_AT]):
         raise SceneError(
-            f"{source}: is no scene, none of its {len(data)} keys is one of a scene; expected keys "
-            "such as name, law, boundary"
+            f"{source}: is no scene, none of its keys is one of a scene; expected keys such as "
+            "name, law, boundary"
         )
 
 
@@ -141,8 +142,8 @@ def read_yaml(text: str, source: str, known: Sequence[str] = ()) -> PlainData:
         where = f"{source}, line {error.line}" if error.line else source
         raise SceneError(f"{where}: {error}") from None
     if found.problems:
-        if known and isinstance(found.data, dict):
-            refuse_foreign(found.data, source, known)
+        if known:
+            refuse_foreign(found, source, known)
         raise SceneError(report(source, found.problems, found.places))
     return found
 
