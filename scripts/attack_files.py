@@ -27,6 +27,7 @@ from typing import NamedTuple
 
 from mutators import archived, bytewise, jsonwise, odd_node
 
+from ribbonopt import reading
 from ribbonopt.errors import RibbonoptError
 
 SECONDS = 30  # longest that any file may take
@@ -267,6 +268,7 @@ def main() -> int:
     options.add_argument("--kinds", nargs="+", default=tuple(FILES), choices=tuple(FILES))
     options.add_argument("--messages", action="store_true", help="print all messages")
     given = options.parse_args()
+    reading.PATIENCE = 0.2  # there are many pipes that nobody writes to
     counts: Counter[tuple[str, str, str]] = Counter()
     faults: dict[str, str] = {}
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")

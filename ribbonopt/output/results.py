@@ -10,10 +10,10 @@ from typing import Any
 import numpy as np
 
 from ribbonopt.attempt.structure import Structure
-from ribbonopt.errors import OutputError, SceneError
+from ribbonopt.errors import OutputError
 from ribbonopt.problem import BoundaryValueProblem, Posed
 from ribbonopt.reading import is_file
-from ribbonopt.scene import Scene, load_scene, validate_scene
+from ribbonopt.scene import Scene, validate_scene
 from ribbonopt.scene.faults import shown
 from ribbonopt.scene.units import Units, units_of
 from ribbonopt.solution.made import solution_at
@@ -30,6 +30,7 @@ from .saved import (
     SavedNumbers,
     SavedSummary,
     read_numbers,
+    read_scene,
     read_summary,
     refuse_other,
 )
@@ -118,7 +119,7 @@ def load_solution(path: str | Path, scene: Scene | None = None) -> Solution:
             f"{path}: not a result of ribbonopt, {', '.join(missing)} missing; expected a folder "
             "written by `ribbonopt solve --out`"
         )
-    scene = _scene_of(folder) if scene is None else validate_scene(scene)
+    scene = read_scene(folder / "scene.yaml") if scene is None else validate_scene(scene)
     summary, plain = read_summary(folder)
     saved = read_numbers(folder, summary)
     try:
@@ -151,13 +152,6 @@ def load_solution(path: str | Path, scene: Scene | None = None) -> Solution:
     except (ValueError, ArithmeticError, RuntimeError) as error:
         raise RESULT.damaged(folder, str(error)) from error
     return solution
-
-
-def _scene_of(folder: Path) -> Scene:
-    try:
-        return load_scene(folder / "scene.yaml")
-    except SceneError as error:
-        raise OutputError(str(error)) from error
 
 
 def _refuse_other_scene(

@@ -13,8 +13,9 @@ from typing import Annotated, Any
 import numpy as np
 
 from ribbonopt.arrays import Array
-from ribbonopt.errors import TranscriptionError
-from ribbonopt.reading import MEGA, Kind, read_json
+from ribbonopt.errors import OutputError, SceneError, TranscriptionError
+from ribbonopt.reading import MEGA, Kind, read_json, read_text
+from ribbonopt.scene import Scene, loads_scene
 from ribbonopt.scene.schema.bounds import Bounds
 from ribbonopt.solvers import Status
 from ribbonopt.transcription import Mesh
@@ -24,6 +25,7 @@ from .records import checked
 
 SUMMARY, NUMBERS = "summary.json", "solution.npz"
 RESULT = Kind("a result of ribbonopt", most=100 * MEGA, remedy="solve the scene again")
+SCENE = Kind("the scene of a result", most=10 * MEGA)
 
 Known = float | None  # a number; None where it is not known
 Vector = tuple[Known, Known, Known]
@@ -107,6 +109,15 @@ class SavedNumbers:
     sheets: tuple[int, ...]
     elements: tuple[int, ...]
     units: tuple[float, ...] | None
+
+
+def read_scene(path: Path) -> Scene:
+    """Return the scene that stands beside saved numbers; OutputError if it cannot be read."""
+    text = read_text(path, SCENE)
+    try:
+        return loads_scene(text, str(path))
+    except SceneError as error:
+        raise OutputError(str(error)) from error
 
 
 def read_summary(folder: Path) -> tuple[SavedSummary, dict[str, Any]]:

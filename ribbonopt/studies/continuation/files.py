@@ -14,11 +14,13 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from ribbonopt.errors import OutputError, SceneError
+from ribbonopt.errors import OutputError
 from ribbonopt.output.declared import BRANCH_PICTURES, foreign_in
+from ribbonopt.output.saved import SCENE as SAVED
+from ribbonopt.output.saved import read_scene
 from ribbonopt.output.staging import beside, replacing, unwritable
-from ribbonopt.reading import MEGA, Kind, read_text
-from ribbonopt.scene import Scene, dump_scene, load_scene
+from ribbonopt.reading import read_text
+from ribbonopt.scene import Scene, dump_scene
 from ribbonopt.solution.solution import Solution
 
 from .continuation import Continuation
@@ -28,7 +30,6 @@ from .walk.branches import Key
 from .walk.points import Point
 
 FILE, TABLE, SCENE = "branch.jsonl", "branch.csv", "scene.yaml"
-SAVED_SCENE = Kind("the scene of a branch", most=10 * MEGA)
 
 
 class BranchFolder:
@@ -143,7 +144,7 @@ class BranchFolder:
 
     def _same(self, text: str) -> None:
         scene = self.folder / SCENE
-        if not os.path.exists(scene) or read_text(scene, SAVED_SCENE) != text:
+        if not os.path.exists(scene) or read_text(scene, SAVED) != text:
             raise OutputError(
                 f"{self.folder}: holds a branch of another scene; resume with the scene (and "
                 "--set) it was begun with, or choose another folder"
@@ -159,10 +160,7 @@ def load_branch(folder: str | Path) -> tuple[Scene, list[dict[str, Any]]]:
     folder = Path(folder)
     if not (os.path.exists(folder / FILE) and os.path.exists(folder / SCENE)):
         raise OutputError(f"{folder}: no branch; expected a folder written by ribbonopt continue")
-    try:
-        scene = load_scene(folder / SCENE)
-    except SceneError as error:
-        raise OutputError(str(error)) from error
+    scene = read_scene(folder / SCENE)
     return scene, read_branch(folder / FILE, scene)
 
 
