@@ -35,16 +35,16 @@ MEMORY = 4 * 2**30  # bytes that all of it may take
 COLUMN = """\
 name: column
 law: {type: kirchhoff, B2: 1, B3: 2}
-parameters: {P: 30, turn: 0}
+parameters: {P: 30, turn: 0.1}
 boundary:
   start: {support: clamped, position: [0, 0, 0], directors: identity}
-  end: {position: {x: 0}, force: {y: 0, z: -P}, d3: {x: 0}, d1: {y: turn}, moment: {d1: 0}}
-guess: {force: [0, 0, -30], moment: [0, 0, 0]}
+  end: {position: {x: 0}, force: {y: 3, z: -P}, d3: {x: 0}, d1: {y: turn}, moment: {d1: 0}}
+guess: {force: [0, 3, -30], moment: [0, 0, 0]}
 tolerance: 1e-6
 transcription: {type: collocation, degree: 4, intervals: 6}
 record: {shortening: "1 - dot(r, ez)"}
 """
-BRANCH = COLUMN + "continuation: {parameter: parameters.P, from: 37, to: 40.2, largest: 3}\n"
+BRANCH = COLUMN + "continuation: {parameter: parameters.P, from: 20, to: 26, largest: 3}\n"
 STUDY = """\
 name: study
 scene: scene.yaml

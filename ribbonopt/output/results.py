@@ -29,6 +29,7 @@ from .saved import (
     SUMMARY,
     SavedNumbers,
     SavedSummary,
+    answers_of,
     read_numbers,
     read_scene,
     read_summary,
@@ -148,7 +149,7 @@ def load_solution(path: str | Path, scene: Scene | None = None) -> Solution:
             sheets=saved.sheets,
         )
         if summary.ended.converged:
-            _refuse_other_numbers(solution, plain)
+            refuse_other(answers_of(solution), plain)
     except (ValueError, ArithmeticError, RuntimeError) as error:
         raise RESULT.damaged(folder, str(error)) from error
     return solution
@@ -172,21 +173,6 @@ def _refuse_other_scene(
     for name, here, there in zip(names, theta, given, strict=True):
         if name not in problem.recovered and not np.isclose(here, there, rtol=SAME, atol=1e-12):
             raise ValueError(f"it was solved at {name} = {here:.6g}, its scene says {there:.6g}")
-
-
-def _refuse_other_numbers(solution: Solution, told: Mapping[str, Any]) -> None:
-    """Refuse numbers that give another answer than their summary; ValueError names it."""
-    units = solution.units
-    refuse_other(
-        {
-            "energy": (solution.energy, units.moment),
-            "H0": (solution.start["H"], units.force),
-            "n0": (solution.n0, units.force),
-            "m0": (solution.m0, units.moment),
-            "u0": (solution.u0, units.strain),
-        },
-        told,
-    )
 
 
 def _verification(summary: SavedSummary) -> Verification:

@@ -17,6 +17,7 @@ from ribbonopt.errors import OutputError, SceneError, TranscriptionError
 from ribbonopt.reading import MEGA, Kind, read_json, read_text
 from ribbonopt.scene import Scene, loads_scene
 from ribbonopt.scene.schema.bounds import Bounds
+from ribbonopt.solution.solution import Solution
 from ribbonopt.solvers import Status
 from ribbonopt.transcription import Mesh
 
@@ -189,6 +190,18 @@ def refuse_mesh(
         Mesh(tuple(np.split(widths, np.cumsum(elements)[:-1])))
     except TranscriptionError as error:
         raise ValueError(f"widths: {error}") from None
+
+
+def answers_of(solution: Solution) -> dict[str, tuple[Any, float]]:
+    """Return what a solution is known by, each with its unit, see `refuse_other`."""
+    units = solution.units
+    return {
+        "energy": (solution.energy, units.moment),
+        "H0": (solution.start["H"], units.force),
+        "n0": (solution.n0, units.force),
+        "m0": (solution.m0, units.moment),
+        "u0": (solution.u0, units.strain),
+    }
 
 
 def refuse_other(found: Mapping[str, tuple[Any, float]], told: Mapping[str, Any]) -> None:

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Collection, Iterator, Sequence
+from collections.abc import Collection, Iterator
 from typing import Any
 
 import numpy as np
 
 from ribbonopt.arrays import Array
 from ribbonopt.errors import RibbonoptError
-from ribbonopt.output.saved import SAME, refuse_other
+from ribbonopt.output.saved import SAME, answers_of, refuse_other
 from ribbonopt.plain import Row
 from ribbonopt.scene.quantities import START_VECTORS
 from ribbonopt.solution.solution import Solution
@@ -80,14 +80,7 @@ class Stored:
         try:
             arrays = {name: unpacked(state[name]) for name in ARRAYS}
             solution = self._solution(line, arrays["w"], arrays["widths"])
-            units = solution.units
-            told = {"energy": row.get("energy"), "H": row.get("H0")}
-            told |= {
-                name: _vector(row, parts) for name, parts in zip("nmu", START_VECTORS, strict=True)
-            }
-            start = {"n": units.force, "m": units.moment, "u": units.strain, "H": units.force}
-            found = {name: (solution.start[name], unit) for name, unit in start.items()}
-            refuse_other({"energy": (solution.energy, units.moment), **found}, told)
+            refuse_other(answers_of(solution), _told(row))
         except (ValueError, ArithmeticError, RuntimeError) as error:
             raise self._damaged(row, str(error)) from error
         return Point(
@@ -130,10 +123,12 @@ class Stored:
         return BRANCH.damaged(f"{self._source}, point {row['number']}", fault)
 
 
-def _vector(row: Row, names: Sequence[str]) -> list[float] | None:
-    """Return a vector of a row; None where a component is not known."""
-    parts = [row[name] for name in names if row.get(name) is not None]
-    return parts if len(parts) == len(names) else None
+def _told(row: Row) -> dict[str, Any]:
+    """Return what a row tells of its solution; vectors where all their components are known."""
+    vectors = zip(("n0", "m0", "u0"), START_VECTORS, strict=True)
+    found = {name: [row.get(part) for part in parts] for name, parts in vectors}
+    told = {name: vector for name, vector in found.items() if None not in vector}
+    return {"energy": row.get("energy"), "H0": row.get("H0"), **told}
 
 
 def restored(
