@@ -19,6 +19,7 @@ from ribbonopt.output.declared import BRANCH_PICTURES, foreign_in
 from ribbonopt.output.saved import SCENE as SAVED
 from ribbonopt.output.saved import read_scene
 from ribbonopt.output.staging import beside, replacing, unwritable
+from ribbonopt.plain import finite
 from ribbonopt.reading import read_text
 from ribbonopt.scene import Scene, dump_scene
 from ribbonopt.solution.solution import Solution
@@ -87,7 +88,7 @@ class BranchFolder:
         try:
             for point in continuation.resume(history):
                 known = self._note_endings(continuation, known)
-                self._append({"row": dict(point.row), "state": state_of(point)})
+                self._append({"row": finite(dict(point.row)), "state": state_of(point)})
                 yield point
             self._note_endings(continuation, known)
         finally:
@@ -129,6 +130,7 @@ class BranchFolder:
                             "branch": branch,
                             "reached": ending.reached,
                             "reason": ending.reason,
+                            "points": len(self.rows),
                         }
                     }
                 )

@@ -71,12 +71,13 @@ class SavedState:
 
 @dataclass(frozen=True)
 class SavedEnding:
-    """How a stage, or a branch of it, has ended."""
+    """How a stage, or a branch of it, has ended, and how many points there were then."""
 
     stage: Count
     branch: Count
     reached: bool
     reason: str
+    points: Count | None = None
 
 
 @dataclass
@@ -99,6 +100,8 @@ class _Course:
     def _ending(self, line: dict[str, Any], where: str) -> dict[str, Any]:
         ending = checked(SavedEnding, line["ending"], where, BRANCH)
         self._fits(ending.stage, ending.branch)
+        if ending.points not in (None, self.count):
+            raise ValueError(f"points: {ending.points} were there, {self.count} are left")
         self.ended.add((ending.stage, ending.branch))
         return line
 

@@ -308,6 +308,10 @@ def test_points_that_are_missing_are_missed(branch: Path, points: list[bytes]) -
     path = branch / "branch.jsonl"
     path.write_bytes(b"".join(points[:1] + points[2:]))
     assert "line 2: is damaged (number: found 2, expected 1" in refusal(lambda: load_branch(branch))
+    path.write_bytes(b"".join([*points[:-2], points[-1]]))
+    message = refusal(lambda: load_branch(branch))
+    count = len(points) - 1
+    assert f"(points: {count} were there, {count - 1} are left)" in message
     path.write_bytes(b"".join([*points, points[-2]]))
     assert "it has ended in a line before" in refusal(lambda: load_branch(branch))
 
