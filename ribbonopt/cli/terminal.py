@@ -61,7 +61,7 @@ def write(stream: TextIO | None, text: str) -> None:
     if stream is None:
         return
     if not text.isascii():
-        encoding = stream.encoding or "utf-8"
+        encoding = getattr(stream, "encoding", None) or "utf-8"
         text = text.encode(encoding, "backslashreplace").decode(encoding)
     stream.write(text)
 

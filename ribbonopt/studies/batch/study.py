@@ -5,19 +5,18 @@ from __future__ import annotations
 import hashlib
 import itertools
 import json
-import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
-from typing import Any, Literal
+from typing import Literal
 
 from ribbonopt.errors import SceneError
 from ribbonopt.scene import Scene
 from ribbonopt.scene.quantities import ANSWERS
 from ribbonopt.scene.yamlio import loads_scene
 
+from .cells import as_yaml
 from .inputs import NOTHING, InputRows, Inputs
 
-PAIR = re.compile(r"\\u(d[89ab][0-9a-f]{2})\\u(d[c-f][0-9a-f]{2})")
 #: of every row; a ribbon that failed has some of them only
 COLUMNS = (
     *("number", "scene", "status", "verified", *ANSWERS, "error"),
@@ -164,13 +163,3 @@ class Study:
 def assignments(inputs: Inputs) -> list[str]:
     """Return inputs as overrides of a scene."""
     return [f"{key}={as_yaml(value)}" for key, value in inputs.items()]
-
-
-def as_yaml(value: Any) -> str:
-    """Return plain data as YAML on one line, which JSON is but for two words on one character."""
-    return PAIR.sub(_joined, json.dumps(value))
-
-
-def _joined(pair: re.Match[str]) -> str:
-    high, low = (int(word, 16) for word in pair.groups())
-    return f"\\U{0x10000 + ((high - 0xD800) << 10) + low - 0xDC00:08x}"

@@ -7,7 +7,6 @@ was cut short is not read. `branch.csv` has the rows as a table.
 
 from __future__ import annotations
 
-import csv
 import json
 from collections.abc import Iterator
 from pathlib import Path
@@ -16,6 +15,7 @@ from typing import Any
 from ribbonopt.errors import OutputError
 from ribbonopt.output.declared import BRANCH_PICTURES, foreign_in
 from ribbonopt.output.staging import beside, replacing, unwritable
+from ribbonopt.output.table import write_table
 from ribbonopt.scene import Scene, dump_scene, load_scene
 from ribbonopt.solution.solution import Solution
 from ribbonopt.studies.lines import whole_lines
@@ -43,7 +43,8 @@ class BranchFolder:
         self.folder, self.scene = Path(folder), scene
         self.lines: list[dict[str, Any]] = []
         files = (FILE, SCENE)
-        own = {TABLE, *BRANCH_PICTURES, *files, *(beside(Path(name)).name for name in files)}
+        written = (*files, TABLE)
+        own = {*BRANCH_PICTURES, *written, *(beside(Path(name)).name for name in written)}
         try:
             self.folder.mkdir(parents=True, exist_ok=True)
             found = sorted(path.name for path in self.folder.iterdir())
@@ -108,11 +109,7 @@ class BranchFolder:
         """Write the rows as CSV."""
         rows = self.rows
         names = list(dict.fromkeys(name for row in rows for name in row))
-        with open(self.folder / TABLE, "w", newline="", encoding="utf-8") as file:
-            writer = csv.writer(file)
-            writer.writerow(names)
-            for row in rows:
-                writer.writerow([_cell(row.get(name)) for name in names])
+        write_table(self.folder / TABLE, names, rows)
 
     def _note_endings(self, continuation: Continuation, known: set[Key]) -> set[Key]:
         for key, ending in continuation.endings.items():
@@ -194,9 +191,3 @@ def _sound(line: Any) -> bool:
 
 def _line(value: dict[str, Any]) -> str:
     return json.dumps(value) + "\n"
-
-
-def _cell(value: Any) -> Any:
-    if isinstance(value, list):
-        return " ".join(repr(item) for item in value)
-    return "" if value is None else value
