@@ -22,6 +22,8 @@ COLUMNS = (
     *("number", "scene", "status", "verified", *ANSWERS, "error"),
     *("start", "iterations", "path", "note", "message", "seconds"),
 )
+EQUILIBRIA = "equilibria"  # a column where scenes ask for several
+TAKEN = "every row has that already; choose another name"
 
 
 @dataclass(frozen=True)
@@ -67,13 +69,16 @@ class Sweep:
             scene = self._scene(self.common | self.inputs[0])
         except SceneError:
             return ()
-        return (*scene.record, *(("equilibria",) if scene.starts > 1 else ()))
+        return (*scene.record, *((EQUILIBRIA,) if scene.starts > 1 else ()))
 
     def _fault(self, inputs: Inputs) -> str:
         try:
-            self._scene(inputs)
+            scene = self._scene(inputs)
         except SceneError as error:
             return str(error)
+        taken = sorted({*scene.record} & {*COLUMNS, EQUILIBRIA, *self.inputs.keys})
+        if taken:
+            return f"{self.source.name}: record.{taken[0]}: {TAKEN}"
         return ""
 
     def _scene(self, inputs: Inputs) -> Scene:
