@@ -17,7 +17,8 @@ from typing import NoReturn
 from ribbonopt.errors import ConvergenceError, ModelError, RibbonoptError
 
 from .arguments import parser
-from .common import BAD_INPUT, INTERRUPTED, NOT_CONVERGED, READER_GONE, print_json
+from .common import BAD_INPUT, INTERRUPTED, NOT_CONVERGED, READER_GONE
+from .terminal import bounded, complain, say_json
 
 
 def run() -> NoReturn:
@@ -56,7 +57,7 @@ def _run(options: argparse.Namespace) -> int:
     except RibbonoptError as error:
         return _fail(options, str(error), "bad_input", BAD_INPUT)
     except KeyboardInterrupt:
-        print("ribbonopt: interrupted; nothing written", file=sys.stderr)
+        complain("interrupted; nothing written")
         return INTERRUPTED
 
 
@@ -73,8 +74,8 @@ def _place(options: argparse.Namespace, error: ModelError) -> str:
 
 def _fail(options: argparse.Namespace, error: str, status: str, code: int) -> int:
     if getattr(options, "json", False):
-        print_json({"status": status, "verified": False, "message": error})
-    print(f"ribbonopt: {error}", file=sys.stderr)
+        say_json({"status": status, "verified": False, "message": bounded(error)})
+    complain(error)
     return code
 
 

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import gc
-import sys
 from collections.abc import Generator, Iterator
 from contextlib import closing
 from typing import TYPE_CHECKING, Any
@@ -18,10 +17,10 @@ from .common import (
     default_folder,
     load,
     pairs_of,
-    print_json,
     say_left_out,
 )
 from .progress import ProgressLine
+from .terminal import complain, say, say_json
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -57,10 +56,9 @@ def follow(options: argparse.Namespace) -> int:
         if pairs is not None:
             _draw(continuation, folder.lines, pairs, folder.folder)
     except KeyboardInterrupt:
-        print(
-            f"ribbonopt: interrupted; {len(folder.rows)} points kept in {folder.folder}, "
-            "--resume goes on from there",
-            file=sys.stderr,
+        complain(
+            f"interrupted; {len(folder.rows)} points kept in {folder.folder}, "
+            "--resume goes on from there"
         )
         return INTERRUPTED
     return _tell(options, folder, continuation)
@@ -124,7 +122,7 @@ def _usual(rows: Rows, recorder: Recorder) -> list[tuple[str, str]]:
 def _tell(options: argparse.Namespace, folder: BranchFolder, continuation: Continuation) -> int:
     ending = continuation.ending
     if options.json:
-        print_json(
+        say_json(
             {
                 "name": folder.scene.name,
                 "status": "converged" if ending.reached else "target_not_reached",
@@ -140,13 +138,12 @@ def _tell(options: argparse.Namespace, folder: BranchFolder, continuation: Conti
             }
         )
     elif not options.quiet:
-        print(report(folder, continuation))
+        say(report(folder, continuation))
     if ending.reached:
         return 0
-    print(
-        f"ribbonopt: {folder.scene.name}: the goal was not reached: {ending.reason}; "
-        f"{len(folder.rows)} points kept in {folder.folder}",
-        file=sys.stderr,
+    complain(
+        f"{folder.scene.name}: the goal was not reached: {ending.reason}; "
+        f"{len(folder.rows)} points kept in {folder.folder}"
     )
     return NOT_CONVERGED
 

@@ -1,16 +1,19 @@
-"""What all verbs share: exit status, reading the scene, printing JSON."""
+"""What all verbs share: exit status, reading the scene, columns to draw."""
 
 from __future__ import annotations
 
 import argparse
-import sys
 import time
 from collections.abc import Iterable
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from ribbonopt.errors import SceneError
 
+from .terminal import complain
+
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from ribbonopt.scene import Scene
 
 BAD_INPUT, NOT_CONVERGED = 2, 3
@@ -52,14 +55,12 @@ def pairs_of(texts: list[str] | None) -> list[tuple[str, str]] | None:
     return pairs
 
 
+def listing(folder: Path) -> str:
+    """Return a folder and what is in it."""
+    return f"{folder}: {', '.join(sorted(path.name for path in folder.iterdir()))}"
+
+
 def say_left_out(left_out: Iterable[str]) -> None:
     """Say on stderr what could not be drawn or written, and why."""
     for text in left_out:
-        print(f"ribbonopt: left out: {text}", file=sys.stderr)
-
-
-def print_json(value: dict[str, Any], indent: int | None = None) -> None:
-    """Print one JSON object."""
-    import json  # most commands print text
-
-    print(json.dumps(value, indent=indent, allow_nan=False))
+        complain(f"left out: {text}")

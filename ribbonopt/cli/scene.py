@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import argparse
-import sys
 from typing import TYPE_CHECKING, Any
 
 from ribbonopt.errors import SceneError
 
-from .common import NOT_CONVERGED, default_folder, load, pairs_of, print_json, say_left_out
+from .common import NOT_CONVERGED, default_folder, listing, load, pairs_of, say_left_out
+from .terminal import complain, say, say_json, say_line
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -50,16 +50,15 @@ def _tell(
     summary = summarize(solution)
     summary["timings"] = {"import": import_seconds} | summary["timings"]
     if options.json:
-        print_json(summary)
+        say_json(summary)
     elif not options.quiet:
-        print(report(summary))
+        say(report(summary))
         if written:
-            names = ", ".join(sorted(p.name for p in written.iterdir()))
-            print(f"  written: {written}: {names}")
+            say_line(f"  written: {listing(written)}")
     if solution.verified:
         return 0
     kept = f"; kept in {written}" if written else ""
-    print(f"ribbonopt: {solution.scene.name}: {solution.message}{kept}", file=sys.stderr)
+    complain(f"{solution.scene.name}: {solution.message}{kept}")
     return NOT_CONVERGED
 
 
@@ -70,9 +69,9 @@ def check(options: argparse.Namespace) -> int:
 
     found = check_scene(scene)
     if options.json:
-        print_json(found)
+        say_json(found)
     elif not options.quiet:
-        print(_checked(found))
+        say(_checked(found))
     return 0
 
 
@@ -94,7 +93,7 @@ def schema(options: argparse.Namespace) -> int:
     """Print the JSON schema of scenes."""
     from ribbonopt.scene import json_schema
 
-    print_json(json_schema(), indent=2)
+    say_json(json_schema(), indent=2)
     return 0
 
 
@@ -129,5 +128,5 @@ def plot(options: argparse.Namespace) -> int:
         paths, left_out = draw_figures(solution, picture_folder(options.out or result))
         say_left_out(left_out)
     for path in paths:
-        print(path)
+        say_line(str(path))
     return 0
