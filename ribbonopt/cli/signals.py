@@ -11,9 +11,10 @@ import signal
 import time
 from types import FrameType
 
+from ribbonopt.signals import endings
+
 from .common import INTERRUPTED
 
-ENDING = ("SIGINT", "SIGTERM", "SIGHUP", "SIGXCPU")
 AGAIN = 1.0  # seconds from which on another Ctrl-C is meant: many wrappers pass on the same twice
 
 
@@ -23,10 +24,8 @@ class Signals:
     def __init__(self) -> None:
         """Listen from now on; what is ignored, as by `nohup`, stays so."""
         self._told, self._at = 0, 0.0
-        for name in ENDING:
-            number = getattr(signal, name, None)  # Windows has two of them
-            known = (signal.SIG_DFL, signal.default_int_handler)
-            if number is not None and signal.getsignal(number) in known:
+        for number in endings():
+            if signal.getsignal(number) in (signal.SIG_DFL, signal.default_int_handler):
                 signal.signal(number, self._tell)
 
     def status(self, status: int) -> int:

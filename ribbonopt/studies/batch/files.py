@@ -41,7 +41,7 @@ class BatchFolder:
         """
         self.folder, self.study = Path(folder), study
         self.rows: list[Row] = []
-        self.failed = 0
+        self.failed, self._finished = 0, False
         try:
             with contextlib.ExitStack() as refused:
                 own = {ROWS, TABLE, STUDY, SOLUTIONS, *BATCH_PICTURES}
@@ -67,11 +67,15 @@ class BatchFolder:
         self._count(row)
 
     def close(self) -> None:
-        """Write the table, sorted by number, and give the folder up."""
+        """Finish, if that is not done, and give the folder up."""
         with self._claimed:
-            self._close()
+            self.finish()
 
-    def _close(self) -> None:
+    def finish(self) -> None:
+        """End the file of rows, and write the table, sorted by number."""
+        if self._finished:
+            return
+        self._finished = True
         names: dict[str, None] = {}
         for row in self.rows:
             names |= dict.fromkeys(row)

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import csv
 import json
-from collections.abc import Iterator
+from collections.abc import Generator
 from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
@@ -46,7 +46,7 @@ class BranchFolder:
         """
         self.folder, self.scene = Path(folder), scene
         self.lines: list[dict[str, Any]] = []
-        self._closed = False
+        self._finished = False
         try:
             with ExitStack() as refused:
                 own = {FILE, SCENE, TABLE, *BRANCH_PICTURES}
@@ -79,7 +79,7 @@ class BranchFolder:
         """Rows of all points."""
         return rows_of(self.lines)
 
-    def follow(self, continuation: Continuation) -> Iterator[Point[Solution]]:
+    def follow(self, continuation: Continuation) -> Generator[Point[Solution], None, None]:
         """Points of a continuation from where the folder's end, each written before it is given."""
         history = Stored(continuation, self.lines)
         known = set(history.endings)
@@ -90,24 +90,28 @@ class BranchFolder:
                 yield point
             self._note_endings(continuation, known)
         finally:
-            self.close()
+            self.finish()
 
     def close(self) -> None:
-        """Write the table and give the folder up; OutputError if the disk is full."""
-        if self._closed:
-            return
-        self._closed = True
+        """Finish, if that is not done, and give the folder up."""
         with self._claimed:
-            try:
-                self._file.close()
-                if self.lines:
-                    self.write_table()
-                    return
-                # Nothing was found, and so nothing stays.
-                for name in (FILE, SCENE):
-                    (self.folder / name).unlink(missing_ok=True)
-            except OSError as error:
-                raise unwritable(self.folder, error) from error
+            self.finish()
+
+    def finish(self) -> None:
+        """End the branch file and write the table; OutputError if the disk is full."""
+        if self._finished:
+            return
+        self._finished = True
+        try:
+            self._file.close()
+            if self.lines:
+                self.write_table()
+                return
+            # Nothing was found, and so nothing stays.
+            for name in (FILE, SCENE):
+                (self.folder / name).unlink(missing_ok=True)
+        except OSError as error:
+            raise unwritable(self.folder, error) from error
 
     def write_table(self) -> None:
         """Write the rows as CSV."""
