@@ -14,7 +14,7 @@ from ribbonopt.errors import SceneError
 from ribbonopt.text import one_line
 
 from .arguments import count
-from .common import INTERRUPTED, NOT_CONVERGED, default_folder, listing, pairs_of
+from .common import INTERRUPTED, NOT_CONVERGED, default_folder, drawn, listing, pairs_of
 from .progress import ProgressLine
 from .terminal import complain, say, say_json
 
@@ -47,28 +47,31 @@ def batch(options: argparse.Namespace) -> int:
     folder = BatchFolder(
         options.out or default_folder(study.name, "batch"), study, resume=options.resume
     )
-    rows = run_batch(
-        study,
-        jobs=jobs,
-        scheduler=options.scheduler,
-        known=folder.known,
-        folder=str(folder.folder.absolute()),
-    )
-    line, before = ProgressLine(quiet=options.quiet), len(folder.rows)
     try:
-        with closing(folder), closing(rows), closing(line):
-            for row in rows:
-                folder.append(row)
-                if line.due or len(folder.rows) == study.count:
-                    line.show(_progress(folder, line.rate(len(folder.rows) - before)))
-        _draw(study.name, study.count, study.keys, folder.rows, folder.folder, pairs)
+        with closing(folder):
+            rows = run_batch(
+                study,
+                jobs=jobs,
+                scheduler=options.scheduler,
+                known=folder.known,
+                folder=str(folder.folder.absolute()),
+            )
+            line, before = ProgressLine(quiet=options.quiet), len(folder.rows)
+            with closing(rows), closing(line):
+                for row in rows:
+                    folder.append(row)
+                    if line.due or len(folder.rows) == study.count:
+                        line.show(_progress(folder, line.rate(len(folder.rows) - before)))
+            folder.finish()
+            named = study.name, study.count, study.keys
+            status = drawn(lambda: _draw(*named, folder.rows, folder.folder, pairs))
     except KeyboardInterrupt:
         complain(
             f"interrupted; {len(folder.rows)} of {study.count} rows kept in {folder.folder}, "
             "--resume goes on from there"
         )
         return INTERRUPTED
-    return _tell(options, folder)
+    return _tell(options, folder) or status
 
 
 def draw(result: Path, out: Path, pairs: list[tuple[str, str]]) -> list[Path]:

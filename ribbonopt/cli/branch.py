@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import argparse
 import gc
-from collections.abc import Generator, Iterator
+from collections.abc import Generator
 from contextlib import closing
 from typing import TYPE_CHECKING, Any
 
@@ -15,6 +15,7 @@ from .common import (
     INTERRUPTED,
     NOT_CONVERGED,
     default_folder,
+    drawn,
     load,
     pairs_of,
     say_left_out,
@@ -47,21 +48,22 @@ def follow(options: argparse.Namespace) -> int:
     pairs = None if pairs is None else _columns(pairs, continuation.recorder)
     place = options.out or default_folder(scene.name, "continue")
     folder = BranchFolder(place, scene, resume=options.resume)
-    line = ProgressLine(quiet=options.quiet)
-    shown = _shown(folder.follow(continuation), continuation, line)
+    status = 0
     try:
-        with closing(shown):  # takes the line away before anything is said
-            for _ in shown:
-                pass
-        if pairs is not None:
-            _draw(continuation, folder.lines, pairs, folder.folder)
+        with closing(folder):
+            shown = _shown(folder, continuation, ProgressLine(quiet=options.quiet))
+            with closing(shown):  # takes the line away before anything is said
+                for _ in shown:
+                    pass
+            if pairs is not None:
+                status = drawn(lambda: _draw(continuation, folder.lines, pairs, folder.folder))
     except KeyboardInterrupt:
         complain(
             f"interrupted; {len(folder.rows)} points kept in {folder.folder}, "
             "--resume goes on from there"
         )
         return INTERRUPTED
-    return _tell(options, folder, continuation)
+    return _tell(options, folder, continuation) or status
 
 
 def draw(result: Path, out: Path, pairs: list[tuple[str, str]]) -> list[Path]:
@@ -149,10 +151,10 @@ def _tell(options: argparse.Namespace, folder: BranchFolder, continuation: Conti
 
 
 def _shown(
-    points: Iterator[Point[Solution]], continuation: Continuation, line: ProgressLine
+    folder: BranchFolder, continuation: Continuation, line: ProgressLine
 ) -> Generator[Point[Solution], None, None]:
-    """Give the points on, with a line of progress on a terminal."""
-    with closing(line):
+    """Give the points as they are written, with a line of progress on a terminal."""
+    with closing(line), closing(folder.follow(continuation)) as points:
         for count, point in enumerate(points, start=1):
             if line.due:
                 line.show(f"{_progress(point, continuation)}, {line.rate(count):.1f}/s")

@@ -4,10 +4,10 @@ from __future__ import annotations
 
 import argparse
 import time
-from collections.abc import Iterable
+from collections.abc import Callable, Iterable
 from typing import TYPE_CHECKING
 
-from ribbonopt.errors import SceneError
+from ribbonopt.errors import RibbonoptError, SceneError
 
 from .terminal import complain
 
@@ -64,3 +64,18 @@ def say_left_out(left_out: Iterable[str]) -> None:
     """Say on stderr what could not be drawn or written, and why."""
     for text in left_out:
         complain(f"left out: {text}")
+
+
+def drawn(draw: Callable[[], object]) -> int:
+    """Draw what was asked for besides numbers, and return the exit status.
+
+    The numbers are on disk by now: whatever a picture comes to, it is told, and nothing is lost.
+    """
+    try:
+        draw()
+    except Exception as error:
+        known = isinstance(error, RibbonoptError)
+        reason = str(error) if known else f"cannot be drawn ({type(error).__name__}: {error})"
+        complain(f"pictures: {reason}; the numbers are kept")
+        return NOT_CONVERGED
+    return 0

@@ -8,7 +8,7 @@ from collections.abc import Callable
 from typing import TYPE_CHECKING
 
 from .arguments import chosen, count, numbers
-from .common import NOT_CONVERGED, load
+from .common import NOT_CONVERGED, drawn, load
 from .terminal import complain, say, say_json
 
 if TYPE_CHECKING:
@@ -49,10 +49,10 @@ def _study(
         with staged_result(options.out, files_of(name)) as stage:
             study = run()
             save_study(study, stage.folder, name)
-            save_figure(study.plain(), stage.folder / f"{name}.png")
-            stage.commit()
+            written = stage.commit()
+            status = drawn(lambda: save_figure(study.plain(), written / f"{name}.png"))
     else:
-        study = run()
+        study, status = run(), 0
     if options.json:
         say_json(study.plain())
     elif not options.quiet:
@@ -60,6 +60,6 @@ def _study(
 
         say(table(study))
     if study.solved:
-        return 0
+        return status
     complain(f"{study.name}: no pair gave a verified solution")
     return NOT_CONVERGED

@@ -1,7 +1,7 @@
 """The one writer to stdout and stderr: what a file or a user says is shown, and never acts.
 
-Characters that the stream cannot say are escaped. A full disk or a reader that has left is an
-OSError for `main` to tell.
+Characters that the stream cannot say are escaped. Where stdout is full, closed, or its reader has
+left, that is for `main` to tell (`UnheardError`); where stderr is, there is nobody to tell.
 """
 
 from __future__ import annotations
@@ -13,6 +13,10 @@ from typing import Any, TextIO
 from ribbonopt.text import one_line, printable, shortened
 
 LONGEST = 8000  # characters of a message
+
+
+class UnheardError(Exception):
+    """What was to be printed on stdout finds no room, or no reader."""
 
 
 def say(text: str) -> None:
@@ -63,7 +67,11 @@ def write(stream: TextIO | None, text: str) -> None:
     if not text.isascii():
         encoding = getattr(stream, "encoding", None) or "utf-8"
         text = text.encode(encoding, "backslashreplace").decode(encoding)
-    stream.write(text)
+    try:
+        stream.write(text)
+    except (OSError, ValueError) as error:  # full, closed, or nobody reads it
+        if stream is not sys.stderr:
+            raise UnheardError(*error.args) from error
 
 
 class Parser(argparse.ArgumentParser):

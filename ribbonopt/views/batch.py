@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
@@ -15,7 +16,7 @@ from ribbonopt.text import drawn
 from .branch import COLOURS
 from .columns import ColumnPair, as_text, is_logarithmic, is_numeric, numbers, varied, words
 from .histogram import histogram_of
-from .style import BENDING, FAINT, INK, TWIST, blank, save_all, tidy
+from .style import BENDING, FAINT, INK, TWIST, blank, draw_all, tidy
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -45,14 +46,14 @@ def save_batch_figures(
     Raises
     ------
     OutputError
-        If a file cannot be written.
+        If a file cannot be drawn or written.
     """
     chosen = list(pairs) or usual_pairs(rows, inputs)
-    figures = {
-        "outcomes.png": plot_outcomes(rows),
-        "scatter.png": plot_scatter(rows, chosen, inputs),
+    drawings = {
+        "outcomes.png": partial(plot_outcomes, rows),
+        "scatter.png": partial(plot_scatter, rows, chosen, inputs),
     }
-    return save_all(figures, Path(folder))
+    return draw_all(drawings, Path(folder)).paths
 
 
 def usual_pairs(rows: Rows, inputs: Sequence[str]) -> list[ColumnPair]:

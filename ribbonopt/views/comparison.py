@@ -6,6 +6,7 @@ They take rows as plain mappings, as `comparison.json` and `benchmark.json` hold
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import partial
 from itertools import cycle
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -13,7 +14,7 @@ from typing import TYPE_CHECKING, Any
 from ribbonopt.plain import Row, Rows
 from ribbonopt.text import drawn
 
-from .style import FAINT, INK, blank, save_all, tidy, title
+from .style import FAINT, INK, blank, draw_all, tidy, title
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -54,9 +55,9 @@ def _benchmark(study: Mapping[str, Any]) -> Figure:
 
 
 def save_figure(study: Mapping[str, Any], path: str | Path) -> None:
-    """Write the figure of a study; OutputError if it cannot be written."""
+    """Write the figure of a study; OutputError if it cannot be drawn or written."""
     path = Path(path)
-    save_all({path.name: plot_study(study)}, path.parent)
+    draw_all({path.name: partial(plot_study, study)}, path.parent)
 
 
 def _work_precision(axes: Axes, rows: Rows, peers: Rows) -> None:

@@ -6,7 +6,8 @@ from collections.abc import Callable, Mapping
 from pathlib import Path
 from typing import TYPE_CHECKING, NamedTuple
 
-from ribbonopt.errors import OutputError, ViewError
+from ribbonopt.errors import PictureError, ViewError
+from ribbonopt.output.staging import replaced
 from ribbonopt.scene.units import Units
 from ribbonopt.text import drawn
 
@@ -53,29 +54,31 @@ def draw_all(drawings: Mapping[str, Callable[[], Figure]], folder: Path) -> Draw
 
     Raises
     ------
-    OutputError
-        If one cannot be written.
+    PictureError
+        If one cannot be drawn or written; the others are there all the same.
     """
-    figures: dict[str, Figure] = {}
+    paths: list[Path] = []
     left_out: list[str] = []
+    failed: dict[str, Exception] = {}
     for name, draw in drawings.items():
         try:
-            figures[name] = draw()
+            _save(draw(), folder / name)
+            paths.append(folder / name)
         except ViewError as error:
             (folder / name).unlink(missing_ok=True)  # that of an older result
             left_out.append(f"{name}: {error}")
-    return Drawn(save_all(figures, folder), left_out)
-
-
-def save_all(figures: Mapping[str, Figure], folder: Path) -> list[Path]:
-    """Write figures by the names of their files; OutputError if one cannot be written."""
-    paths = [folder / name for name in figures]
-    for path, figure in zip(paths, figures.values(), strict=True):
-        try:
-            figure.savefig(path)
         except OSError as error:
-            raise OutputError(f"{path}: cannot be written ({error.strerror})") from error
-    return paths
+            failed[f"{folder / name}: cannot be written ({error.strerror or error})"] = error
+        except Exception as error:  # whatever it is: the next picture may be drawn
+            failed[f"{folder / name}: cannot be drawn ({type(error).__name__}: {error})"] = error
+    if failed:
+        raise PictureError("; ".join(failed)) from next(iter(failed.values()))
+    return Drawn(paths, left_out)
+
+
+def _save(figure: Figure, path: Path) -> None:
+    with replaced(path) as new:
+        figure.savefig(new, format=path.suffix[1:])
 
 
 def head(axes: Axes, name: str, units: Units, pad: float = 6) -> None:
