@@ -47,7 +47,10 @@ def _parse(text: str) -> tuple[list[str], PlainData]:
     if not equals or not all(path):
         raise SceneError(f"--set {quotable(text)}: expected path=value, such as law.epsilon=1e-3")
     try:
+        key.encode()
         return path, read(value)
+    except UnicodeEncodeError:
+        raise SceneError(f"--set {quotable(text)}: the key is no text in UTF-8") from None
     except YamlTextError as error:
         raise SceneError(f"--set {quotable(text)}: the value is {error}") from None
 
