@@ -88,7 +88,7 @@ class Parser(argparse.ArgumentParser):
 
     def error(self, message: str) -> Any:
         """Say what is wrong with the arguments, and exit with status 2."""
-        super().error(bounded(message))
+        super().error(one_line(bounded(message)))
 
     def _print_message(self, message: str, file: Any = None) -> None:
         write(file or sys.stderr, printable(message))

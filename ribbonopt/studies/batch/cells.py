@@ -10,7 +10,7 @@ from typing import Any
 from ribbonopt.errors import SceneError
 from ribbonopt.scene.faults import quotable
 from ribbonopt.scene.text.yamltext import YamlTextError, read
-from ribbonopt.text import quoted
+from ribbonopt.text import cell, quoted
 
 PAIR = re.compile(r"\\u(d[89ab][0-9a-f]{2})\\u(d[c-f][0-9a-f]{2})")
 
@@ -38,7 +38,7 @@ def of_cell(text: str, where: str) -> Any:
 @lru_cache(1000)  # texts of a column are few, or each is read once
 def _as_cell(text: str) -> str:
     try:
-        same = read(text).data == text
+        same = read(text).data == text and cell(text) == text
     except YamlTextError:
         same = False
     return text if same else quoted(text)
