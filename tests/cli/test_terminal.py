@@ -14,6 +14,8 @@ from half_studies import SCENE
 from hostile import ALL, ESCAPES, MARKUP, NAMES_KEPT, acting, file_names, texts
 
 from ribbonopt.cli import main, terminal
+from ribbonopt.errors import SceneError
+from ribbonopt.scene import load_scene
 from ribbonopt.studies.batch.cells import as_yaml
 
 ENCODINGS = ("utf-8", "ascii", "cp1252", "utf-16", "cp932")
@@ -130,6 +132,9 @@ def test_messages_are_bounded(said: Say, tmp_path: Path, text: str, told: str) -
     check(found)
     assert len(found.err) < terminal.LONGEST + 100
     assert told in found.err
+    with pytest.raises(SceneError) as caught:  # as rows of batches keep it
+        load_scene(tmp_path / "s.yaml")
+    assert len(str(caught.value)) < terminal.LONGEST
     found = said("check", "s.yaml", "--json")
     answer = json.loads(found.out)
     assert (answer["status"], found.out.count("\n")) == ("bad_input", 1)
