@@ -21,6 +21,7 @@ import tempfile
 import time
 from collections import Counter
 from collections.abc import Callable, Iterator
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -239,15 +240,16 @@ def _run(folder: Path, command: list[str]) -> float:
 
 
 def _send(process: int, told: int) -> None:
-    try:
+    with suppress(ProcessLookupError):
         os.kill(process, told)
-    except ProcessLookupError:
-        pass
 
 
 def _children(process: int) -> list[int]:
-    file = Path(f"/proc/{process}/task/{process}/children")
-    return [int(word) for word in file.read_text().split()] if file.exists() else []
+    found: list[int] = []
+    for file in Path(f"/proc/{process}/task").glob("*/children"):  # each thread has its own
+        with suppress(OSError):  # it has ended
+            found += map(int, file.read_text().split())
+    return found
 
 
 def _hidden(folder: Path) -> list[str]:

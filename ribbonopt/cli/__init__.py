@@ -13,7 +13,7 @@ import os
 from collections.abc import Sequence
 from typing import NoReturn
 
-from .command import command
+from .command import run_command
 from .common import BAD_INPUT, INTERRUPTED
 from .signals import Signals
 from .streams import flushed, open_standard_streams, unheard
@@ -39,7 +39,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
     collecting = gc.isenabled()
     gc.disable()
     try:
-        return flushed(command(arguments))
+        return flushed(run_command(arguments))
     except UnheardError as error:
         return unheard(error.__cause__)
     except KeyboardInterrupt:

@@ -24,7 +24,7 @@ MODULES = {
 }
 
 
-def command(arguments: Sequence[str] | None) -> int:
+def run_command(arguments: Sequence[str] | None) -> int:
     """Run one command and return its exit status."""
     options = parser().parse_args(arguments)
     try:

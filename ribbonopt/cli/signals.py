@@ -62,7 +62,7 @@ class Signals:
         raise KeyboardInterrupt
 
     def _tell_soon(self) -> None:
-        timer = threading.Timer(SOON, signal.raise_signal, (self._told,))
+        timer = threading.Timer(SOON, _send, (self._told,))
         timer.daemon = True
         timer.start()
 
@@ -73,6 +73,14 @@ class Signals:
             self._tell_soon()
         else:
             sys.__unraisablehook__(what)
+
+
+def _send(number: int) -> None:
+    """Send a signal to the main thread, even where it waits for something."""
+    if hasattr(signal, "pthread_kill"):
+        signal.pthread_kill(threading.main_thread().ident or 0, number)
+    else:
+        signal.raise_signal(number)
 
 
 def _rooms(frame: FrameType | None) -> Iterator[str]:
