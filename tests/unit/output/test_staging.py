@@ -239,7 +239,7 @@ def test_a_file_on_the_way_is_refused(tmp_path: Path) -> None:
     (tmp_path / "file").write_text("mine")
     refused(tmp_path / "file", "is a file")
     refused(tmp_path / "file" / "a" / "b", "cannot be written")
-    with pytest.raises(OutputError, match="is a file|cannot be written"):
+    with pytest.raises(OutputError, match=r"is a file|cannot be written"):
         claimed(tmp_path / "file", ()).__enter__()
     assert (tmp_path / "file").read_text() == "mine"
 
