@@ -6,7 +6,7 @@ import argparse
 from collections.abc import Callable, Sequence
 from importlib import import_module
 
-from ribbonopt.errors import ConvergenceError, ModelError, PictureError, RibbonoptError
+from ribbonopt.errors import ConvergenceError, ModelError, PictureError, RibbonoptError, SceneError
 
 from .arguments import parser
 from .common import BAD_INPUT, NOT_CONVERGED
@@ -28,6 +28,8 @@ def run_command(arguments: Sequence[str] | None) -> int:
     """Run one command and return its exit status."""
     options = parser().parse_args(arguments)
     try:
+        if getattr(options, "out", None) == "":  # such as a variable that is not set
+            raise SceneError("--out: found '', expected a folder")
         return _verb(options.verb)(options)
     except PictureError as error:
         return _fail(options, str(error), "not_drawn", NOT_CONVERGED)
