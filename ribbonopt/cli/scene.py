@@ -105,8 +105,9 @@ def plot(options: argparse.Namespace) -> int:
 
     from ribbonopt.output.claims import pictures_in
     from ribbonopt.output.results import load_solution
+    from ribbonopt.output.staging import recovered
 
-    result, pairs = Path(options.result), pairs_of(options.plot) or []
+    result, pairs = recovered(options.result), pairs_of(options.plot) or []
     if (result / "branch.jsonl").is_file():
         from .branch import draw as draw_branch
 

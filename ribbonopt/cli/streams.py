@@ -16,11 +16,11 @@ def open_standard_streams() -> None:
     What is printed to a closed stdout then fails as it does on a full disk; what would be said on
     a closed stderr is dropped.
     """
-    while True:
-        descriptor = os.open(os.devnull, os.O_RDONLY)
-        if descriptor > 2:
-            os.close(descriptor)
-            break
+    for descriptor in range(3):
+        try:
+            os.fstat(descriptor)
+        except OSError:  # closed: the lowest that is free is the next to be opened
+            os.open(os.devnull, os.O_WRONLY if descriptor == 2 else os.O_RDONLY)
     if sys.stdout is None:
         sys.stdout = open(1, "w", closefd=False)
     if sys.stderr is None:

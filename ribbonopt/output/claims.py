@@ -21,7 +21,7 @@ from .places import (
     refuse_links,
     unwritable,
 )
-from .staging import OLD, beside, put_right
+from .placing import OLD, beside, put_right
 
 DRAWN = (*PICTURES, *BRANCH_PICTURES, *BATCH_PICTURES)
 

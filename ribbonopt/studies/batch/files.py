@@ -80,6 +80,7 @@ class BatchFolder:
         names: dict[str, None] = {}
         for row in self.rows:
             names |= dict.fromkeys(row)
+        put_all_right(self.folder / SOLUTIONS)  # of workers that were ended
         try:
             self._file.close()
             if not self.rows:  # nothing was found, and so nothing stays
