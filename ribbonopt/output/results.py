@@ -22,6 +22,7 @@ from ribbonopt.solution.verification import Verification
 
 from .declared import declare
 from .exports import EQUILIBRIA, STANDARD, Export
+from .places import unwritable
 from .saved import (
     NUMBERS,
     RESULT,
@@ -35,7 +36,7 @@ from .saved import (
     read_summary,
     refuse_other,
 )
-from .staging import OWN_FILES, unwritable
+from .staging import OWN_FILES, recovered
 from .summary import settings_of
 
 #: what a summary says of its scene that decides what the numbers are
@@ -106,7 +107,7 @@ def load_solution(path: str | Path, scene: Scene | None = None) -> Solution:
     OutputError
         If there is no whole result, or its files are damaged or do not belong together.
     """
-    folder = Path(path)
+    folder = recovered(path)
     folder = folder.parent if is_file(folder) else folder
     needed = [SUMMARY, NUMBERS] + (["scene.yaml"] if scene is None else [])
     missing = [name for name in needed if not os.path.exists(folder / name)]

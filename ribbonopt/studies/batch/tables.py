@@ -13,7 +13,8 @@ from ribbonopt.errors import SceneError
 from ribbonopt.reading import MEGA, Kind
 from ribbonopt.scene import Scene
 from ribbonopt.scene.schema.annotations import written_keys
-from ribbonopt.scene.text.yamltext import YamlTextError, read
+
+from .cells import of_cell
 
 CSV = Kind("a table of inputs", most=100 * MEGA, error=SceneError, piped=True)
 
@@ -51,7 +52,7 @@ def table_of(text: str, source: str) -> list[dict[str, Any]]:
             )
     found = [
         {
-            key: _cell(text, f"{source}, line {line}, column {column}")
+            key: of_cell(text, f"{source}, line {line}, column {column}")
             for column, (key, text) in enumerate(zip(keys, row, strict=True), start=1)
         }
         for line, row in rest
@@ -63,10 +64,3 @@ def table_of(text: str, source: str) -> list[dict[str, Any]]:
             "law.epsilon"
         )
     return found
-
-
-def _cell(text: str, where: str) -> Any:
-    try:
-        return read(text).data
-    except YamlTextError as error:
-        raise SceneError(f"{where}: {error}") from None
