@@ -62,7 +62,10 @@ def dotted(path: KeyPath) -> str:
 def shown(value: object) -> str:
     """Return a value as a YAML user knows it, on one line and not too long."""
     words = {"None": "null", "True": "true", "False": "false"}
-    text = repr(value)
+    try:
+        text = repr(value)
+    except ValueError:  # a whole number of more digits than Python writes
+        return f"a {type(value).__name__} of thousands of digits"
     text = words.get(text, text)
     return text if len(text) <= _LONGEST else f"{text[: _LONGEST - 4]} ..."
 

@@ -9,6 +9,8 @@ from ribbonopt.scene.faults import KeyPath, Problem, dotted
 from ribbonopt.scene.formulas.parsing import FormulaError, evaluate_value, parse_equation
 from ribbonopt.scene.formulas.words import RESERVED
 
+from .magnitudes import as_written
+
 
 def values_of(
     formulas: Mapping[KeyPath, str], parameters: Mapping[str, float]
@@ -17,9 +19,12 @@ def values_of(
     values, problems = {}, []
     for path, formula in formulas.items():
         try:
-            values[path] = evaluate_value(formula, parameters)
+            value = evaluate_value(formula, parameters)
         except FormulaError as error:
             problems.append(Problem(path, str(error)))
+        else:
+            values[path] = value
+            problems += as_written(value, path)
     return values, problems
 
 
