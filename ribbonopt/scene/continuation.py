@@ -57,10 +57,10 @@ class ContinuationStage:
     first: Step | None = None
     smallest: Step | None = None
     largest: Step | None = None
-    points: Annotated[int, Bounds(ge=1, le=limits.POINTS)] = 500
+    points: Annotated[int, Bounds(ge=1, most=limits.POINTS)] = 500
     stop: tuple[str, ...] = ()
     special: bool = True
-    switch: bool | Annotated[int, Bounds(ge=0, le=limits.BRANCHES)] = False
+    switch: bool | Annotated[int, Bounds(ge=0, most=limits.BRANCHES)] = False
     stability: bool | Literal["eigenvalue"] = True
 
     @property

@@ -16,7 +16,7 @@ from .supports import SUPPORTS, Support, SupportName
 Value = float | str
 Triple = tuple[Value, Value, Value]
 Director = Literal["d1", "d2", "d3"]
-HalfTwists = Annotated[int, Bounds(ge=-limits.HALF_TWISTS, le=limits.HALF_TWISTS)]
+HalfTwists = Annotated[int, Bounds(most=limits.HALF_TWISTS)]
 
 
 @dataclass(frozen=True)

@@ -1,11 +1,11 @@
 """How large, how small and how many: every limit on what a user may ask, each with its reason.
 
-Sizes are limited twice. As they are written, in the scene's own units, so that the products, squares
+Sizes are limited twice. As they are written, in the scene's own units, so that products, squares
 and cubes of a few of them stay finite (`LARGEST`, `SMALLEST`); that is generous to any units, from
-graphene in metres (3e-10 thick) to cables of kilometres. And in units L = 1, Dw = 1, in which all is
-solved (`REACH` and what follows from it): double precision knows sixteen digits, and a solution
+graphene in metres (3e-10 thick) to cables of kilometres. And in units L = 1, Dw = 1, in which all
+is solved (`REACH` and what follows from it): double precision knows sixteen digits, and a solution
 should have ten. Counts are limited where more would run for days or could not be told from a slip
-of the keyboard; what a count needs of memory is looked at apart, `ribbonopt.attempt.afford`.
+of the keyboard; what they need of memory is looked at apart, in `ribbonopt.attempt.afford`.
 """
 
 from __future__ import annotations

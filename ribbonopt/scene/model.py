@@ -18,8 +18,8 @@ from .loads import Loads
 from .schema.bounds import Bounds
 
 Numbers3 = tuple[float, float, float]
-Intervals = Annotated[int, Bounds(ge=1, le=limits.INTERVALS)]
-Iterations = Annotated[int, Bounds(ge=1, le=limits.ITERATIONS)]
+Intervals = Annotated[int, Bounds(ge=1, most=limits.INTERVALS)]
+Iterations = Annotated[int, Bounds(ge=1, most=limits.ITERATIONS)]
 SolverTolerance = Annotated[float, Bounds(gt=0, le=1)]
 
 
@@ -116,7 +116,7 @@ class Shooting:
 
     type: Literal["shooting"] = "shooting"
     scheme: Literal["rk4", "rk8", "gauss"] = "rk8"
-    steps: Annotated[int, Bounds(ge=1, le=limits.STEPS)] = 1
+    steps: Annotated[int, Bounds(ge=1, most=limits.STEPS)] = 1
     degree: Annotated[int, Bounds(ge=1, le=10)] = 3
     intervals: Intervals = 20
 
@@ -188,8 +188,8 @@ class Scene:
     law: Law
     boundary: Boundary
     guess: Guess = "auto"
-    starts: Annotated[int, Bounds(ge=1, le=limits.STARTS)] = 1
-    seed: Annotated[int, Bounds(ge=0, le=limits.SEED)] = 0
+    starts: Annotated[int, Bounds(ge=1, most=limits.STARTS)] = 1
+    seed: Annotated[int, Bounds(ge=0, most=limits.SEED)] = 0
     formulation: Literal["inverted", "algebraic", "differentiated", "energy"] | Algebraic = (
         "inverted"
     )
