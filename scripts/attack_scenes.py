@@ -17,6 +17,7 @@ import random
 import re
 import resource
 import signal
+import subprocess
 import sys
 import tempfile
 import time
@@ -36,6 +37,7 @@ from ribbonopt.scene.yamlio import plain_yaml
 MARK = "@number@"
 CONFIGS = Path(__file__).parents[1] / "configs"
 SECONDS, MEMORY = 20, 6 << 30  # of one mutant: more is a hang, or would be one elsewhere
+SOLVING = 120  # seconds
 
 REALS = (
     *("0", "-0.0", "1e-320", "-5e-324", "1e-308", "1e-200", "1e-160", "1e-100", "1e-30", "-1e-30"),
@@ -345,20 +347,66 @@ def check_all(seed: int, count: int, folder: Path) -> tuple[Counter[str], list[s
     return counts, wrong
 
 
+def solved(text: str, overrides: tuple[str, ...], folder: str, verb: str = "solve") -> str:
+    """Solve a scene in a process of its own; return what came of it, in a word."""
+    scene = Path(folder, "attack.yaml")
+    scene.write_bytes(text.encode("utf-8", "surrogatepass"))
+    command = [sys.executable, "-m", "ribbonopt", verb, str(scene), "--quiet"]
+    command += [word for override in overrides for word in ("--set", override)]
+    try:
+        done = subprocess.run(
+            command, capture_output=True, timeout=SOLVING, cwd=folder, preexec_fn=_limited
+        )
+    except subprocess.TimeoutExpired:
+        return "wrong: hang"
+    said = done.stderr.decode(errors="replace")
+    if done.returncode not in (0, 2, 3) or "Traceback" in said:
+        return f"wrong: exit {done.returncode}: {said.strip()[-150:]}"
+    if done.stdout or (said and not said.startswith("ribbonopt: ")) or "Warning" in said:
+        return f"wrong: chatter: {(done.stdout.decode(errors='replace') + said)[:150]}"
+    return {0: "solved", 2: "refused", 3: "resists"}[done.returncode]
+
+
+def _limited() -> None:
+    resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
+
+
+def solve_all(seed: int, count: int, folder: Path) -> tuple[Counter[str], list[str]]:
+    """Solve the first so many mutants that are valid scenes; see `check_all`."""
+    counts: Counter[str] = Counter()
+    wrong = []
+    with tempfile.TemporaryDirectory() as place:
+        for mutant in mutants(seed, 1_000_000, folder):
+            if len(mutant.text) > 100_000 or outcome(mutant) != "valid":
+                continue
+            begun = time.perf_counter()
+            found = solved(mutant.text, mutant.overrides, place)
+            seconds = time.perf_counter() - begun
+            counts[found[:60]] += 1
+            if found.startswith("wrong") or seconds > SOLVING / 2:
+                wrong.append(f"{mutant.label}: {found} [{seconds:.1f} s]")
+                print(" ", wrong[-1], flush=True)
+            if sum(counts.values()) >= count:
+                break
+    return counts, wrong
+
+
 def main() -> None:
     """Attack load and check, and print counts."""
     parser = argparse.ArgumentParser(description=__doc__.partition("\n")[0])
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--count", type=int, default=1000)
     parser.add_argument("--folder", type=Path, default=CONFIGS)
-    parser.add_argument("--show", type=int, default=0)
+    parser.add_argument("--show", type=int, default=0, metavar="N", help="print mutants only")
+    parser.add_argument("--solve", action="store_true", help="solve those that are valid scenes")
     options = parser.parse_args()
     for mutant in mutants(options.seed, options.show, options.folder):
         print(mutant.label, mutant.overrides, mutant.text[:2000], sep="\n", end="\n\n")
     if options.show:
         return
-    counts, wrong = check_all(options.seed, options.count, options.folder)
-    for line in wrong:
+    run = solve_all if options.solve else check_all
+    counts, wrong = run(options.seed, options.count, options.folder)
+    for line in [] if options.solve else wrong:
         print(" ", line)
     for word, number in counts.most_common():
         print(f"{number:8} {word}")

@@ -13,6 +13,7 @@ from ribbonopt.problem import BoundaryValueProblem, Posed, Ribbon, formulate
 from ribbonopt.solvers import solver_named
 from ribbonopt.transcription import NLP, Mesh
 
+from .afford import refuse_unaffordable
 from .attempt import Attempt
 from .discretize import transcription_of
 from .ledger import Ledger
@@ -79,6 +80,7 @@ class Structure:
         if elements not in self._programs:
             scene = self.posed.scene
             nlp = transcription_of(scene).transcribe(self.problem, elements)
+            refuse_unaffordable(nlp)
             options = {f.name: getattr(scene.solver, f.name) for f in fields(scene.solver)}
             self._programs[elements] = nlp, solver_named(options.pop("type"), nlp, options)
         return self._programs[elements]

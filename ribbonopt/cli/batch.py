@@ -12,6 +12,7 @@ from datetime import timedelta
 from typing import TYPE_CHECKING, Any
 
 from ribbonopt.errors import SceneError
+from ribbonopt.scene.limits import JOBS
 
 from .arguments import count
 from .common import INTERRUPTED, NOT_CONVERGED, default_folder, pairs_of, print_json
@@ -33,7 +34,7 @@ def batch(options: argparse.Namespace) -> int:
     from ribbonopt.studies.batch.sweep import load_study
 
     gc.enable()  # many rows, and threads that serve the workers
-    jobs = None if options.jobs is None else count("--jobs", options.jobs)
+    jobs = None if options.jobs is None else count("--jobs", options.jobs, JOBS)
     study = load_study(options.study, options.set)
     if study.count > HUGE and not options.yes:
         raise SceneError(f"{study.name}: {study.count:,} ribbons; say --yes if that is meant")

@@ -8,6 +8,8 @@ import sys
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
+from ribbonopt.scene.limits import REPEATS
+
 from .arguments import chosen, count, numbers
 from .common import NOT_CONVERGED, load, print_json
 
@@ -27,7 +29,7 @@ def compare(options: argparse.Namespace) -> int:
 
 def bench(options: argparse.Namespace) -> int:
     """Measure time against error over degrees and meshes."""
-    repeat = count("--repeat", options.repeat)
+    repeat = count("--repeat", options.repeat, REPEATS)
     scene, _ = load(options)
     from ribbonopt.studies.comparison.benchmark import benchmark
 

@@ -38,9 +38,7 @@ COUNTED = 1_000  # special points of one kind at which a stage may end
 ITEMS = 10_000
 ITEMS_OF = {"also": 100, "switching": 100, "turns": 1_000, "continuation": 100, "record": 1_000}
 
-RIBBONS = (
-    10_000_000  # of a study: a day on a hundred cores; 1 GB of rows are read again on resuming
-)
+RIBBONS = 1_000_000  # of a study, all of which are put in order before the first is solved
 SECONDS = 1e6  # that one ribbon may take: eleven days, and less than any clock refuses to wait for
 JOBS = 1_000  # processes on one machine
 REPEATS = 10_000  # solves that one number of a benchmark is the median of

@@ -26,6 +26,7 @@ from typing import Any
 from ribbonopt.errors import SceneError
 from ribbonopt.plain import is_number
 from ribbonopt.scene.faults import InvalidSceneError, KeyPath, Place, dotted, report, suggestion
+from ribbonopt.scene.limits import RIBBONS, SECONDS
 from ribbonopt.scene.yamlio import plain_yaml, read_yaml
 
 from .inputs import NOTHING, Inputs, fault, rows_of, text_of
@@ -68,7 +69,10 @@ def load_study(paths: Sequence[str | Path], overrides: Sequence[str] = ()) -> St
         else:
             sweeps.append(Sweep(Source(str(file), text), common))
     name = settings.pop("name", None) or (files[0].stem if len(files) == 1 else "batch")
-    return Study(name, tuple(sweeps), **settings)
+    study = Study(name, tuple(sweeps), **settings)
+    if study.count > RIBBONS:
+        raise SceneError(f"{name}: more than {RIBBONS:,} ribbons; make several studies of them")
+    return study
 
 
 def _files(path: str) -> list[Path]:
@@ -101,6 +105,8 @@ def _study(
     limit = data.get("time_limit", 1.0)
     if not is_number(limit) or limit <= 0:
         raise fault(("time_limit",), "expected a number of seconds > 0", limit)
+    if limit > SECONDS:
+        raise fault(("time_limit",), f"expected at most {SECONDS:,.0f} seconds", limit)
     given = {} if data.get("set") is None else data["set"]
     if not isinstance(given, dict):
         raise fault(("set",), "expected keys of the scene and their values", given)
