@@ -17,9 +17,12 @@ SMALL = 1 << 28  # bytes that any program may take without a look at what there 
 GIGA = 1e9
 
 
-def refuse_unaffordable(nlp: NLP) -> None:
-    """Raise a ModelError, exit status 2, where a program needs more memory than there is."""
-    needed = bytes_needed(nlp)
+def refuse_unaffordable(nlp: NLP, *, sparse: bool) -> None:
+    """Raise a ModelError, exit status 2, where a program needs more memory than there is.
+
+    `sparse` says whether it is solved by its sparse functions, as IPOPT does.
+    """
+    needed = bytes_needed(nlp, sparse=sparse)
     if needed < SMALL:
         return
     there = bytes_there()
@@ -33,11 +36,11 @@ def refuse_unaffordable(nlp: NLP) -> None:
         )
 
 
-def bytes_needed(nlp: NLP) -> int:
+def bytes_needed(nlp: NLP, *, sparse: bool) -> int:
     """Return about how many bytes solving a program takes at its most."""
     layout = nlp.layout
     block = 8 * layout.element_unknowns * layout.element_equations
-    return layout.element_count * block * (BLOCKS if nlp.square else SPARSE_BLOCKS)
+    return layout.element_count * block * (SPARSE_BLOCKS if sparse else BLOCKS)
 
 
 def bytes_there() -> int | None:

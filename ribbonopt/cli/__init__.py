@@ -10,11 +10,12 @@ import argparse
 import gc
 import os
 import sys
+import warnings
 from collections.abc import Callable, Sequence
 from importlib import import_module
 from typing import NoReturn
 
-from ribbonopt.errors import ConvergenceError, ModelError, RibbonoptError
+from ribbonopt.errors import ConvergenceError, ModelError, RibbonoptError, no_memory
 
 from .arguments import parser
 from .common import BAD_INPUT, INTERRUPTED, NOT_CONVERGED, READER_GONE, print_json
@@ -24,6 +25,8 @@ def run() -> NoReturn:
     """Run the command line in a process of its own; entry point of `ribbonopt`."""
     # Before numpy is loaded: threads cost small matrices more than they bring.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    # Numbers that overflow on the way to a solution are no news: it is verified, or says it failed.
+    warnings.simplefilter("ignore", RuntimeWarning)
     os._exit(main())  # taking all objects apart would cost an eighth more
 
 
@@ -55,6 +58,10 @@ def _run(options: argparse.Namespace) -> int:
         return _fail(options, f"{_place(options, error)}: {error}", "bad_input", BAD_INPUT)
     except RibbonoptError as error:
         return _fail(options, str(error), "bad_input", BAD_INPUT)
+    except (MemoryError, RuntimeError) as error:
+        if not no_memory(error):
+            raise
+        return _fail(options, NO_MEMORY, "no_memory", NOT_CONVERGED)
     except KeyboardInterrupt:
         print("ribbonopt: interrupted; nothing written", file=sys.stderr)
         return INTERRUPTED
@@ -86,6 +93,10 @@ def _verb(name: str) -> Callable[[argparse.Namespace], int]:
     return verb
 
 
+NO_MEMORY = (
+    "there is not enough memory; choose fewer intervals (transcription.intervals), "
+    "or give the process more"
+)
 MODULES = {
     "solve": "scene",
     "check": "scene",
