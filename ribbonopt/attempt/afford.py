@@ -17,8 +17,12 @@ SMALL = 1 << 28  # bytes that any program may take without a look at what there 
 GIGA = 1e9
 
 
+class TooLargeError(ModelError):
+    """A program that needs more memory than there is."""
+
+
 def refuse_unaffordable(nlp: NLP, *, sparse: bool) -> None:
-    """Raise a ModelError, exit status 2, where a program needs more memory than there is.
+    """Raise a TooLargeError, exit status 2, where a program needs more memory than there is.
 
     `sparse` says whether it is solved by its sparse functions, as IPOPT does.
     """
@@ -28,7 +32,7 @@ def refuse_unaffordable(nlp: NLP, *, sparse: bool) -> None:
     there = bytes_there()
     if there is not None and needed > there:
         count = nlp.layout.element_count
-        raise ModelError(
+        raise TooLargeError(
             f"transcription: {nlp.unknowns:,} unknowns on {count:,} intervals need about "
             f"{needed / GIGA:.1f} GB of memory, and there are {there / GIGA:.1f} GB; choose fewer "
             f"intervals, such as {max(1, int(count * there / needed / 2)):,}, or a lower degree",

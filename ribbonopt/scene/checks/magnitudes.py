@@ -143,7 +143,9 @@ def _length(length: float, units: Units) -> Iterator[Problem]:
 
 
 def _message(number: float, kind: _Kind, unit: float, units: Units) -> str:
-    name = f" {kind.unit}" if kind.unit else ""
+    # The unit of the stiffness is the law's own where that is far from 1.
+    own = kind.unit if units.stiffness == 1 else kind.unit.replace("D w", "law.B2 D w")
+    name = f" {own}" if own else ""
     worth = f"which is {abs(number) / unit:.3g}{name}, " if unit != 1 else ""
     advice = "; look at ribbon as well, whose sizes set the units" if units.si else ""
     return f"{worth}expected at most {kind.limit:g}{name} in size: {kind.reason}{advice}"
