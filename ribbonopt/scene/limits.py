@@ -25,7 +25,7 @@ ANGLE = 1e5
 RATIO, SMOOTHING = 1e12, 1e6
 
 HALF_TWISTS = 1_000  # of a closed band, whose writhe is a sum over all pairs of its pieces
-INTERVALS = 100_000  # 4.9 million unknowns at degree 6: minutes a solve, 10 GB
+INTERVALS = 20_000  # a million unknowns at degree 6: minutes a solve, 2 GB
 STEPS = 1_000  # of Runge-Kutta in one interval, each of which is written out: seconds to build
 ITERATIONS = 100_000  # of a solver; those that lead somewhere take less than a hundred
 STARTS = 10_000  # each is a solve: some hours

@@ -35,15 +35,15 @@ def test_what_there_is_no_memory_for_is_refused_before_it_is_built(
     monkeypatch.setattr(afford, "bytes_there", lambda: GIGA)
     Structure.of(posed(5000)).on((5000,))
     with pytest.raises(afford.TooLargeError) as caught:
-        Structure.of(posed(50_000)).on((50_000,))
+        Structure.of(posed(20_000)).on((20_000,))
     message = str(caught.value)
-    assert "3,150,013 unknowns on 50,000 intervals need about 7.9 GB of memory" in message
+    assert "1,260,013 unknowns on 20,000 intervals need about 3.2 GB of memory" in message
     assert "there are 1.1 GB; choose fewer intervals, such as 3," in message
     assert caught.value.key == "transcription.intervals"
     with pytest.raises(afford.TooLargeError):
         Structure.of(posed(5000, "solver={type: ipopt}")).on((5000,))
     monkeypatch.setattr(afford, "bytes_there", lambda: None)
-    Structure.of(posed(50_000)).on((50_000,))
+    Structure.of(posed(20_000)).on((20_000,))
 
 
 def test_a_finer_mesh_that_is_too_large_leaves_the_coarse_solution(
