@@ -36,9 +36,9 @@ def batch(options: argparse.Namespace) -> int:
     gc.enable()  # many rows, and threads that serve the workers
     jobs = None if options.jobs is None else count("--jobs", options.jobs, JOBS)
     study = load_study(options.study, options.set)
+    study.check()
     if study.count > HUGE and not options.yes:
         raise SceneError(f"{study.name}: {study.count:,} ribbons; say --yes if that is meant")
-    study.check()
     _known(pairs or [], study.columns)
     if options.scheduler:
         from ribbonopt.studies.batch.cluster import check_cluster

@@ -39,6 +39,7 @@ ITEMS = 10_000
 ITEMS_OF = {"also": 100, "switching": 100, "turns": 1_000, "continuation": 100, "record": 1_000}
 
 RIBBONS = 1_000_000  # of a study, all of which are put in order before the first is solved
+VALUES = 10**12  # of one key of a study, which are made one by one
 SECONDS = 1e6  # that one ribbon may take: eleven days, and less than any clock refuses to wait for
 JOBS = 1_000  # processes on one machine
 REPEATS = 10_000  # solves that one number of a benchmark is the median of

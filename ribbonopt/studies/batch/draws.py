@@ -12,7 +12,7 @@ import numpy as np
 from ribbonopt.arrays import Array
 from ribbonopt.plain import is_number
 from ribbonopt.scene.faults import InvalidSceneError, Problem, shown
-from ribbonopt.scene.limits import LARGEST, RIBBONS, SEED
+from ribbonopt.scene.limits import LARGEST, SEED, VALUES
 
 Two = tuple[float, float]
 
@@ -41,7 +41,7 @@ class Draws:
         over = value.get("over")
         if not isinstance(over, dict) or not over:
             raise _fault(("over",) if "over" in value else (), EXAMPLE, over)
-        count = _whole("count", value.get("count"), RIBBONS)
+        count = _whole("count", value.get("count"), VALUES)
         seed = _whole("seed", value.get("seed", 0), SEED)
         return cls(count, seed, {str(key): _distribution(key, item) for key, item in over.items()})
 

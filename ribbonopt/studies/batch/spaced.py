@@ -8,7 +8,7 @@ from dataclasses import dataclass
 from typing import Any, overload
 
 from ribbonopt.plain import is_number
-from ribbonopt.scene.limits import RIBBONS
+from ribbonopt.scene.limits import VALUES
 
 
 @dataclass(frozen=True)
@@ -25,7 +25,7 @@ class Spaced(Sequence[float]):
         """Whether they can be made."""
         ends = (self.first, self.last)
         counts = isinstance(self.size, int) and not isinstance(self.size, bool)
-        if not (all(is_number(end) for end in ends) and counts and 1 <= self.size <= RIBBONS):
+        if not (all(is_number(end) for end in ends) and counts and 1 <= self.size <= VALUES):
             return False
         return bool(self.scale == "linear" or (self.scale == "log" and min(ends) > 0))
 

@@ -26,7 +26,7 @@ from typing import Any
 from ribbonopt.errors import SceneError
 from ribbonopt.plain import is_number
 from ribbonopt.scene.faults import InvalidSceneError, KeyPath, Place, dotted, report, suggestion
-from ribbonopt.scene.limits import RIBBONS, SECONDS
+from ribbonopt.scene.limits import SECONDS
 from ribbonopt.scene.yamlio import plain_yaml, read_yaml
 
 from .inputs import NOTHING, Inputs, fault, rows_of, text_of
@@ -69,10 +69,7 @@ def load_study(paths: Sequence[str | Path], overrides: Sequence[str] = ()) -> St
         else:
             sweeps.append(Sweep(Source(str(file), text), common))
     name = settings.pop("name", None) or (files[0].stem if len(files) == 1 else "batch")
-    study = Study(name, tuple(sweeps), **settings)
-    if study.count > RIBBONS:
-        raise SceneError(f"{name}: more than {RIBBONS:,} ribbons; make several studies of them")
-    return study
+    return Study(name, tuple(sweeps), **settings)
 
 
 def _files(path: str) -> list[Path]:
