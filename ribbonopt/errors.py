@@ -32,6 +32,10 @@ class OutputError(RibbonoptError, OSError):
     """A place where results cannot be written or from which they cannot be read."""
 
 
+class PictureError(OutputError):
+    """Pictures that could not be drawn or written: says which and why; all else is there."""
+
+
 class ViewError(RibbonoptError, ValueError):
     """A picture that there is none of, such as the surface of a rod: says why."""
 
