@@ -1,12 +1,13 @@
-"""Attack ribbonopt: hostile scenes, studies, saved files, names and environments; kills.
+"""Attack ribbonopt: hostile scenes, studies, names, saved files and environments, and kills.
 
-    python scripts/attack.py                        # all of it, some twenty minutes on two cores
-    python scripts/attack.py --part scenes --count 2000 --seed 7
+    python scripts/attack.py                        # all of it: about an hour on two cores
     python scripts/attack.py --share 0.01           # a hundredth of everything
+    python scripts/attack.py --part scenes --count 2000 --seed 7
 
-Whatever it is given, ribbonopt must end, in time, with exit status 0, 2 or 3 and one message, leave
-nothing behind and lose nothing. Counts are printed by kind; each fault with the files and the words
-to have it again (in `--keep`). Exit status 1 if there is any. The same seed gives the same attack.
+Whatever it is given, ribbonopt ends in time, with exit status 0, 2 or 3 and one message, leaves
+nothing behind and loses nothing. Counts are printed by kind; every fault with what was done, and
+its files are kept to have it again (`--keep`). Exit status 1 if there is any. The same seed gives
+the same attack. Linux and macOS.
 """
 
 from __future__ import annotations
@@ -15,105 +16,170 @@ import argparse
 import json
 import multiprocessing
 import os
+import resource
 import shutil
 import sys
 import tempfile
 import time
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from pathlib import Path
-from typing import Any
+from typing import NamedTuple
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
-from attacks.cases import Case, attempted
-from attacks.parts import PARTS, warm
+import attack_commands
+import attack_environments
+import attack_files
+import attack_kills
+from attack_cases import Case, attempted
+from attack_runs import GOOD, MEMORY, warm
 
-Answer = tuple[str, str, str, str, int | None, float, str]
+
+class Answer(NamedTuple):
+    """What an attack came to; `ended` is an exit status or a word, `fault` "" where all is right."""
+
+    part: str
+    kind: str
+    label: str
+    ended: str
+    fault: str
 
 
-def _answers(task: tuple[str, int, int, int, int, str, str]) -> list[Answer]:
-    """Run every `jobs`-th case of a part, from one; return what each came to."""
-    part, seed, count, first, jobs, scratch, keep = task
+class Task(NamedTuple):
+    """The share of one process in a part: every `jobs`-th attack, from `first`."""
+
+    part: str
+    seed: int
+    count: int
+    first: int
+    jobs: int
+    scratch: Path
+    keep: Path
+
+
+def _commands(task: Task) -> Iterator[Answer]:
+    """Run commands on hostile files."""
+    cases = {
+        "scenes": attack_commands.checks,
+        "solves": attack_commands.solves,
+        "studies": attack_commands.studies,
+        "names": attack_commands.names,
+    }[task.part]
     warm()
-    found: list[Answer] = []
-    for index, case in enumerate(PARTS[part].cases(seed, count)):
-        if index % jobs != first:
-            continue
-        outcome = attempted(case, Path(scratch) / f"{part}-{index}")
-        if outcome.fault:
-            _kept(case, outcome.fault, Path(keep) / f"{part}-{index}")
-        run = outcome.run
-        found.append(
-            (part, case.kind, case.label, outcome.fault, run.status, run.seconds, f"{part}-{index}")
-        )
-    return found
+    for index, case in enumerate(cases(task.seed, task.count)):
+        if index % task.jobs == task.first:
+            outcome = attempted(case, task.scratch / f"{task.part}-{index}")
+            if outcome.fault:
+                _keep(case, outcome.fault, task.keep / f"{task.part}-{index}")
+            ended, label = str(outcome.run.status), f"{index} {case.label}"
+            yield Answer(task.part, case.kind, label, ended, outcome.fault)
 
 
-def _kept(case: Case, fault: str, folder: Path) -> None:
-    """Keep what is needed to have a fault again."""
+def _keep(case: Case, fault: str, folder: Path) -> None:
     shutil.rmtree(folder, ignore_errors=True)
-    for name, content in case.files.items():
-        path = folder / name
-        path.parent.mkdir(parents=True, exist_ok=True)
-        path.write_bytes(content)
+    case.write(folder)
     words = {"arguments": list(case.arguments), "label": case.label, "fault": fault}
-    folder.mkdir(parents=True, exist_ok=True)
-    (folder / "fault.json").write_text(json.dumps(words, indent=2))
+    (folder / "fault.json").write_text(json.dumps(words, indent=2), encoding="utf-8")
 
 
-def attack(parts: dict[str, int], seed: int, jobs: int, keep: Path) -> list[Answer]:
-    """Return what all cases came to; `parts` says how many of each."""
+def _files(task: Task) -> Iterator[Answer]:
+    """Spoil saved files, and read them by all that reads them."""
+    resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
+    place = task.scratch / f"files-{task.first}"
+    originals = attack_files.Originals(place / "sound")
+    spoiled = attack_files.mutations(task.seed * task.jobs + task.first, originals, place / "o")
+    for _ in range(task.first, task.count, task.jobs):
+        mutation = next(spoiled)
+        word, told = attack_files.outcome(mutation, originals)
+        kind, fault = f"{mutation.kind}/{mutation.file}", told if word == "fault" else ""
+        yield Answer("files", kind, mutation.label, word, fault)
+
+
+def _environments(task: Task) -> Iterator[Answer]:
+    """Run each verb in each hostile environment, `count` of them."""
+    place = task.scratch / f"environments-{task.first}"
+    for index, (label, verb, status, fault) in enumerate(
+        attack_environments.runs(place, task.seed, task.count, task.first, task.jobs)
+    ):
+        yield Answer("environments", verb, f"{index} {label}", str(status), fault)
+
+
+def _kills(task: Task) -> Iterator[Answer]:
+    """Kill commands at random times."""
+    place = task.scratch / f"kills-{task.first}"
+    place.mkdir()
+    kills = len(range(task.first, task.count, task.jobs))
+    report = attack_kills.attack(place, kills, task.seed * task.jobs + task.first)
+    for ending, count in report.endings.items():
+        for _ in range(count):
+            yield Answer("kills", ending.partition(":")[0], "", "killed", "")
+    for fault in report.faults:
+        yield Answer("kills", "lost or left", "", "fault", fault)
+
+
+PARTS: dict[str, tuple[int, Callable[[Task], Iterator[Answer]]]] = {
+    "scenes": (20_000, _commands),
+    "solves": (2_000, _commands),
+    "studies": (300, _commands),
+    "names": (600, _commands),
+    "files": (5_000, _files),
+    "environments": (10_000, _environments),  # all that there are
+    "kills": (100, _kills),
+}
+
+
+def _share(task: Task) -> list[Answer]:
+    return list(PARTS[task.part][1](task))
+
+
+def attack(counts: dict[str, int], seed: int, jobs: int, keep: Path) -> list[Answer]:
+    """Return what the attacks of each part came to; `counts` says how many."""
     found: list[Answer] = []
     with tempfile.TemporaryDirectory(prefix="attack") as scratch:
-        for part, count in parts.items():
+        for part, count in counts.items():
             started = time.perf_counter()
-            if True:
-                tasks = [(part, seed, count, i, jobs, scratch, str(keep)) for i in range(jobs)]
-                with multiprocessing.get_context("fork").Pool(jobs) as pool:
-                    answers = [one for some in pool.imap_unordered(_answers, tasks) for one in some]
+            tasks = [Task(part, seed, count, i, jobs, Path(scratch), keep) for i in range(jobs)]
+            with multiprocessing.get_context("fork").Pool(jobs) as pool:
+                answers = [one for some in pool.map(_share, tasks, 1) for one in some]
             found += answers
             print(f"{part}: {len(answers)} in {time.perf_counter() - started:.0f} s", flush=True)
     return found
 
 
 def table(found: list[Answer]) -> Iterator[str]:
-    """Yield lines: how often each kind ended with each status, and how many faults there were."""
-    yield f"{'part':<14}{'kind':<28}{'cases':>7}{'0':>7}{'2':>7}{'3':>7}{'other':>7}{'faults':>8}"
+    """Yield lines: how often each kind ended how, and how many faults there were."""
     kinds: dict[tuple[str, str], list[Answer]] = {}
     for answer in found:
         kinds.setdefault(answer[:2], []).append(answer)
     for (part, kind), answers in kinds.items():
-        ends = Counter(answer[4] for answer in answers)
-        other = len(answers) - sum(ends[n] for n in (0, 2, 3))
-        faults = sum(bool(answer[3]) for answer in answers)
-        yield (
-            f"{part:<14}{kind[:27]:<28}{len(answers):>7}{ends[0]:>7}{ends[2]:>7}{ends[3]:>7}"
-            f"{other:>7}{faults:>8}"
-        )
+        ends = Counter(answer.ended for answer in answers)
+        words = ", ".join(f"{count} {ended}" for ended, count in sorted(ends.items()))
+        faults = sum(bool(answer.fault) for answer in answers)
+        yield f"{part:<13}{kind[:30]:<31}{len(answers):>6}{faults:>5} faults   {words}"
 
 
 def main() -> int:
     """Attack, and say what came of it."""
-    parser = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawTextHelpFormatter)
+    parser = argparse.ArgumentParser(
+        description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter
+    )
     parser.add_argument("--part", action="append", choices=list(PARTS), help="only this part")
-    parser.add_argument("--count", type=int, help="cases of each part")
+    parser.add_argument("--count", type=int, help="attacks of each part")
     parser.add_argument("--share", type=float, default=1.0, help="of the full counts")
     parser.add_argument("--seed", type=int, default=0)
     parser.add_argument("--jobs", type=int, default=os.cpu_count() or 1)
-    parser.add_argument("--keep", default="results/attack", help="folder for faults")
+    parser.add_argument("--keep", default="results/attack", help="folder for the files of faults")
     options = parser.parse_args()
-    names = options.part or list(PARTS)
-    counts = {
-        name: options.count or max(1, round(options.share * PARTS[name].count)) for name in names
-    }
-    keep = Path(options.keep).absolute()
+    names, keep = options.part or list(PARTS), Path(options.keep).absolute()
+    counts = {n: options.count or max(1, round(options.share * PARTS[n][0])) for n in names}
     found = attack(counts, options.seed, options.jobs, keep)
     print("\n".join(table(found)))
-    faults = [answer for answer in found if answer[3]]
-    for part, kind, label, fault, _, seconds, name in faults[:50]:
-        print(f"{name} {kind}: {label[:100]!r}: {fault[:300]!r} after {seconds:.1f} s")
-    print(f"{len(found)} attacks, {len(faults)} faults" + (f", kept in {keep}" if faults else ""))
+    faults = [answer for answer in found if answer.fault]
+    for part, kind, label, _, fault in faults:
+        print(f"{part} {kind} {label[:100]!r}: {fault[:400]!r}")
+    good = sum(answer.ended in map(str, GOOD) for answer in found)
+    print(f"{len(found)} attacks ({good} ended with status 0, 2 or 3), {len(faults)} faults")
     return int(bool(faults))
 
 

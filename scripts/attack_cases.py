@@ -7,14 +7,14 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 
-from .runs import Run, command, hidden
+from attack_runs import Run, command, hidden
 
 BAD_INPUT = 2
 
 
 @dataclass(frozen=True)
 class Case:
-    """Files by their place in an empty folder, and the words of a command run there.
+    """Files of a folder by their names, and the words of a command run in it.
 
     `kind` is what it is counted under, `label` what was done to the files.
     """
@@ -24,6 +24,12 @@ class Case:
     arguments: Sequence[str]
     files: Mapping[str, bytes] = field(default_factory=dict)
     seconds: float = 60.0
+
+    def write(self, folder: Path) -> None:
+        """Write the files into a folder, made if need be."""
+        folder.mkdir(parents=True, exist_ok=True)
+        for name, content in self.files.items():
+            (folder / name).write_bytes(content)
 
 
 @dataclass(frozen=True)
@@ -37,12 +43,8 @@ class Outcome:
 
 def attempted(case: Case, folder: Path) -> Outcome:
     """Run a case in a new folder, which is gone afterwards."""
-    folder.mkdir(parents=True)
     try:
-        for name, content in case.files.items():
-            path = folder / name
-            path.parent.mkdir(parents=True, exist_ok=True)
-            path.write_bytes(content)
+        case.write(folder)
         before = _listed(folder)
         run = command(case.arguments, folder, case.seconds)
         return Outcome(case, run, run.fault or _amiss(before, _listed(folder), folder, run))

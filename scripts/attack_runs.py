@@ -70,7 +70,6 @@ def command(arguments: Sequence[str], folder: Path, seconds: float = 60.0) -> Ru
 
 def _be(arguments: Sequence[str], folder: Path, words: tuple[Path, Path]) -> None:
     """Become the command; does not return."""
-    status = 1
     try:
         os.setsid()  # so that its workers are found if it has to be killed
         resource.setrlimit(resource.RLIMIT_AS, (MEMORY, MEMORY))
@@ -83,11 +82,10 @@ def _be(arguments: Sequence[str], folder: Path, words: tuple[Path, Path]) -> Non
         sys.stderr = io.TextIOWrapper(
             io.FileIO(2, "w"), encoding="utf-8", errors="backslashreplace", line_buffering=True
         )
-        from ribbonopt.cli import main
+        sys.argv = ["ribbonopt", *arguments]
+        from ribbonopt.cli import run
 
-        status = main(arguments)
-    except SystemExit as end:  # of argparse
-        status = end.code if isinstance(end.code, int) else 1
+        run()
     except BaseException:
         traceback.print_exc()
     finally:
@@ -96,7 +94,7 @@ def _be(arguments: Sequence[str], folder: Path, words: tuple[Path, Path]) -> Non
                 stream.flush()
             except (OSError, ValueError):
                 pass
-        os._exit(status)
+        os._exit(1)
 
 
 def _awaited(child: int, until: float) -> int | None:
@@ -111,6 +109,17 @@ def _awaited(child: int, until: float) -> int | None:
     os.killpg(child, signal.SIGKILL)
     os.waitpid(child, 0)
     return None
+
+
+def warm() -> None:
+    """Import what most commands do, so that a process forked from this one need not."""
+    import ribbonopt.cli.batch
+    import ribbonopt.cli.scene
+    import ribbonopt.output.results
+    import ribbonopt.pipeline.check
+    import ribbonopt.pipeline.prepared
+    import ribbonopt.studies.batch.files
+    import ribbonopt.views.report  # noqa: F401
 
 
 def hidden(folder: Path) -> list[str]:

@@ -15,8 +15,9 @@ import time
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, field
 from pathlib import Path
+from random import Random
 
-from .runs import GOOD, Run, hidden
+from attack_runs import GOOD, Run, hidden
 
 LAUNCHER = "import sys\nfrom ribbonopt.cli import run\nrun()\n"
 SCENE = """\
@@ -147,6 +148,22 @@ def environments() -> Iterator[Environment]:
         yield Environment("no more processes", before=_limit(resource.RLIMIT_NPROC, 1))
 
 
+def runs(
+    folder: Path, seed: int, count: int, first: int, jobs: int
+) -> Iterator[tuple[str, str, int | None, str]]:
+    """Yield label, verb, exit status and fault of at most `count` runs, every `jobs`-th of them."""
+    every = [(environment, verb) for environment in environments() for verb in VERBS]
+    Random(seed).shuffle(every)
+    folder.mkdir()
+    launcher = folder / "ribbonopt-launcher"
+    launcher.write_text(LAUNCHER, encoding="utf-8")
+    for index, (environment, verb) in enumerate(every[:count]):
+        if index % jobs == first:
+            place = folder / str(index)
+            run = run_in(environment, verb, place, launcher)
+            yield environment.label, verb, run.status, fault_of(environment, run, place)
+
+
 def run_in(environment: Environment, verb: str, folder: Path, launcher: Path) -> Run:
     """Run a verb in an environment, in a new folder."""
     folder.mkdir()
@@ -178,7 +195,7 @@ def run_in(environment: Environment, verb: str, folder: Path, launcher: Path) ->
 
 
 def fault_of(environment: Environment, run: Run, folder: Path) -> str:
-    """What was wrong with a run in an environment; "" if nothing."""
+    """Return what was wrong with a run in an environment; "" if nothing."""
     silent = any(word in environment.label for word in ("stderr", "both"))
     fault = run.fault
     if fault.endswith("without a word") and silent:

@@ -1,1 +1,0 @@
-"""Attacks on ribbonopt: hostile scenes, studies, files, names, environments and kills; seeded."""
