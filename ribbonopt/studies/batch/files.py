@@ -79,7 +79,7 @@ class BatchFolder:
         names: dict[str, None] = {}
         for row in self.rows:
             names |= dict.fromkeys(row)
-        put_all_right(self.folder / SOLUTIONS)  # of workers that were ended
+        put_all_right(self.folder / SOLUTIONS)  # of workers that were ended, and dead batches
         try:
             self._file.close()
             if not self.rows:  # nothing was found, and so nothing stays
@@ -110,7 +110,6 @@ class BatchFolder:
             "inputs": self.study.keys,
             "digest": self.study.digest,
         }
-        put_all_right(self.folder / SOLUTIONS)
         if (self.folder / STUDY).is_file() and (self.folder / STUDY).stat().st_size:
             self._go_on(str(record["digest"]), resume)
         elif (self.folder / ROWS).is_file() and (self.folder / ROWS).stat().st_size:
