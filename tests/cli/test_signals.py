@@ -65,6 +65,38 @@ def verb(options):
         143,
         TOLD,
     ),
+    "where a library takes all for an error and goes on": (
+        """
+def verb(options):
+    try:
+        tell()
+    except:
+        pass
+    time.sleep(60)
+""",
+        143,
+        TOLD,
+    ),
+    "while it takes long to put away": (
+        """
+from contextlib import closing
+
+def rows():
+    try:
+        yield 1
+    finally:
+        time.sleep(1.2)  # is told again meanwhile
+        print("put away", file=sys.stderr)
+
+def verb(options):
+    with closing(rows()) as found:
+        next(found)
+        tell()
+        time.sleep(60)
+""",
+        143,
+        "put away\n" + TOLD,
+    ),
     "while a result is written": (
         """
 def verb(options):
