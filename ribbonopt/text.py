@@ -31,7 +31,7 @@ def printable(text: str) -> str:
     """Return text as it is seen: control characters and the like as escapes; line breaks stay."""
     if text.isprintable():
         return text
-    return "".join(map(_visible, text))
+    return text.translate({ord(character): _visible(character) for character in set(text)})
 
 
 def one_line(text: str) -> str:
@@ -64,6 +64,13 @@ def name_fault(name: str) -> str:
     lead nowhere else, and be no trap where it is typed.
     """
     says = "it names the folder of results too"
+    # Half a character, which UTF-8 cannot say, is refused below.
+    size = len(name.encode(errors="surrogatepass"))
+    if size > LONGEST_NAME:
+        return (
+            f"is {size:,} bytes long, expected at most {LONGEST_NAME} (a letter is one, of many "
+            f"scripts two to four); {says}"
+        )
     if not name.strip(". "):
         return f"expected a name with letters or digits; {says}"
     if one_line(name) != name:
@@ -74,11 +81,6 @@ def name_fault(name: str) -> str:
         return f"expected a name without a space or . at its ends, or - before it; {says}"
     if _DEVICES.match(name) or name.casefold() in RESERVED_NAMES:
         return f"is reserved for something else; choose another name, {says}"
-    if len(name.encode()) > LONGEST_NAME:
-        return (
-            f"is {len(name.encode())} bytes long, expected at most {LONGEST_NAME} "
-            f"(a letter is one, of many scripts two to four); {says}"
-        )
     return ""
 
 

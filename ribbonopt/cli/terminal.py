@@ -65,7 +65,7 @@ def write(stream: TextIO | None, text: str) -> None:
     if stream is None:
         return
     if not text.isascii():
-        encoding = stream.encoding or "utf-8"
+        encoding = getattr(stream, "encoding", None) or "utf-8"
         text = text.encode(encoding, "backslashreplace").decode(encoding)
     try:
         stream.write(text)
@@ -88,7 +88,7 @@ class Parser(argparse.ArgumentParser):
 
     def error(self, message: str) -> Any:
         """Say what is wrong with the arguments, and exit with status 2."""
-        super().error(bounded(message))
+        super().error(one_line(bounded(message)))
 
     def _print_message(self, message: str, file: Any = None) -> None:
         write(file or sys.stderr, printable(message))

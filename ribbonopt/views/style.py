@@ -9,6 +9,7 @@ from typing import TYPE_CHECKING, NamedTuple
 from ribbonopt.errors import PictureError, ViewError
 from ribbonopt.output.staging import replaced
 from ribbonopt.scene.units import Units
+from ribbonopt.text import drawn
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -24,17 +25,19 @@ FORBIDDEN = "#fbd9b0"  # the paper's orange: |eta| > 1
 INK = "#222222"
 FAINT = "#777777"
 SPECIAL, SI = r"units $Dw = L = 1$", "SI units"
+TITLE = 44  # letters of a title
 DASHES = (0, (4, 2))  # what follows by symmetry
 
 
 def blank(width: float, height: float) -> Figure:
     """Return an empty figure (inches) that renders without a display and without global state."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
-    from matplotlib.figure import Figure
     from matplotlib.layout_engine import ConstrainedLayoutEngine
 
+    from .page import Page
+
     layout = ConstrainedLayoutEngine(w_pad=0.1, h_pad=0.1)
-    figure = Figure(figsize=(width, height), dpi=DPI, facecolor="white", layout=layout)
+    figure = Page(figsize=(width, height), dpi=DPI, facecolor="white", layout=layout)
     FigureCanvasAgg(figure)
     return figure
 
@@ -80,8 +83,14 @@ def _save(figure: Figure, path: Path) -> None:
 
 def head(axes: Axes, name: str, units: Units, pad: float = 6) -> None:
     """Title: the scene's name, and the units."""
-    axes.set_title(name, loc="left", fontsize=12, fontweight="bold", pad=pad)
+    title(axes, name, pad)
     axes.set_title(SI if units.si else SPECIAL, loc="right", fontsize=9, pad=pad)
+
+
+def title(axes: Axes, name: str, pad: float = 6) -> None:
+    """Write the name of a scene or a study over axes, as it is."""
+    words = drawn(name, TITLE)
+    axes.set_title(words, loc="left", fontsize=12, fontweight="bold", pad=pad)
 
 
 def tidy(axes: Axes) -> None:

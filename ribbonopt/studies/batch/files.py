@@ -7,7 +7,6 @@ says which study it is; `solutions/NUMBER` are full results.
 from __future__ import annotations
 
 import contextlib
-import csv
 import json
 from collections.abc import Sequence
 from pathlib import Path
@@ -19,9 +18,11 @@ from ribbonopt.output.declared import BATCH_PICTURES
 from ribbonopt.output.disk import Appended
 from ribbonopt.output.places import unwritable
 from ribbonopt.output.staging import replacing
+from ribbonopt.output.table import write_table
 from ribbonopt.plain import Row
 from ribbonopt.studies.lines import whole_lines
 
+from .cells import as_cell
 from .study import Study
 
 ROWS, TABLE, STUDY, SOLUTIONS = "rows.jsonl", "table.csv", "study.json", "solutions"
@@ -86,12 +87,15 @@ class BatchFolder:
                 for name in (ROWS, STUDY):
                     (self.folder / name).unlink(missing_ok=True)
                 return
-            with replacing(self.folder / TABLE, newline="") as file:
-                writer = csv.DictWriter(file, sorted_columns(list(names), self.study.keys))
-                writer.writeheader()
-                writer.writerows(sorted(self.rows, key=lambda row: row["number"]))
+            columns = sorted_columns(list(names), self.study.keys)
+            rows = sorted(self.rows, key=lambda row: int(row["number"]))
+            write_table(self.folder / TABLE, columns, (self._told(row) for row in rows))
         except OSError as error:
             raise self._full(error) from error
+
+    def _told(self, row: Row) -> Row:
+        """Return a row whose inputs are as a CSV of inputs would give them."""
+        return row | {key: as_cell(row[key]) for key in self.study.keys if key in row}
 
     def _count(self, row: Row) -> None:
         self.rows.append(row)

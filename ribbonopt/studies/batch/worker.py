@@ -111,7 +111,7 @@ def _recorded(found: Solution, row: Row) -> Row:
     if not (scene.record and found.status.converged):
         return {}
     for name in scene.record:
-        if name in row:
+        if name in (*row, "seconds"):  # which comes last
             raise ModelError(f"record.{name}: every row has that already; choose another name")
     from ribbonopt.scene.stages import parse_record  # formulas, which few need
 

@@ -7,7 +7,6 @@ was cut short is not read. `branch.csv` has the rows as a table.
 
 from __future__ import annotations
 
-import csv
 import json
 from collections.abc import Generator
 from contextlib import ExitStack
@@ -20,6 +19,7 @@ from ribbonopt.output.declared import BRANCH_PICTURES
 from ribbonopt.output.disk import Appended
 from ribbonopt.output.places import unwritable
 from ribbonopt.output.staging import replacing
+from ribbonopt.output.table import write_table
 from ribbonopt.scene import Scene, dump_scene, load_scene
 from ribbonopt.solution.solution import Solution
 from ribbonopt.studies.lines import whole_lines
@@ -117,11 +117,7 @@ class BranchFolder:
         """Write the rows as CSV."""
         rows = self.rows
         names = list(dict.fromkeys(name for row in rows for name in row))
-        with replacing(self.folder / TABLE, newline="") as file:
-            writer = csv.writer(file)
-            writer.writerow(names)
-            for row in rows:
-                writer.writerow([_cell(row.get(name)) for name in names])
+        write_table(self.folder / TABLE, names, rows)
 
     def _note_endings(self, continuation: Continuation, known: set[Key]) -> set[Key]:
         for key, ending in continuation.endings.items():
@@ -202,9 +198,3 @@ def _sound(line: Any) -> bool:
 
 def _line(value: dict[str, Any]) -> str:
     return json.dumps(value) + "\n"
-
-
-def _cell(value: Any) -> Any:
-    if isinstance(value, list):
-        return " ".join(repr(item) for item in value)
-    return "" if value is None else value
