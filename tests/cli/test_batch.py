@@ -14,7 +14,6 @@ import pytest
 from batches import STUDY, without_times, written
 from half_studies import SCENE
 
-from ribbonopt.cli import batch
 from ribbonopt.pipeline.prepared import solve
 from ribbonopt.scene import load_scene
 from ribbonopt.studies.batch.batch import run_batch
