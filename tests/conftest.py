@@ -19,7 +19,17 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 settings.register_profile("tests", deadline=None, derandomize=True)
 settings.load_profile("tests")
 
-CONFIGS = Path(__file__).parents[1] / "configs"
+TESTS = Path(__file__).parent
+CONFIGS = TESTS.parent / "configs"
+
+
+def pytest_configure(config: pytest.Config) -> None:
+    """Make errors of the warnings that the tests cause, as pyproject.toml does for ribbonopt."""
+    names = {"my_.*"}  # of tests/user_modules.py
+    for path in TESTS.rglob("*.py"):
+        names.add(path.parent.name if (path.parent / "__init__.py").exists() else path.stem)
+    own = "|".join(sorted(names))
+    config.addinivalue_line("filterwarnings", rf"error:::({own})(\.|$)")
 
 
 @pytest.fixture(scope="session")

@@ -101,7 +101,12 @@ boundaries = st.one_of(
     st.builds(room.Boundary, loose, supports | loose),
     st.builds(room.Boundary, loop=loops),
 )
-bands = st.builds(room.Band, st.integers(max_value=-1) | st.integers(1), st.sampled_from(PIECES))
+# Fewer than two half twists have no piece smaller than a half.
+bands = st.builds(
+    room.Band,
+    st.integers(max_value=-1) | st.integers(1),
+    st.sampled_from([piece for piece in PIECES if piece != "fundamental"]),
+) | st.builds(room.Band, st.integers(max_value=-2) | st.integers(2), st.just("fundamental"))
 guesses = st.one_of(
     st.sampled_from(["auto", "circle"]),
     st.builds(room.StrainGuess, st.tuples(floats, floats)),
