@@ -3,6 +3,7 @@
 
     scripts/matrix.py                                         # the quick suite, everything
     scripts/matrix.py --python 3.10 --dependencies oldest tests/unit tests/cli
+    scripts/matrix.py --corners tests/unit tests/cli          # oldest of both, newest of both
     scripts/matrix.py --dry-run                               # only which versions are taken
 
 Each pair gets a virtual environment from nothing, made by uv (`pip install -e '.[dev]'` has it).
@@ -47,10 +48,7 @@ def supported() -> list[str]:
 
 
 def candidates(version: str) -> Iterator[Path]:
-    """Yield where a Python of that version may be: on the path, of pyenv, or named as a file."""
-    if os.sep in version:
-        yield Path(version)
-        return
+    """Yield where a Python of that version may be: on the path, or of pyenv."""
     for folder in os.get_exec_path():
         yield Path(folder, f"python{version}")
     pyenv = Path(os.environ.get("PYENV_ROOT", Path.home() / ".pyenv"))
@@ -68,9 +66,9 @@ def found(version: str) -> Path | None:
 
 
 def uv(*arguments: object) -> str:
-    """Run uv and return what it prints; exit with what it says if it fails."""
-    program = shutil.which("uv", path=os.pathsep.join([str(Path(sys.executable).parent),
-                                                       *os.get_exec_path()]))  # fmt: skip
+    """Run uv and return what it prints; RuntimeError with what it says if it fails."""
+    beside = str(Path(sys.executable).parent)
+    program = shutil.which("uv", path=os.pathsep.join([beside, *os.get_exec_path()]))
     if program is None:
         sys.exit("scripts/matrix.py: uv is not here; `pip install uv`, or `pip install '.[dev]'`")
     command = [program, *map(str, arguments), "--quiet", "--no-python-downloads"]
@@ -80,10 +78,10 @@ def uv(*arguments: object) -> str:
     return done.stdout
 
 
-def requirements(python: Path, dependencies: str) -> str:
+def requirements(version: str, dependencies: str) -> str:
     """Return the version of each package, `name==version` a line, for one pair."""
     return uv(
-        *("pip", "compile", "pyproject.toml", "--extra", "test", "--python", python),
+        *("pip", "compile", "pyproject.toml", "--extra", "test", "--python-version", version),
         *("--resolution", RESOLUTIONS[dependencies], "--only-binary", ":all:"),
         *("--no-header", "--no-annotate"),
     )
@@ -114,16 +112,18 @@ def tested(python: Path, pins: str, tests: Sequence[str]) -> tuple[int, str]:
         return process.returncode, last.strip("= ")
 
 
-def run(python: Path, version: str, dependencies: str, tests: Sequence[str] | None) -> Pair:
-    """Return the line of one pair: with no tests, only which versions it would take."""
+def run(python: Path | None, version: str, dependencies: str, tests: Sequence[str] | None) -> Pair:
+    """Return the line of one pair; without tests or without that Python, what it would take."""
     begun = time.monotonic()
     try:
-        pins = requirements(python, dependencies)
-        if tests is None:
-            return Pair(version, dependencies, "not run", 0, told(pins))
+        pins = requirements(version, dependencies)
+        if python is None or tests is None:
+            outcome = "not run" if python else "no such Python here"
+            return Pair(version, dependencies, outcome, 0, told(pins))
         print(f"Python {version}, {dependencies} dependencies: {' '.join(pins.split())}")
         status, last = tested(python, pins, tests)
     except RuntimeError as error:
+        print(error, file=sys.stderr)
         return Pair(version, dependencies, str(error).splitlines()[-1], failed=True)
     seconds = time.monotonic() - begun
     return Pair(version, dependencies, last, seconds, told(pins), failed=status != 0)
@@ -145,21 +145,23 @@ def table(pairs: Sequence[Pair]) -> str:
 def main() -> int:
     """Run what is asked for, print the table, return the exit status."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0], allow_abbrev=False)
-    parser.add_argument("--python", nargs="+", metavar="VERSION", help="as 3.12, or a program")
-    parser.add_argument("--dependencies", nargs="+", choices=RESOLUTIONS, default=[*RESOLUTIONS])
+    parser.add_argument("--python", action="append", choices=supported(), help="repeatable")
+    parser.add_argument("--dependencies", choices=RESOLUTIONS, help="both unless said")
+    parser.add_argument("--corners", action="store_true", help="oldest both, and newest both")
     parser.add_argument("--dry-run", action="store_true", help="tell the versions, run no test")
     parser.add_argument("tests", nargs="*", help="of pytest; all quick tests unless said")
     asked, more = parser.parse_known_args()
     tests = None if asked.dry_run else [*asked.tests, *more]
-    pairs = []
-    for version in asked.python or supported():
-        python = found(version)
-        if python is None:
-            pairs.append(Pair(version, "", "not here", failed=asked.python is not None))
-            continue
-        pairs += [run(python, version, which, tests) for which in asked.dependencies]
+    pythons = {version: found(version) for version in asked.python or supported()}
+    missing = [version for version, python in pythons.items() if python is None]
+    kinds = [asked.dependencies] if asked.dependencies else list(RESOLUTIONS)
+    wanted = [(version, which) for version in pythons for which in kinds]
+    if asked.corners:
+        here = [version for version in pythons if version not in missing]
+        wanted = [(here[0], "oldest"), (here[-1], "newest")]
+    pairs = [run(pythons[version], version, which, tests) for version, which in wanted]
     print(table(pairs))
-    return int(any(pair.failed for pair in pairs))
+    return int(any(pair.failed for pair in pairs) or bool(asked.python and missing))
 
 
 if __name__ == "__main__":
