@@ -196,7 +196,7 @@ def test_full_solutions_that_find_no_room_are_told(
     monkeypatch.setattr(Fields, "write", refuse)
     study.write_text(STUDY.replace("count: 30", "count: 2"))
     (chunk, *_) = chunks_of(load_study([study]))
-    asked = message(chunk, [], (), "all", str(tmp_path))
+    asked = message(chunk.ribbons, [], (), "all", str(tmp_path))
     rows = [answer["row"] for answer in worker.Worker().answers(asked) if "row" in answer]
     assert rows
     for row in rows:
@@ -222,7 +222,7 @@ def test_errors_of_any_kind_spoil_their_own_row(
     rows = [
         answer["row"]
         for chunk in chunks_of(load_study([study]))
-        for answer in hand.answers(message(chunk, [], (), "none", ""))
+        for answer in hand.answers(message(chunk.ribbons, [], (), "none", ""))
         if "row" in answer
     ]
     rows.sort(key=lambda row: int(row["number"]))

@@ -7,10 +7,13 @@ itself: n log n.
 from __future__ import annotations
 
 from collections.abc import Iterator
+from typing import Any
 
 import numpy as np
 
 from ribbonopt.arrays import Array
+
+Indices = np.ndarray[Any, np.dtype[np.signedinteger[Any]]]
 
 MOST = 8_000  # points of a cell: beyond, chains are some per cent shorter and take much longer
 FEW = 64  # points, from which those that were visited are put away
@@ -34,7 +37,7 @@ def chain(points: Array, size: int) -> list[int]:
     return [int(i) for i in sorted_[np.concatenate(walked)]]
 
 
-def _cells(points: Array, cell: Array, size: int) -> Iterator[Array]:
+def _cells(points: Array, cell: Indices, size: int) -> Iterator[Indices]:
     """Divide a cell where it costs least, until none is too large; members stay sorted."""
     if len(cell) <= MOST:
         yield cell
@@ -52,7 +55,7 @@ def _gap(values: Array) -> float:
     return float(np.ptp(values)) / max(len(np.unique(values)) - 1, 1)
 
 
-def _walk(points: Array) -> Array:
+def _walk(points: Array) -> Indices:
     """Go from the first point (k, d) to the nearest of those left, again and again."""
     count = len(points)
     left, names = np.ascontiguousarray(points.T), np.arange(count)

@@ -32,7 +32,7 @@ def rows_of(inputs: list[dict[str, Any]]) -> list[dict[str, Any]]:
     ribbons = [
         StudyRibbon(i, Source("arch", ARCH), {}, row) for i, row in enumerate(inputs, start=1)
     ]
-    work = message(Chunk(tuple(ribbons)), [], (), "none", "")
+    work = message(ribbons, [], (), "none", "")
     return [
         answer["row"]
         for answer in Worker().answers(json.loads(json.dumps(work)))
