@@ -23,6 +23,7 @@ if TYPE_CHECKING:
     from ribbonopt.studies.batch.files import BatchFolder
 
 HUGE = 100_000  # ribbons, beyond which a study may be a mistake
+MANY = 5_000  # ribbons, beyond which it takes a while until the first one is begun
 
 
 def batch(options: argparse.Namespace) -> int:
@@ -32,6 +33,8 @@ def batch(options: argparse.Namespace) -> int:
     from ribbonopt.studies.batch.files import BatchFolder
     from ribbonopt.studies.batch.sweep import load_study
 
+    if options.retry and not options.resume:
+        raise SceneError("--retry: goes on with rows that are there; give --resume too")
     gc.enable()  # many rows, and threads that serve the workers
     jobs = None if options.jobs is None else count("--jobs", options.jobs)
     study = load_study(options.study, options.set)
@@ -44,7 +47,10 @@ def batch(options: argparse.Namespace) -> int:
 
         check_cluster(options.scheduler)  # before anything is written
     folder = BatchFolder(
-        options.out or default_folder(study.name, "batch"), study, resume=options.resume
+        options.out or default_folder(study.name, "batch"),
+        study,
+        resume=options.resume,
+        retry=options.retry,
     )
     rows = run_batch(
         study,
@@ -53,14 +59,16 @@ def batch(options: argparse.Namespace) -> int:
         known=folder.known,
         folder=str(folder.folder.absolute()),
     )
-    line, before = ProgressLine(quiet=options.quiet), len(folder.rows)
+    line, before = ProgressLine(quiet=options.quiet), folder.done
     try:
         with closing(folder), closing(rows), closing(line):
+            if study.count > MANY:
+                line.show(f"ordering {study.count:,} ribbons")
             for row in rows:
                 folder.append(row)
-                if line.due or len(folder.rows) == study.count:
-                    line.show(_progress(folder, line.rate(len(folder.rows) - before)))
-        _draw(study.name, study.count, study.keys, folder.rows, folder.folder, pairs)
+                if line.due or folder.done == study.count:
+                    line.show(_progress(folder, line.rate(folder.done - before)))
+        _draw(study.name, study.count, study.keys, list(folder.rows), folder.folder, pairs)
     except KeyboardInterrupt:
         print(
             f"ribbonopt: interrupted; {len(folder.rows)} of {study.count} rows kept in "
@@ -159,6 +167,6 @@ def _noted(folder: BatchFolder) -> str:
 
 def _progress(folder: BatchFolder, rate: float) -> str:
     """Return how far a batch is: done, failed, rows a second, time left."""
-    done, total = len(folder.rows), folder.study.count
+    done, total = folder.done, folder.study.count
     left = f"{timedelta(seconds=round((total - done) / rate))} left"
-    return f"{done}/{total} done, {folder.failed} failed, {rate:.1f}/s, {left}"
+    return f"{done}/{total} done, {folder.rows.failed} failed, {rate:.1f}/s, {left}"

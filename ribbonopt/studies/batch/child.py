@@ -5,6 +5,7 @@ Whatever it does, it is an answer, or it is lost: it ends, it hangs, it writes w
 
 from __future__ import annotations
 
+import errno
 import json
 import os
 import queue
@@ -33,7 +34,7 @@ class Child:
         self._answers: queue.SimpleQueue[Answer | None] = queue.SimpleQueue()
         self._said, self._lock = bytearray(), threading.Lock()
         self._process = subprocess.Popen(
-            [sys.executable or "python", *_flags(), str(BEGIN), *path],
+            [_python(), *_flags(), str(BEGIN), *path],
             stdin=subprocess.PIPE,
             stdout=subprocess.PIPE,
             stderr=subprocess.PIPE,
@@ -143,6 +144,13 @@ def search_path() -> list[str]:
             found.append(os.path.abspath(folder))
     theirs = {os.path.realpath(folder) for folder in own}
     return sorted(dict.fromkeys(found), key=lambda folder: os.path.realpath(folder) in theirs)
+
+
+def _python() -> str:
+    """This interpreter."""
+    if not sys.executable:
+        raise OSError(errno.ENOENT, "this Python was not told its own program")
+    return sys.executable
 
 
 def _flags() -> list[str]:

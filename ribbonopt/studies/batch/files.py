@@ -19,6 +19,7 @@ from ribbonopt.output.staging import beside, replacing, unwritable
 from ribbonopt.plain import Row
 from ribbonopt.studies.lines import whole_lines
 
+from .kept import OneEach
 from .study import Study
 
 ROWS, TABLE, STUDY, SOLUTIONS = "rows.jsonl", "table.csv", "study.json", "solutions"
@@ -27,8 +28,10 @@ ROWS, TABLE, STUDY, SOLUTIONS = "rows.jsonl", "table.csv", "study.json", "soluti
 class BatchFolder:
     """A folder that rows are written to."""
 
-    def __init__(self, folder: str | Path, study: Study, *, resume: bool) -> None:
-        """Claim the folder.
+    def __init__(
+        self, folder: str | Path, study: Study, *, resume: bool, retry: bool = False
+    ) -> None:
+        """Claim the folder; with `retry`, ribbons that were lost are not known, but to be solved.
 
         Raises
         ------
@@ -37,19 +40,25 @@ class BatchFolder:
             of another study.
         """
         self.folder, self.study = Path(folder), study
-        self.rows: list[Row] = []
-        self.failed = 0
+        self.rows, self._twice = OneEach(), False
         try:
             self._claim(resume)
         except OutputError:  # an OSError too, but one that says what to do
             raise
         except OSError as error:
             raise unwritable(self.folder, error) from error
+        # Their rows stay until there are others.
+        self._again = self.rows.to_try_again if retry else set()
 
     @property
     def known(self) -> dict[int, str]:
-        """Statuses of the ribbons whose rows are there."""
-        return {row["number"]: row["status"] for row in self.rows}
+        """Statuses of the ribbons whose rows are there and stay."""
+        return {n: status for n, status in self.rows.statuses.items() if n not in self._again}
+
+    @property
+    def done(self) -> int:
+        """How many rows are there and stay."""
+        return len(self.rows) - len(self._again)
 
     def append(self, row: Row) -> None:
         """Add a row, on disk before this returns."""
@@ -60,7 +69,8 @@ class BatchFolder:
             with contextlib.suppress(OSError):  # it tries to write the rest of the row once more
                 self._file.close()
             raise self._full(error) from error
-        self._count(row)
+        self._twice |= self.rows.add(row)
+        self._again.discard(row["number"])
 
     def close(self) -> None:
         """Write the table, sorted by number, and close the file of rows."""
@@ -70,6 +80,8 @@ class BatchFolder:
         try:
             self._lock.close()
             self._file.close()
+            if self._twice:
+                self._write_rows()
             with replacing(self.folder / TABLE, newline="") as file:
                 writer = csv.DictWriter(file, sorted_columns(list(names), self.study.keys))
                 writer.writeheader()
@@ -77,9 +89,9 @@ class BatchFolder:
         except OSError as error:
             raise self._full(error) from error
 
-    def _count(self, row: Row) -> None:
-        self.rows.append(row)
-        self.failed += not row["verified"]
+    def _write_rows(self) -> None:
+        with replacing(self.folder / ROWS) as file:
+            file.writelines(json.dumps(row) + "\n" for row in self.rows)
 
     def _full(self, error: OSError) -> OutputError:
         return OutputError(
@@ -115,8 +127,7 @@ class BatchFolder:
             else:
                 self._lock.write((json.dumps(record, indent=2) + "\n").encode())
                 self._lock.flush()
-            with replacing(self.folder / ROWS) as file:
-                file.writelines(json.dumps(row) + "\n" for row in self.rows)
+            self._write_rows()
             self._file = open(self.folder / ROWS, "a", encoding="utf-8")
             refused.pop_all()  # the folder is ours until it is closed
 
@@ -132,8 +143,7 @@ class BatchFolder:
                 f"{self.folder}: holds rows of this study already; go on by --resume, or choose "
                 "another folder"
             )
-        for row in _read(self.folder / ROWS):
-            self._count(row)
+        self.rows = OneEach(_read(self.folder / ROWS))
 
 
 def sorted_columns(names: list[str], inputs: Sequence[str]) -> list[str]:
@@ -145,7 +155,7 @@ def sorted_columns(names: list[str], inputs: Sequence[str]) -> list[str]:
 
 
 def load_batch(folder: str | Path) -> tuple[dict[str, Any], list[Row]]:
-    """Return what a batch folder says of its study (name, ribbons, inputs), and its rows.
+    """Return what a batch folder says of its study (name, ribbons, inputs), and a row a ribbon.
 
     Raises
     ------
@@ -154,7 +164,7 @@ def load_batch(folder: str | Path) -> tuple[dict[str, Any], list[Row]]:
     """
     folder = Path(folder)
     try:
-        return _record_of(folder), _read(folder / ROWS)
+        return _record_of(folder), list(OneEach(_read(folder / ROWS)))
     except FileNotFoundError:
         raise OutputError(
             f"{folder}: no batch; expected a folder written by ribbonopt batch"

@@ -17,9 +17,9 @@ from ribbonopt.plain import Row
 
 from .child import Answer, Child, search_path
 from .chunks import Chunk
+from .kept import LOST
 from .study import StudyRibbon
 
-LOST = ("crashed", "timed_out")  # statuses of ribbons that took their worker with them
 STARTING = 120.0  # seconds that a new process may take until it can solve
 FEWER = "free processes and memory for it, or use fewer by --jobs"
 

@@ -9,7 +9,6 @@ import pytest
 from ribbonopt.pipeline.prepared import Prepared, solve
 from ribbonopt.scene import Scene, loads_scene
 from ribbonopt.studies.batch import family
-from ribbonopt.studies.batch.chunks import Chunk
 from ribbonopt.studies.batch.neighbour import Neighbour
 from ribbonopt.studies.batch.processes import message
 from ribbonopt.studies.batch.study import Source, StudyRibbon
