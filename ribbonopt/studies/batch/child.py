@@ -72,11 +72,6 @@ class Child:
         except queue.Empty:
             raise TimeoutError from None
 
-    def forget(self) -> None:
-        """Forget what it said so far."""
-        with self._lock:
-            self._said.clear()
-
     def end(self) -> int:
         """End it, if it has not ended; return its exit status, negative for a signal."""
         process = self._process

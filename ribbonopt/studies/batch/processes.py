@@ -124,7 +124,6 @@ class WorkerProcess:
                 case {"at": int(number)} if number in asked and at not in wanted:
                     at = number
                     asked.discard(at)
-                    child.forget()
                 case {"row": {"number": number, "status": str(), "verified": bool()} as row} if (
                     number == at and at in wanted
                 ):
