@@ -103,7 +103,7 @@ class Child:
                     answer = None
                 if isinstance(answer, dict):
                     self._answers.put(answer)
-                else:
+                elif line.strip():
                     self._keep(line)  # of a library that prints
         self._answers.put(None)
 

@@ -132,11 +132,11 @@ def serve() -> None:
     threading.Thread(target=_watch, args=(os.getppid(),), daemon=True).start()
     answers = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)  # what libraries print must not stand among the answers
-    answers.write(b"\n")  # nor what they printed while they were imported
     worker = Worker()
 
     def say(answer: dict[str, Any]) -> None:
-        answers.write(json.dumps(answer).encode() + b"\n")
+        # On a line of its own, whatever else may have been written there.
+        answers.write(b"\n" + json.dumps(answer).encode() + b"\n")
         answers.flush()
 
     try:

@@ -25,7 +25,7 @@ from ribbonopt.studies.batch.processes import WorkerProcess, lost_row
 FAKE = """\
 import json, os, sys, time
 def say(answer):
-    sys.stdout.write(json.dumps(answer) + "\\n"); sys.stdout.flush()
+    sys.stdout.write("\\n" + json.dumps(answer) + "\\n"); sys.stdout.flush()
 def row(number, **more):
     say({"row": {"number": number, "status": "converged", "verified": True} | more})
 def once(name):
