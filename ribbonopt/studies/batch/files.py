@@ -80,6 +80,12 @@ class BatchFolder:
         try:
             self._lock.close()
             self._file.close()
+            if not self.rows:  # nothing was found, and so nothing stays
+                for name in (ROWS, STUDY):
+                    (self.folder / name).unlink(missing_ok=True)
+                with contextlib.suppress(OSError):  # it holds what others put there
+                    self.folder.rmdir()
+                return
             if self._twice:
                 self._write_rows()
             with replacing(self.folder / TABLE, newline="") as file:
