@@ -1,5 +1,6 @@
 """Batches: workers that cannot start, folders that hide modules, ribbons that are tried again."""
 
+import io
 import json
 import os
 import subprocess
@@ -12,6 +13,7 @@ import pytest
 from batches import COMMAND, STUDY, lost, on_purpose, written
 
 import ribbonopt
+from ribbonopt.cli import batch
 from ribbonopt.studies.batch.files import load_batch
 
 Run = Callable[..., Any]
@@ -173,3 +175,24 @@ def test_rows_that_are_there_twice_count_once(run: Run, small: Path, tmp_path: P
         assert code == (0 if status == "converged" else 3)
         assert [row["status"] for row in written(out)] == ["converged", status]
         assert len((out / "table.csv").read_text().splitlines()) == 3
+
+
+def test_many_ribbons_are_said_to_be_ordered(
+    run: Run, small: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    terminal = Terminal()
+    with monkeypatch.context() as patch:
+        patch.setattr(batch, "MANY", 1)
+        patch.setattr(sys, "stderr", terminal)
+        assert run("batch", small, "--out", tmp_path / "out", "--quiet").status == 0
+        assert terminal.getvalue() == ""
+        assert run("batch", small, "--out", tmp_path / "b").status == 0
+    first, *_ = terminal.getvalue().split("\r")[1:]
+    assert first.strip() == "ordering 2 ribbons"
+
+
+class Terminal(io.StringIO):
+    """Where progress is shown."""
+
+    def isatty(self) -> bool:
+        return True

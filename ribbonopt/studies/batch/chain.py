@@ -38,7 +38,7 @@ def chain(points: Array, size: int) -> list[int]:
 
 
 def _cells(points: Array, cell: Indices, size: int) -> Iterator[Indices]:
-    """Divide a cell where it costs least, until none is too large; members stay sorted."""
+    """Divide a cell where it costs least, until none is too large."""
     if len(cell) <= MOST:
         yield cell
         return
@@ -47,7 +47,7 @@ def _cells(points: Array, cell: Indices, size: int) -> Iterator[Indices]:
     first = round(-(-len(cell) // size) * (parts // 2) / parts) * size
     along = np.argsort(points[cell, axis], kind="stable")
     for part in (along[:first], along[first:]):
-        yield from _cells(points, np.sort(cell[part]), size)
+        yield from _cells(points, cell[part], size)
 
 
 def _gap(values: Array) -> float:

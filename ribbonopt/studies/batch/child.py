@@ -142,7 +142,7 @@ def search_path() -> list[str]:
 
 
 def _python() -> str:
-    """This interpreter."""
+    """Return the program of this interpreter."""
     if not sys.executable:
         raise OSError(errno.ENOENT, "this Python was not told its own program")
     return sys.executable

@@ -21,6 +21,7 @@ from .kept import LOST
 from .study import StudyRibbon
 
 STARTING = 120.0  # seconds that a new process may take until it can solve
+TRIES = 3  # to begin another one, after one that could
 FEWER = "free processes and memory for it, or use fewer by --jobs"
 
 
@@ -32,7 +33,7 @@ class WorkerProcess:
         self.save, self.folder, self.time_limit = save, folder, time_limit
         self._path = search_path()
         self._child: Child | None = None
-        self._lock, self._ended = threading.Lock(), False
+        self._lock, self._ended, self._could = threading.Lock(), False, False
 
     def begin(self) -> None:
         """Begin a process, if there is none, and wait until it can solve.
@@ -40,8 +41,18 @@ class WorkerProcess:
         Raises
         ------
         WorkerError
-            If it cannot be begun, is lost before that or takes too long.
+            If it cannot be begun, is lost before that or takes too long; after processes that
+            could solve, if that happens again and again.
         """
+        for left in range(TRIES if self._could else 1, 0, -1):
+            try:
+                self._begin()
+                return
+            except WorkerError:
+                if left == 1:
+                    raise
+
+    def _begin(self) -> None:
         if self._child is not None or self._ended:
             return
         child = self._begun()
@@ -56,6 +67,7 @@ class WorkerProcess:
                 f"a worker process did not start within {STARTING:g} s{said}; {FEWER}"
             ) from None
         if self._ended or answer == {"ready": True}:
+            self._could = True
             return
         how = _how(self._lose())
         raise WorkerError(

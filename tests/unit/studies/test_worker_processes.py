@@ -259,6 +259,29 @@ def test_one_row_each_whatever_it_does_at_random(begun: Begun, seed: int) -> Non
     assert {row["status"] for row in found.values()} <= {"converged", "crashed"}
 
 
+@pytest.mark.parametrize("times", [1, 2])
+def test_another_start_is_tried_again(begun: Begun, times: int) -> None:
+    """After a process that could solve: the system may have been short of something."""
+    before = f"""\
+open("starts", "a").write("x")
+if 1 <= len(open("starts").read()) - 1 <= {times}: os._exit(4)
+def act(number):
+    if number == -5 and once("five"): os._exit(9)
+"""
+    found = rows_of(begun(before))
+    assert [n for n, row in sorted(found.items()) if row["status"] == "crashed"] == [5]
+    assert len(found) == 9
+
+
+def test_starts_that_fail_for_ever_are_an_error(begun: Begun) -> None:
+    worker = begun("if not once('first'): os._exit(4)\ndef act(n):\n    if n == -5: os._exit(9)")
+    found: list[Row] = []
+    with pytest.raises(WorkerError, match="exit status 4"):
+        for chunk in chunks_of(swept(grid={"a": list(range(9))})):
+            found.extend(worker.rows(chunk, {}))
+    assert all(row["status"] == "converged" for row in found if row["number"] != 5)
+
+
 def test_closed_while_it_hangs(begun: Begun) -> None:
     worker = begun(
         "def act(number):\n    if number == -5: open('at5', 'w').close(); time.sleep(600)"
