@@ -36,6 +36,10 @@ class WorkerError(RibbonoptError, RuntimeError):
     """A worker process that cannot be started: says what it said, or why there is none."""
 
 
+class PictureError(OutputError):
+    """Pictures that could not be drawn or written: says which and why; all else is there."""
+
+
 class ViewError(RibbonoptError, ValueError):
     """A picture that there is none of, such as the surface of a rod: says why."""
 

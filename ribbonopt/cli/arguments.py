@@ -8,10 +8,12 @@ from ribbonopt.errors import SceneError
 from ribbonopt.studies.continuation.columns import COLUMNS, HINT
 from ribbonopt.version import VERSION
 
+from .terminal import Parser
+
 
 def parser() -> argparse.ArgumentParser:
     """Return the parser of all verbs; `verb` names the one that was given."""
-    result = argparse.ArgumentParser(
+    result = Parser(
         prog="ribbonopt",
         description="Equilibria of elastic ribbons from YAML scenes.",
         formatter_class=_help,

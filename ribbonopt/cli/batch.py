@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import gc
-import sys
 from collections import Counter
 from collections.abc import Sequence
 from contextlib import closing
@@ -12,10 +11,12 @@ from datetime import timedelta
 from typing import TYPE_CHECKING, Any
 
 from ribbonopt.errors import SceneError
+from ribbonopt.text import one_line
 
 from .arguments import count
-from .common import INTERRUPTED, NOT_CONVERGED, default_folder, pairs_of, print_json
+from .common import INTERRUPTED, NOT_CONVERGED, default_folder, drawn, listing, pairs_of
 from .progress import ProgressLine
+from .terminal import complain, say, say_json
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -52,31 +53,33 @@ def batch(options: argparse.Namespace) -> int:
         resume=options.resume,
         retry=options.retry,
     )
-    rows = run_batch(
-        study,
-        jobs=jobs,
-        scheduler=options.scheduler,
-        known=folder.known,
-        folder=str(folder.folder.absolute()),
-    )
-    line, before = ProgressLine(quiet=options.quiet), folder.done
     try:
-        with closing(folder), closing(rows), closing(line):
-            if study.count > MANY:
-                line.show(f"ordering {study.count:,} ribbons")
-            for row in rows:
-                folder.append(row)
-                if line.due or folder.done == study.count:
-                    line.show(_progress(folder, line.rate(folder.done - before)))
-        _draw(study.name, study.count, study.keys, list(folder.rows), folder.folder, pairs)
+        with closing(folder):
+            rows = run_batch(
+                study,
+                jobs=jobs,
+                scheduler=options.scheduler,
+                known=folder.known,
+                folder=str(folder.folder.absolute()),
+            )
+            line, before = ProgressLine(quiet=options.quiet), folder.done
+            with closing(rows), closing(line):
+                if study.count > MANY:
+                    line.show(f"ordering {study.count:,} ribbons")
+                for row in rows:
+                    folder.append(row)
+                    if line.due or folder.done == study.count:
+                        line.show(_progress(folder, line.rate(folder.done - before)))
+            folder.finish()
+            named = study.name, study.count, study.keys
+            status = drawn(lambda: _draw(*named, list(folder.rows), folder.folder, pairs))
     except KeyboardInterrupt:
-        print(
-            f"ribbonopt: interrupted; {len(folder.rows)} of {study.count} rows kept in "
-            f"{folder.folder}, --resume goes on from there",
-            file=sys.stderr,
+        complain(
+            f"interrupted; {len(folder.rows)} of {study.count} rows kept in {folder.folder}, "
+            "--resume goes on from there"
         )
         return INTERRUPTED
-    return _tell(options, folder)
+    return _tell(options, folder) or status
 
 
 def draw(result: Path, out: Path, pairs: list[tuple[str, str]]) -> list[Path]:
@@ -124,7 +127,7 @@ def _tell(options: argparse.Namespace, folder: BatchFolder) -> int:
     failed = [row for row in folder.rows if not row["verified"]]
     statuses = Counter(row["status"] for row in folder.rows)
     if options.json:
-        print_json(
+        say_json(
             {
                 "name": folder.study.name,
                 "status": "converged" if not failed else "some_failed",
@@ -137,20 +140,18 @@ def _tell(options: argparse.Namespace, folder: BatchFolder) -> int:
     elif not options.quiet:
         study = ", ".join(f"{number} {status}" for status, number in statuses.most_common())
         seconds = sum(row.get("seconds", 0.0) for row in folder.rows)
-        names = ", ".join(sorted(path.name for path in folder.folder.iterdir()))
-        print(
+        say(
             f"{folder.study.name}: {len(folder.rows)} ribbons: {study}\n"
             f"{_noted(folder)}"
             f"  {seconds:.1f} s of solving\n"
-            f"  written: {folder.folder}: {names}"
+            f"  written: {one_line(listing(folder.folder))}"
         )
     if not failed:
         return 0
     first = min(failed, key=lambda row: int(row["number"]))
-    print(
-        f"ribbonopt: {folder.study.name}: {len(failed)} of {len(folder.rows)} ribbons failed; the "
-        f"first is number {first['number']}: {first['status']}: {first['message']}",
-        file=sys.stderr,
+    complain(
+        f"{folder.study.name}: {len(failed)} of {len(folder.rows)} ribbons failed; the "
+        f"first is number {first['number']}: {first['status']}: {first['message']}"
     )
     return NOT_CONVERGED
 

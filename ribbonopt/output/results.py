@@ -21,7 +21,8 @@ from ribbonopt.solvers import Status
 
 from .declared import declare
 from .exports import EQUILIBRIA, STANDARD, Export
-from .staging import OWN_FILES, unwritable
+from .places import unwritable
+from .staging import OWN_FILES, recovered
 
 
 def save_solution(
@@ -88,7 +89,7 @@ def load_solution(path: str | Path, scene: Scene | None = None) -> Solution:
     OutputError
         If there is no whole result.
     """
-    folder = Path(path)
+    folder = recovered(path)
     folder = folder.parent if folder.is_file() else folder
     needed = ["summary.json", "solution.npz"] + (["scene.yaml"] if scene is None else [])
     missing = [name for name in needed if not (folder / name).is_file()]

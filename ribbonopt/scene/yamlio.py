@@ -202,5 +202,5 @@ def _further(data: object, problems: Sequence[Problem]) -> list[Problem]:
         faulty.add("ribbon")  # which would seem not to be as long as the default
     parts = {"interval", "parameters", "boundary", "guess", "ribbon"} - faulty
     sound = {key: value for key, value in data.items() if key in parts}
-    blank = {"name": "", "law": Sadowsky(), "boundary": Boundary()}
+    blank = {"name": "scene", "law": Sadowsky(), "boundary": Boundary()}
     return check(validate(Scene, blank | sound))

@@ -8,6 +8,7 @@ from keyword import iskeyword
 from ribbonopt.scene.faults import KeyPath, Problem, dotted
 from ribbonopt.scene.formulas.parsing import FormulaError, evaluate_value, parse_equation
 from ribbonopt.scene.formulas.words import RESERVED
+from ribbonopt.text import is_word
 
 
 def values_of(
@@ -26,7 +27,7 @@ def values_of(
 def check_parameters(parameters: Mapping[str, float]) -> Iterator[Problem]:
     """Yield the parameters that no formula could name."""
     for name in parameters:
-        if not (name.isascii() and name.isidentifier()) or iskeyword(name):
+        if not is_word(name) or iskeyword(name):
             message = "is no name; use letters, digits and _, with a letter first"
             yield Problem(("parameters", name), message)
         elif name in RESERVED:

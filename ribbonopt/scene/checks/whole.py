@@ -11,11 +11,12 @@ from itertools import pairwise
 from typing import Any, get_origin
 
 from ribbonopt.scene.ends import Boundary
-from ribbonopt.scene.faults import KeyPath, Problem
+from ribbonopt.scene.faults import KeyPath, Problem, shown
 from ribbonopt.scene.loads import Loads
 from ribbonopt.scene.model import Guess, MoebiusGuess, RibbonSizes, Scene
 from ribbonopt.scene.schema.annotations import branches, hints, inside
 from ribbonopt.scene.wording import written
+from ribbonopt.text import name_fault
 
 from .frames import check_frame
 from .loops import check_loop, check_piece
@@ -25,7 +26,7 @@ from .supports import check_supports
 def check(scene: Scene) -> list[Problem]:
     """Return the problems of a scene whose single values are valid."""
     boundary = scene.boundary
-    problems = list(_interval(scene.interval))
+    problems = [*_name(scene.name), *_interval(scene.interval)]
     formulas = dict(_formulas(boundary, Boundary, ("boundary",)))
     formulas |= _formulas(scene.loads, Loads, ("loads",))
     formulas |= _formulas(scene.guess, Guess, ("guess",))
@@ -55,6 +56,11 @@ def check(scene: Scene) -> list[Problem]:
 
         problems += check_continuation(scene, None if problems else check)
     return problems
+
+
+def _name(name: str) -> Iterator[Problem]:
+    if fault := name_fault(name):
+        yield Problem(("name",), fault, shown(name))
 
 
 def _interval(interval: tuple[float, float]) -> Iterator[Problem]:

@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 
 import yaml
 
-from ribbonopt.scene.faults import KeyPath, Place, Problem, shown
+from ribbonopt.scene.faults import KeyPath, Place, Problem, quotable, shown
 
 _DEEPEST = 50
 _MOST_VALUES = 100_000
@@ -34,7 +34,7 @@ class YamlTextError(Exception):
     """Text that is no YAML, or YAML that is no plain data: one message, with its line if known."""
 
     def __init__(self, message: str, line: int = 0) -> None:
-        super().__init__(message)
+        super().__init__(quotable(message, 300))
         self.line = line
 
 

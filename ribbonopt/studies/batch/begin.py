@@ -20,6 +20,9 @@ if __name__ == "__main__":
         assert found is not None and found.loader is not None
         sys.modules["ribbonopt"] = module_from_spec(found)
         found.loader.exec_module(sys.modules["ribbonopt"])
+    from ribbonopt.signals import ignore_endings
+
+    ignore_endings()  # before all that takes time to import
     from ribbonopt.studies.batch.worker import serve
 
     serve()

@@ -15,8 +15,8 @@ from typing import Any, overload
 
 from ribbonopt.errors import SceneError
 from ribbonopt.scene.faults import InvalidSceneError, KeyPath, Problem, shown, suggestion
-from ribbonopt.scene.text.yamltext import YamlTextError, read
 
+from .cells import of_cell
 from .draws import Draws
 from .spaced import Spaced
 
@@ -163,17 +163,13 @@ def _csv(folder: Path, value: Any) -> InputRows:
             raise SceneError(f"{path}, line {line}: found {len(row)} values, expected {len(keys)}")
     return _table(
         [
-            {key: _cell(text, f"{path}, line {line}") for key, text in zip(keys, row, strict=True)}
+            {
+                key: of_cell(text, f"{path}, line {line}")
+                for key, text in zip(keys, row, strict=True)
+            }
             for line, row in rest
         ]
     )
-
-
-def _cell(text: str, where: str) -> Any:
-    try:
-        return read(text).data
-    except YamlTextError as error:
-        raise SceneError(f"{where}: found {text!r}, which is {error}") from None
 
 
 def _table(rows: list[Inputs]) -> InputRows:

@@ -27,9 +27,11 @@ from ribbonopt.errors import SceneError
 from ribbonopt.plain import is_number
 from ribbonopt.scene.faults import InvalidSceneError, KeyPath, Place, dotted, report, suggestion
 from ribbonopt.scene.yamlio import plain_yaml, read_yaml
+from ribbonopt.text import name_fault
 
+from .cells import as_yaml
 from .inputs import NOTHING, Inputs, fault, rows_of, text_of
-from .study import Source, Study, Sweep, as_yaml
+from .study import Source, Study, Sweep
 
 KEYS = ("name", "scene", "set", "sweep", "save", "time_limit")
 SAVE = ("all", "failed", "none")
@@ -64,11 +66,16 @@ def load_study(paths: Sequence[str | Path], overrides: Sequence[str] = ()) -> St
             except InvalidSceneError as error:
                 raise SceneError(report(str(file), error.problems, found.places)) from None
             settings |= {k: found.data[k] for k in ("save", "time_limit") if k in found.data}
-            settings.setdefault("name", found.data.get("name", file.stem))
+            settings.setdefault("name", found.data.get("name", _named_after(file)))
         else:
             sweeps.append(Sweep(Source(str(file), text), common))
-    name = settings.pop("name", None) or (files[0].stem if len(files) == 1 else "batch")
+    name = settings.pop("name", None) or (_named_after(files[0]) if len(files) == 1 else "batch")
     return Study(name, tuple(sweeps), **settings)
+
+
+def _named_after(file: Path) -> str:
+    """Return the name of what a file says, where no other is given."""
+    return "batch" if name_fault(file.stem) else file.stem
 
 
 def _files(path: str) -> list[Path]:
@@ -94,8 +101,10 @@ def _study(
             known = f"unknown key of a study{suggestion(str(key), KEYS)} (known: {', '.join(KEYS)})"
             raise fault((key,), known)
     name = data.get("name", "study")
-    if not isinstance(name, str) or not name.strip(" .") or set(name) & set("/\\"):
+    if not isinstance(name, str):
         raise fault(("name",), "expected a name for the study and its folder of results", name)
+    if wrong := name_fault(name):
+        raise fault(("name",), wrong, name)
     if data.get("save", "none") not in SAVE:
         raise fault(("save",), f"expected one of {', '.join(SAVE)}", data["save"])
     limit = data.get("time_limit", 1.0)

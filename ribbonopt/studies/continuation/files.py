@@ -7,15 +7,19 @@ was cut short is not read. `branch.csv` has the rows as a table.
 
 from __future__ import annotations
 
-import csv
 import json
-from collections.abc import Iterator
+from collections.abc import Generator
+from contextlib import ExitStack
 from pathlib import Path
 from typing import Any
 
 from ribbonopt.errors import OutputError
-from ribbonopt.output.declared import BRANCH_PICTURES, foreign_in
-from ribbonopt.output.staging import beside, replacing, unwritable
+from ribbonopt.output.claims import claimed
+from ribbonopt.output.declared import BRANCH_PICTURES
+from ribbonopt.output.disk import Appended
+from ribbonopt.output.places import unwritable
+from ribbonopt.output.staging import replacing
+from ribbonopt.output.table import write_table
 from ribbonopt.scene import Scene, dump_scene, load_scene
 from ribbonopt.solution.solution import Solution
 from ribbonopt.studies.lines import whole_lines
@@ -42,41 +46,40 @@ class BranchFolder:
         """
         self.folder, self.scene = Path(folder), scene
         self.lines: list[dict[str, Any]] = []
-        files = (FILE, SCENE)
-        own = {TABLE, *BRANCH_PICTURES, *files, *(beside(Path(name)).name for name in files)}
+        self._finished = False
         try:
-            self.folder.mkdir(parents=True, exist_ok=True)
-            found = sorted(path.name for path in self.folder.iterdir())
-            foreign = foreign_in(self.folder, own)
-            if foreign:
-                raise OutputError(
-                    f"{folder}: holds files that are no branch ({', '.join(foreign[:3])}); choose "
-                    "a new or an empty folder"
-                )
-            if FILE in found and not resume:
-                raise OutputError(
-                    f"{folder}: holds a branch already; go on with it by --resume, or choose "
-                    "another folder"
-                )
-            text = dump_scene(scene)
-            if FILE in found:
-                self._same(text)
-                self.lines = _read(self.folder / FILE)
-            if SCENE not in found:
-                self._replace(SCENE, text)
-            self._replace(FILE, "".join(_line(line) for line in self.lines))
-            self._file = open(self.folder / FILE, "a", encoding="utf-8")
+            with ExitStack() as refused:
+                own = {FILE, SCENE, TABLE, *BRANCH_PICTURES}
+                self.folder = refused.enter_context(claimed(self.folder, own))
+                self._begin(resume)
+                self._claimed = refused.pop_all()  # the folder is ours until it is closed
         except OutputError:  # an OSError too, but one that says what to do
             raise
         except OSError as error:
             raise unwritable(self.folder, error) from error
+
+    def _begin(self, resume: bool) -> None:
+        there = (self.folder / FILE).is_file()
+        if there and not resume:
+            raise OutputError(
+                f"{self.folder}: holds a branch already; go on with it by --resume, or choose "
+                "another folder"
+            )
+        text = dump_scene(self.scene)
+        if there:
+            self._same(text)
+            self.lines = _read(self.folder / FILE)
+        if not (self.folder / SCENE).exists():
+            self._replace(SCENE, text)
+        self._replace(FILE, "".join(_line(line) for line in self.lines))
+        self._file = Appended(open(self.folder / FILE, "a", encoding="utf-8"))
 
     @property
     def rows(self) -> list[dict[str, Any]]:
         """Rows of all points."""
         return rows_of(self.lines)
 
-    def follow(self, continuation: Continuation) -> Iterator[Point[Solution]]:
+    def follow(self, continuation: Continuation) -> Generator[Point[Solution], None, None]:
         """Points of a continuation from where the folder's end, each written before it is given."""
         history = Stored(continuation, self.lines)
         known = set(history.endings)
@@ -87,10 +90,18 @@ class BranchFolder:
                 yield point
             self._note_endings(continuation, known)
         finally:
-            self.close()
+            self.finish()
 
     def close(self) -> None:
-        """Write the table and close the branch file; OutputError if the disk is full."""
+        """Finish, if that is not done, and give the folder up."""
+        with self._claimed:
+            self.finish()
+
+    def finish(self) -> None:
+        """End the branch file and write the table; OutputError if the disk is full."""
+        if self._finished:
+            return
+        self._finished = True
         try:
             self._file.close()
             if self.lines:
@@ -99,8 +110,6 @@ class BranchFolder:
             # Nothing was found, and so nothing stays.
             for name in (FILE, SCENE):
                 (self.folder / name).unlink(missing_ok=True)
-            if not any(self.folder.iterdir()):
-                self.folder.rmdir()
         except OSError as error:
             raise unwritable(self.folder, error) from error
 
@@ -108,11 +117,7 @@ class BranchFolder:
         """Write the rows as CSV."""
         rows = self.rows
         names = list(dict.fromkeys(name for row in rows for name in row))
-        with open(self.folder / TABLE, "w", newline="", encoding="utf-8") as file:
-            writer = csv.writer(file)
-            writer.writerow(names)
-            for row in rows:
-                writer.writerow([_cell(row.get(name)) for name in names])
+        write_table(self.folder / TABLE, names, rows)
 
     def _note_endings(self, continuation: Continuation, known: set[Key]) -> set[Key]:
         for key, ending in continuation.endings.items():
@@ -134,7 +139,6 @@ class BranchFolder:
         self.lines.append(line)
         try:
             self._file.write(_line(line))
-            self._file.flush()
         except OSError as error:
             raise unwritable(self.folder, error) from error
 
@@ -194,9 +198,3 @@ def _sound(line: Any) -> bool:
 
 def _line(value: dict[str, Any]) -> str:
     return json.dumps(value) + "\n"
-
-
-def _cell(value: Any) -> Any:
-    if isinstance(value, list):
-        return " ".join(repr(item) for item in value)
-    return "" if value is None else value

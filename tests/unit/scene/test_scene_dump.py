@@ -13,6 +13,7 @@ from hypothesis import strategies as st
 from ribbonopt import scene as room
 from ribbonopt.errors import SceneError
 from ribbonopt.scene import Scene, dump_scene, json_schema, loads_scene
+from ribbonopt.text import name_fault
 
 
 def test_dump_is_readable_and_omits_defaults() -> None:
@@ -117,9 +118,12 @@ ribbons = st.lists(positive, min_size=3, max_size=3, unique=True).flatmap(
         poisson_ratio=st.floats(-1, 0.5, exclude_min=True),
     )
 )
+words = ["1e-2", "yes", "null", "1:30", "a: b", "0x1", "# x", "\x85", "~", "'", "!a", "&a", "%a"]
+text = st.text() | st.sampled_from(words)
+letters = st.text(st.characters(categories=["L", "M", "N", "S", "P"]), min_size=1, max_size=20)
 scenes = st.builds(
     Scene,
-    name=st.text() | st.sampled_from(["1e-2", "yes", "null", "1:30", "a: b", "0x1", "# x", "\x85"]),
+    name=(text | letters).filter(lambda name: not name_fault(name)),
     law=laws,
     boundary=st.builds(
         room.Boundary,
@@ -128,7 +132,7 @@ scenes = st.builds(
         also=st.sampled_from([(), ("n = [0, 0, 0]",), ("n = ex", "u2(end) = 1e-2*turn")]),
     ),
     guess=st.builds(room.LoadGuess, force=numbers, moment=numbers)
-    | st.builds(room.SolutionGuess, solution=st.text()),
+    | st.builds(room.SolutionGuess, solution=text),
     states=st.sampled_from(["reduced", "full"]),
     interval=st.tuples(floats, floats).filter(lambda pair: pair[0] < pair[1]),
     parameters=st.dictionaries(st.just("other"), floats).map(lambda some: {"turn": 0.5, **some}),
