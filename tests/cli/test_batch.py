@@ -14,7 +14,6 @@ import pytest
 from batches import STUDY, without_times, written
 from half_studies import SCENE
 
-from ribbonopt.cli import batch
 from ribbonopt.pipeline.prepared import solve
 from ribbonopt.scene import load_scene
 from ribbonopt.studies.batch.batch import run_batch
@@ -222,7 +221,7 @@ def test_progress_is_shown_on_terminals_only(
 ) -> None:
     study.write_text(STUDY.replace("count: 30", "count: 8"))
     assert run("batch", study, "--out", tmp_path / "a").err == ""
-    monkeypatch.setattr(batch.sys, "stderr", terminal := Terminal())
+    monkeypatch.setattr(sys, "stderr", terminal := Terminal())
     assert run("batch", study, "--out", tmp_path / "b").status == 0
     shown = terminal.getvalue().split("\r")
     assert any(part.startswith("8/8 done, 0 failed, ") and "left" in part for part in shown)
