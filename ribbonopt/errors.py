@@ -53,3 +53,8 @@ class ConvergenceError(RibbonoptError, RuntimeError):
     def __init__(self, message: str, status: str) -> None:
         super().__init__(message)
         self.status = status
+
+
+def no_memory(error: BaseException) -> bool:
+    """Whether an error says that there is no memory left, in the words of Python or of CasADi."""
+    return isinstance(error, MemoryError) or "std::bad_alloc" in str(error)

@@ -6,14 +6,14 @@ reading, TeX, formulas of spreadsheets, half characters. It is to be seen, and n
 
 from __future__ import annotations
 
-import re
-
 _SEEN = "\n\u200c\u200d"  # besides what is printable: breaks, and joiners, which shape letters
 LONGEST_NAME = 120  # bytes in UTF-8: with what is added to it, a folder has room for 255
 LONGEST_WORD = 100
 
-_NOT_IN_NAMES = re.compile(r'[/\\:*?"<>|]')
-_DEVICES = re.compile(r"(con|prn|aux|nul|conin\$|conout\$|(com|lpt)[0-9¹²³])\s*(\.|$)", re.I)
+_NOT_IN_NAMES = frozenset('/\\:*?"<>|')
+_PORTS = (f"{port}{number}" for port in ("com", "lpt") for number in "0123456789¹²³")
+#: what Windows takes for a device, whatever follows a dot
+_DEVICES = frozenset(("con", "prn", "aux", "nul", "conin$", "conout$", *_PORTS))
 #: what our own folders hold: a folder of results so named would be taken for a part of a result
 RESERVED_NAMES = frozenset(
     (
@@ -75,11 +75,11 @@ def name_fault(name: str) -> str:
         return f"expected a name with letters or digits; {says}"
     if one_line(name) != name:
         return f"expected a name without control characters; {says}"
-    if found := _NOT_IN_NAMES.search(name):
-        return f'expected a name without {found[0]}; {says} (leave out / \\ : * ? " < > |)'
+    if found := next((sign for sign in name if sign in _NOT_IN_NAMES), ""):
+        return f'expected a name without {found}; {says} (leave out / \\ : * ? " < > |)'
     if name != name.strip() or name[0] in ".-" or name.endswith("."):
         return f"expected a name without a space or . at its ends, or - before it; {says}"
-    if _DEVICES.match(name) or name.casefold() in RESERVED_NAMES:
+    if name.split(".")[0].strip().lower() in _DEVICES or name.casefold() in RESERVED_NAMES:
         return f"is reserved for something else; choose another name, {says}"
     return ""
 

@@ -10,6 +10,7 @@ from __future__ import annotations
 
 import gc
 import os
+import warnings
 from collections.abc import Sequence
 from typing import NoReturn
 
@@ -24,6 +25,8 @@ def run() -> NoReturn:
     """Run the command line in a process of its own; entry point of `ribbonopt`."""
     # Before numpy is loaded: threads cost small matrices more than they bring.
     os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
+    # Numbers that overflow on the way to a solution are no news: it is verified, or says it failed.
+    warnings.simplefilter("ignore", RuntimeWarning)
     open_standard_streams()
     signals = Signals()
     try:

@@ -11,6 +11,7 @@ from datetime import timedelta
 from typing import TYPE_CHECKING, Any
 
 from ribbonopt.errors import SceneError
+from ribbonopt.scene.limits import JOBS
 from ribbonopt.text import one_line
 
 from .arguments import count
@@ -37,11 +38,11 @@ def batch(options: argparse.Namespace) -> int:
     if options.retry and not options.resume:
         raise SceneError("--retry: goes on with rows that are there; give --resume too")
     gc.enable()  # many rows, and threads that serve the workers
-    jobs = None if options.jobs is None else count("--jobs", options.jobs)
+    jobs = None if options.jobs is None else count("--jobs", options.jobs, JOBS)
     study = load_study(options.study, options.set)
+    study.check()
     if study.count > HUGE and not options.yes:
         raise SceneError(f"{study.name}: {study.count:,} ribbons; say --yes if that is meant")
-    study.check()
     _known(pairs or [], study.columns)
     if options.scheduler:
         from ribbonopt.studies.batch.cluster import check_cluster

@@ -6,7 +6,14 @@ import argparse
 from collections.abc import Callable, Sequence
 from importlib import import_module
 
-from ribbonopt.errors import ConvergenceError, ModelError, PictureError, RibbonoptError, SceneError
+from ribbonopt.errors import (
+    ConvergenceError,
+    ModelError,
+    PictureError,
+    RibbonoptError,
+    SceneError,
+    no_memory,
+)
 
 from .arguments import parser
 from .common import BAD_INPUT, NOT_CONVERGED
@@ -41,8 +48,11 @@ def run_command(arguments: Sequence[str] | None) -> int:
         return _fail(options, str(error), "bad_input", BAD_INPUT)
     except OSError as error:  # of a file or a disk that nobody has looked at before
         return _fail(options, str(error), "bad_input", BAD_INPUT)
-    except MemoryError:
-        message = "there is not enough memory; solve something smaller, or on a larger machine"
+    except (MemoryError, RuntimeError) as error:
+        if not no_memory(error):
+            raise
+        message = "there is not enough memory; solve something smaller (fewer intervals under "
+        message += "transcription.intervals), or on a larger machine"
         return _fail(options, message, "no_memory", NOT_CONVERGED)
 
 

@@ -7,6 +7,8 @@ import gc
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
+from ribbonopt.scene.limits import REPEATS
+
 from .arguments import chosen, count, numbers
 from .common import NOT_CONVERGED, drawn, load
 from .terminal import complain, say, say_json
@@ -27,7 +29,7 @@ def compare(options: argparse.Namespace) -> int:
 
 def bench(options: argparse.Namespace) -> int:
     """Measure time against error over degrees and meshes."""
-    repeat = count("--repeat", options.repeat)
+    repeat = count("--repeat", options.repeat, REPEATS)
     scene, _ = load(options)
     from ribbonopt.studies.comparison.benchmark import benchmark
 

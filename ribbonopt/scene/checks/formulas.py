@@ -10,6 +10,8 @@ from ribbonopt.scene.formulas.parsing import FormulaError, evaluate_value, parse
 from ribbonopt.scene.formulas.words import RESERVED
 from ribbonopt.text import is_word
 
+from .magnitudes import as_written
+
 
 def values_of(
     formulas: Mapping[KeyPath, str], parameters: Mapping[str, float]
@@ -18,9 +20,12 @@ def values_of(
     values, problems = {}, []
     for path, formula in formulas.items():
         try:
-            values[path] = evaluate_value(formula, parameters)
+            value = evaluate_value(formula, parameters)
         except FormulaError as error:
             problems.append(Problem(path, str(error)))
+        else:
+            values[path] = value
+            problems += as_written(value, path)
     return values, problems
 
 

@@ -20,12 +20,15 @@ from ribbonopt.text import name_fault
 
 from .frames import check_frame
 from .loops import check_loop, check_piece
+from .magnitudes import as_written, in_units
 from .supports import check_supports
 
 
 def check(scene: Scene) -> list[Problem]:
     """Return the problems of a scene whose single values are valid."""
     boundary = scene.boundary
+    if problems := list(as_written(scene)):
+        return problems  # what follows computes with these numbers
     problems = [*_name(scene.name), *_interval(scene.interval)]
     formulas = dict(_formulas(boundary, Boundary, ("boundary",)))
     formulas |= _formulas(scene.loads, Loads, ("loads",))
@@ -50,6 +53,8 @@ def check(scene: Scene) -> list[Problem]:
         problems += _switching(scene.switching, scene.interval)
     if scene.ribbon is not None:
         problems += [*_sizes(scene.ribbon), *_fits(scene, scene.ribbon)]
+    if not problems:
+        problems += in_units(scene, values)
     if scene.record or scene.continuation is not None:
         # Imported late: few scenes are continued.
         from .continuation import check_continuation

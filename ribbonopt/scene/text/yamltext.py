@@ -6,6 +6,7 @@ parser is used: scalars are resolved here by the core schema of YAML 1.2 (sectio
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from typing import Any, NamedTuple
 
@@ -86,7 +87,7 @@ def _number(text: str) -> int | float | None:
         if digits.isascii() and digits.isdigit() and len(digits) < _LONGEST_INT:
             return int(text)
         if text.startswith(("0o", "0x")) and "_" not in text:
-            return int(text, 0)
+            return int(text, 0) if len(text) < _LONGEST_INT else math.inf
         return float(text) if _OF_NUMBERS.issuperset(text) else None
     except ValueError:
         return None

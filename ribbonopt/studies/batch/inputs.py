@@ -139,7 +139,7 @@ def _list(_: Path, value: Any) -> InputRows:
 
 def _random(_: Path, value: Any) -> InputRows:
     draws = Draws.read(value)
-    return InputRows(draws.count, tuple(draws.over), lambda i: draws.rows[i])
+    return InputRows(draws.count, tuple(draws.over), draws.row)
 
 
 def _csv(folder: Path, value: Any) -> InputRows:

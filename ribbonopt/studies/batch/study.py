@@ -11,6 +11,7 @@ from typing import Literal
 
 from ribbonopt.errors import SceneError
 from ribbonopt.scene import Scene
+from ribbonopt.scene.limits import RIBBONS
 from ribbonopt.scene.quantities import ANSWERS
 from ribbonopt.scene.yamlio import loads_scene
 
@@ -140,13 +141,14 @@ class Study:
     @property
     def ribbons(self) -> Iterator[StudyRibbon]:
         """The ribbons, numbered from 1."""
+        self._refuse_too_many()
         numbers = itertools.count(1)
         for sweep in self.sweeps:
             for inputs in sweep.inputs:
                 yield StudyRibbon(next(numbers), sweep.source, sweep.common, inputs)
 
     def check(self) -> None:
-        """Refuse a study none of whose ribbons can be solved.
+        """Refuse a study of too many ribbons, or none of whose ribbons can be solved.
 
         Raises
         ------
@@ -154,9 +156,15 @@ class Study:
             If a key of the study does not fit its scene, or no scene is sound. A bad scene among
             good ones only spoils its own rows.
         """
+        self._refuse_too_many()
         faults = [sweep.check() for sweep in self.sweeps]
         if all(faults):
             raise SceneError(faults[0])
+
+    def _refuse_too_many(self) -> None:
+        if self.count > RIBBONS:
+            several = "make several studies of them"
+            raise SceneError(f"{self.name}: more than {RIBBONS:,} ribbons; {several}")
 
     @property
     def digest(self) -> str:

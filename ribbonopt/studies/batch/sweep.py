@@ -26,6 +26,7 @@ from typing import Any
 from ribbonopt.errors import SceneError
 from ribbonopt.plain import is_number
 from ribbonopt.scene.faults import InvalidSceneError, KeyPath, Place, dotted, report, suggestion
+from ribbonopt.scene.limits import SECONDS
 from ribbonopt.scene.yamlio import plain_yaml, read_yaml
 from ribbonopt.text import name_fault
 
@@ -110,6 +111,8 @@ def _study(
     limit = data.get("time_limit", 1.0)
     if not is_number(limit) or limit <= 0:
         raise fault(("time_limit",), "expected a number of seconds > 0", limit)
+    if limit > SECONDS:
+        raise fault(("time_limit",), f"expected at most {SECONDS:,.0f} seconds", limit)
     given = {} if data.get("set") is None else data["set"]
     if not isinstance(given, dict):
         raise fault(("set",), "expected keys of the scene and their values", given)
