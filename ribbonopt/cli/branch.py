@@ -56,7 +56,8 @@ def follow(options: argparse.Namespace) -> int:
                 for _ in shown:
                     pass
             if pairs is not None:
-                status = drawn(lambda: _draw(continuation, folder.lines, pairs, folder.folder))
+                place = folder.folder
+                status = drawn(lambda: _draw(continuation, folder.lines, pairs, place, place))
     except KeyboardInterrupt:
         complain(
             f"interrupted; {len(folder.rows)} points kept in {folder.folder}, "
@@ -74,7 +75,7 @@ def draw(result: Path, out: Path, pairs: list[tuple[str, str]]) -> list[Path]:
 
     scene, lines = load_branch(result)
     pairs = _columns(pairs, Recorder(scene))  # before anything is built
-    return _draw(Continuation(scene), lines, pairs, out)
+    return _draw(Continuation(scene), lines, pairs, out, result)
 
 
 def _columns(pairs: list[tuple[str, str]], recorder: Recorder) -> list[tuple[str, str]]:
@@ -90,8 +91,9 @@ def _draw(
     lines: list[dict[str, Any]],
     pairs: list[tuple[str, str]],
     out: Path,
+    source: Path,
 ) -> list[Path]:
-    from ribbonopt.studies.continuation.files import rows_of
+    from ribbonopt.studies.continuation.files import FILE, rows_of
     from ribbonopt.studies.continuation.stored import restored
     from ribbonopt.studies.continuation.walk.steps import JUMPED
     from ribbonopt.views.branch import save_branch_figures
@@ -106,7 +108,8 @@ def _draw(
         jumps=[row["number"] for row in rows if JUMPED in row.get("note", "")],
         si=scene.ribbon is not None,
     )
-    solutions = dict(restored(continuation, lines, [row["number"] for row in figure.pictured]))
+    numbers = [row["number"] for row in figure.pictured]
+    solutions = dict(restored(continuation, lines, numbers, source / FILE))
     drawn = save_branch_figures(figure, solutions, out)
     say_left_out(drawn.left_out)
     return drawn.paths

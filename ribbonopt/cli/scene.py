@@ -3,9 +3,11 @@
 from __future__ import annotations
 
 import argparse
+import os
 from typing import TYPE_CHECKING, Any
 
 from ribbonopt.errors import SceneError
+from ribbonopt.reading import is_file
 
 from .common import NOT_CONVERGED, default_folder, drawn, listing, load, pairs_of, say_left_out
 from .terminal import complain, say, say_json, say_line
@@ -101,20 +103,18 @@ def schema(options: argparse.Namespace) -> int:
 
 def plot(options: argparse.Namespace) -> int:
     """Draw the pictures of a saved result."""
-    from pathlib import Path
-
     from ribbonopt.output.claims import pictures_in
     from ribbonopt.output.results import load_solution
     from ribbonopt.output.staging import recovered
 
     result, pairs = recovered(options.result), pairs_of(options.plot) or []
-    if (result / "branch.jsonl").is_file():
+    if is_file(result / "branch.jsonl"):
         from .branch import draw as draw_branch
 
         def draw(folder: Path) -> list[Path]:
             return draw_branch(result, folder, pairs)
 
-    elif (result / "rows.jsonl").is_file():
+    elif is_file(result / "rows.jsonl"):
         from .batch import draw as draw_batch
 
         def draw(folder: Path) -> list[Path]:
@@ -124,9 +124,9 @@ def plot(options: argparse.Namespace) -> int:
         raise SceneError(
             f"--plot: {result} is no branch and no batch, whose columns could be drawn"
         )
-    elif not result.is_dir():
-        beside = Path(f"{result}-branch")
-        near = f"; did you mean {beside}?" if beside.is_dir() else ""
+    elif not os.path.isdir(result):
+        beside = f"{result}-branch"
+        near = f"; did you mean {beside}?" if os.path.isdir(beside) else ""
         wanted = "expected one written by ribbonopt solve, continue or batch"
         raise SceneError(f"{result}: no such folder; {wanted}{near}")
     else:

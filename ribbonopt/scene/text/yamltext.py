@@ -176,9 +176,7 @@ class _Reader:
 
     def _alias(self, event: Any, line: int) -> Any:
         if event.anchor not in self.anchors:
-            raise YamlTextError(
-                f"alias *{event.anchor} is not defined before it, or repeats itself", line
-            )
+            raise YamlTextError("an alias (*) is not defined before it, or repeats itself", line)
         return self._copy(self.anchors[event.anchor], line)
 
     def _copy(self, data: Any, line: int) -> Any:

@@ -8,7 +8,6 @@ from functools import lru_cache
 from typing import Any
 
 from ribbonopt.errors import SceneError
-from ribbonopt.scene.faults import quotable
 from ribbonopt.scene.text.yamltext import YamlTextError, read
 from ribbonopt.text import cell, quoted
 
@@ -28,11 +27,11 @@ def as_cell(value: Any) -> Any:
 
 
 def of_cell(text: str, where: str) -> Any:
-    """Return the input that a cell says; SceneError where it is no YAML."""
+    """Return the input that a cell says; SceneError where it is no YAML, which quotes nothing."""
     try:
         return read(text).data
     except YamlTextError as error:
-        raise SceneError(f"{where}: found {quotable(repr(text))}, which is {error}") from None
+        raise SceneError(f"{where}: {error}") from None
 
 
 @lru_cache(1000)  # texts of a column are few, or each is read once

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import contextlib
 import json
+import os
 from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
@@ -20,13 +21,13 @@ from ribbonopt.output.places import unwritable
 from ribbonopt.output.staging import replacing
 from ribbonopt.output.table import write_table
 from ribbonopt.plain import Row
-from ribbonopt.studies.lines import whole_lines
 
 from .cells import as_cell
 from .kept import OneEach
+from .saved import ROWS, STUDY, read_rows, read_study
 from .study import Study
 
-ROWS, TABLE, STUDY, SOLUTIONS = "rows.jsonl", "table.csv", "study.json", "solutions"
+TABLE, SOLUTIONS = "table.csv", "solutions"
 
 
 class BatchFolder:
@@ -141,7 +142,7 @@ class BatchFolder:
         self._file = Appended(open(self.folder / ROWS, "a", encoding="utf-8"))
 
     def _go_on(self, digest: str, resume: bool) -> None:
-        known = _record_of(self.folder)
+        known = read_study(self.folder)
         if known["digest"] != digest:
             raise OutputError(
                 f"{self.folder}: holds rows of another study ({known['name']}); choose another "
@@ -152,7 +153,7 @@ class BatchFolder:
                 f"{self.folder}: holds rows of this study already; go on by --resume, or choose "
                 "another folder"
             )
-        self.rows = OneEach(_read(self.folder / ROWS))
+        self.rows = OneEach(read_rows(self.folder, known, self.study))
 
 
 def sorted_columns(names: list[str], inputs: Sequence[str]) -> list[str]:
@@ -172,29 +173,7 @@ def load_batch(folder: str | Path) -> tuple[dict[str, Any], list[Row]]:
         If it holds none, or is damaged.
     """
     folder = Path(folder)
-    try:
-        return _record_of(folder), list(OneEach(_read(folder / ROWS)))
-    except FileNotFoundError:
-        raise OutputError(
-            f"{folder}: no batch; expected a folder written by ribbonopt batch"
-        ) from None
-
-
-def _record_of(folder: Path) -> dict[str, Any]:
-    path = folder / STUDY
-    try:
-        record = json.loads(path.read_text(encoding="utf-8"))
-    except ValueError:
-        record = None
-    if not isinstance(record, dict) or not {"name", "ribbons", "inputs", "digest"} <= record.keys():
-        raise OutputError(f"{path}: is damaged; choose another folder")
-    return record
-
-
-def _read(path: Path) -> list[Row]:
-    return whole_lines(path, _sound) if path.exists() else []
-
-
-def _sound(row: Any) -> bool:
-    """Whether a line holds what `BatchFolder` writes."""
-    return isinstance(row, dict) and {"number", "status", "verified"} <= row.keys()
+    if not os.path.exists(folder / STUDY):
+        raise OutputError(f"{folder}: no batch; expected a folder written by ribbonopt batch")
+    study = read_study(folder)
+    return study, list(OneEach(read_rows(folder, study)))

@@ -19,14 +19,17 @@ from __future__ import annotations
 
 import glob
 import itertools
+import os
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from ribbonopt.errors import SceneError
 from ribbonopt.plain import is_number
+from ribbonopt.scene import Scene
 from ribbonopt.scene.faults import InvalidSceneError, KeyPath, Place, dotted, report, suggestion
 from ribbonopt.scene.limits import SECONDS
+from ribbonopt.scene.schema.annotations import written_keys
 from ribbonopt.scene.yamlio import plain_yaml, read_yaml
 from ribbonopt.text import name_fault
 
@@ -55,7 +58,7 @@ def load_study(paths: Sequence[str | Path], overrides: Sequence[str] = ()) -> St
     for file in files:
         text = text_of(file)
         try:
-            found = read_yaml(text, str(file))
+            found = read_yaml(text, str(file), (*KEYS, *written_keys(Scene)))
         except SceneError:
             if len(files) == 1:
                 raise
@@ -81,12 +84,16 @@ def _named_after(file: Path) -> str:
 
 def _files(path: str) -> list[Path]:
     """Files that a path, a folder or a pattern stands for, sorted."""
-    if Path(path).is_dir():
-        found = sorted(file for file in Path(path).iterdir() if file.suffix in (".yaml", ".yml"))
+    if os.path.isdir(path):
+        try:
+            names = os.listdir(path)
+        except OSError as error:
+            raise SceneError(f"{path}: cannot be read: {error.strerror}") from None
+        found = sorted(Path(path, name) for name in names if name.endswith((".yaml", ".yml")))
         if not found:
             raise SceneError(f"{path}: holds no .yaml file; name a folder of scenes")
         return found
-    if any(character in path for character in "*?[") and not Path(path).exists():
+    if any(character in path for character in "*?[") and not os.path.exists(path):
         matches = sorted(glob.glob(path, recursive=True))
         if not matches:
             raise SceneError(f"{path}: no file matches")

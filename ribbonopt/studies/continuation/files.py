@@ -8,6 +8,7 @@ was cut short is not read. `branch.csv` has the rows as a table.
 from __future__ import annotations
 
 import json
+import os
 from collections.abc import Generator
 from contextlib import ExitStack
 from pathlib import Path
@@ -18,16 +19,20 @@ from ribbonopt.output.claims import claimed
 from ribbonopt.output.declared import BRANCH_PICTURES
 from ribbonopt.output.disk import Appended
 from ribbonopt.output.places import unwritable
+from ribbonopt.output.saved import SCENE as SAVED
+from ribbonopt.output.saved import read_scene
 from ribbonopt.output.staging import replacing
 from ribbonopt.output.table import write_table
-from ribbonopt.scene import Scene, dump_scene, load_scene
+from ribbonopt.plain import finite
+from ribbonopt.reading import read_text
+from ribbonopt.scene import Scene, dump_scene
 from ribbonopt.solution.solution import Solution
-from ribbonopt.studies.lines import whole_lines
 
 from .continuation import Continuation
+from .saved import read_branch
 from .stored import Stored, state_of
 from .walk.branches import Key
-from .walk.points import POINT, Point
+from .walk.points import Point
 
 FILE, TABLE, SCENE = "branch.jsonl", "branch.csv", "scene.yaml"
 
@@ -68,7 +73,7 @@ class BranchFolder:
         text = dump_scene(self.scene)
         if there:
             self._same(text)
-            self.lines = _read(self.folder / FILE)
+            self.lines = read_branch(self.folder / FILE, self.scene)
         if not (self.folder / SCENE).exists():
             self._replace(SCENE, text)
         self._replace(FILE, "".join(_line(line) for line in self.lines))
@@ -81,12 +86,12 @@ class BranchFolder:
 
     def follow(self, continuation: Continuation) -> Generator[Point[Solution], None, None]:
         """Points of a continuation from where the folder's end, each written before it is given."""
-        history = Stored(continuation, self.lines)
+        history = Stored(continuation, self.lines, self.folder / FILE)
         known = set(history.endings)
         try:
             for point in continuation.resume(history):
                 known = self._note_endings(continuation, known)
-                self._append({"row": dict(point.row), "state": state_of(point)})
+                self._append({"row": finite(dict(point.row)), "state": state_of(point)})
                 yield point
             self._note_endings(continuation, known)
         finally:
@@ -130,6 +135,7 @@ class BranchFolder:
                             "branch": branch,
                             "reached": ending.reached,
                             "reason": ending.reason,
+                            "points": len(self.rows),
                         }
                     }
                 )
@@ -144,7 +150,7 @@ class BranchFolder:
 
     def _same(self, text: str) -> None:
         scene = self.folder / SCENE
-        if not scene.exists() or scene.read_text(encoding="utf-8") != text:
+        if not os.path.exists(scene) or read_text(scene, SAVED) != text:
             raise OutputError(
                 f"{self.folder}: holds a branch of another scene; resume with the scene (and "
                 "--set) it was begun with, or choose another folder"
@@ -158,42 +164,15 @@ class BranchFolder:
 def load_branch(folder: str | Path) -> tuple[Scene, list[dict[str, Any]]]:
     """Return the scene and the lines of a branch folder; OutputError if it holds none."""
     folder = Path(folder)
-    if not ((folder / FILE).is_file() and (folder / SCENE).is_file()):
+    if not (os.path.exists(folder / FILE) and os.path.exists(folder / SCENE)):
         raise OutputError(f"{folder}: no branch; expected a folder written by ribbonopt continue")
-    return load_scene(folder / SCENE), _read(folder / FILE)
+    scene = read_scene(folder / SCENE)
+    return scene, read_branch(folder / FILE, scene)
 
 
 def rows_of(lines: list[dict[str, Any]]) -> list[dict[str, Any]]:
     """Rows of all points."""
     return [line["row"] for line in lines if "row" in line]
-
-
-def _read(path: Path) -> list[dict[str, Any]]:
-    """Whole lines; special points after the last regular one will be found again."""
-    lines = [_renamed(line) for line in whole_lines(path, _sound)]
-    while lines and "row" in lines[-1] and lines[-1]["row"]["kind"] != POINT:
-        lines.pop()
-    return lines
-
-
-def _renamed(line: dict[str, Any]) -> dict[str, Any]:
-    """Return a line with its parameter under its own name, which once was called `value`."""
-    row = line.get("row", {})
-    if "value" not in row:
-        return line
-    path = row["parameter"]
-    return {**line, "row": {path if key == "value" else key: row[key] for key in row}}
-
-
-def _sound(line: Any) -> bool:
-    """Whether a line holds what `BranchFolder` writes."""
-    if not isinstance(line, dict):
-        return False
-    row, ending = line.get("row"), line.get("ending")
-    if isinstance(ending, dict):
-        return {"stage", "branch", "reached", "reason"} <= ending.keys()
-    keys = {"number", "stage", "branch", "parameter", "kind"}
-    return isinstance(row, dict) and keys <= row.keys() and isinstance(line.get("state"), dict)
 
 
 def _line(value: dict[str, Any]) -> str:
