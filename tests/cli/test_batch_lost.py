@@ -52,14 +52,14 @@ def test_a_worker_that_dies_takes_one_ribbon_with_it(study: Path) -> None:
 
 @pytest.mark.slow
 def test_a_ribbon_that_hangs_is_given_up_and_not_tried_again(study: Path) -> None:
-    rows = lost(study, "hang", "--jobs", "2", time_limit=5)
+    rows = lost(study, "hang", "--jobs", "2", time_limit=15)
     assert [row["status"] for row in rows] == [*["converged"] * 3, "timed_out", *["converged"] * 2]
-    assert "took more than 5 s" in rows[3]["message"]
+    assert "took more than 15 s" in rows[3]["message"]
     # The rows after it in its chunk are lost, and to be made again.
     file = study.parent / "out" / "rows.jsonl"
     lines = file.read_text().splitlines(keepends=True)
     file.write_text("".join(line for line in lines if json.loads(line)["number"] < 5))
-    assert lost(study, "hang", "--jobs", "1", "--resume", time_limit=5) == rows
+    assert lost(study, "hang", "--jobs", "1", "--resume", time_limit=15) == rows
     assert (study.parent / "hanging").read_text().count("\n") == 1
 
 
@@ -201,7 +201,7 @@ def test_full_solutions_that_find_no_room_are_told(
     monkeypatch.setattr(Fields, "write", refuse)
     study.write_text(STUDY.replace("count: 30", "count: 2"))
     (chunk, *_) = chunks_of(load_study([study]))
-    asked = message(chunk, [], (), "all", str(tmp_path))
+    asked = message(chunk.ribbons, [], (), "all", str(tmp_path))
     rows = [answer["row"] for answer in worker.Worker().answers(asked) if "row" in answer]
     assert rows
     for row in rows:
@@ -227,7 +227,7 @@ def test_errors_of_any_kind_spoil_their_own_row(
     rows = [
         answer["row"]
         for chunk in chunks_of(load_study([study]))
-        for answer in hand.answers(message(chunk, [], (), "none", ""))
+        for answer in hand.answers(message(chunk.ribbons, [], (), "none", ""))
         if "row" in answer
     ]
     rows.sort(key=lambda row: int(row["number"]))

@@ -9,7 +9,6 @@ import pytest
 from ribbonopt.pipeline.prepared import Prepared, solve
 from ribbonopt.scene import Scene, loads_scene
 from ribbonopt.studies.batch import family
-from ribbonopt.studies.batch.chunks import Chunk
 from ribbonopt.studies.batch.neighbour import Neighbour
 from ribbonopt.studies.batch.processes import message
 from ribbonopt.studies.batch.study import Source, StudyRibbon
@@ -32,7 +31,7 @@ def rows_of(inputs: list[dict[str, Any]]) -> list[dict[str, Any]]:
     ribbons = [
         StudyRibbon(i, Source("arch", ARCH), {}, row) for i, row in enumerate(inputs, start=1)
     ]
-    work = message(Chunk(tuple(ribbons)), [], (), "none", "")
+    work = message(ribbons, [], (), "none", "")
     return [
         answer["row"]
         for answer in Worker().answers(json.loads(json.dumps(work)))
