@@ -35,7 +35,7 @@ from ribbonopt.scene import (
 )
 from ribbonopt.solution.solution import Solution
 from ribbonopt.solvers import NewtonSolver, Status
-from ribbonopt.starts import homotopy
+from ribbonopt.starts import automatic, homotopy
 from ribbonopt.starts.automatic import Automatic
 from ribbonopt.starts.equilibria import _variants as variants
 from ribbonopt.starts.equilibria import equilibria, potential
@@ -179,6 +179,37 @@ def test_delta_goes_down_as_far_as_it_can(monkeypatch: pytest.MonkeyPatch, limit
     path = followed(scene(CLAMP, End("free", force=(1, 0, 0))), STRAIGHT, 0.01)
     assert not path.complete
     assert limit <= path.points[-1].scene.law.delta < 1.2 * limit
+
+
+@pytest.mark.parametrize("losses", [1, 2])
+def test_where_a_path_is_lost_the_energy_is_minimised_further_down(
+    monkeypatch: pytest.MonkeyPatch, losses: int
+) -> None:
+    """Above the place the branch was there all along: the minimum would lead onto it again."""
+    whole, least = automatic.follow, Automatic._least
+    lost: list[float] = []
+    minimised: list[float] = []
+
+    def follow(*parts: Any) -> HomotopyPath:
+        found = whole(*parts)
+        if len(lost) == losses:
+            return found
+        points = [point for point in found.points if point.scene.law.delta > 0.1 / 3 ** len(lost)]
+        lost.append(points[-1].scene.law.delta)
+        return replace(found, points=tuple(points), complete=False)
+
+    def minimum(self: Automatic, posed: Posed, law: Any, *rest: Any) -> Solution:
+        minimised.append(law.delta)
+        return least(self, posed, law, *rest)
+
+    monkeypatch.setattr(automatic, "follow", follow)
+    monkeypatch.setattr(Automatic, "_least", minimum)
+    end = End("clamped", (0, 0.05, 0.8), directors="identity")
+    posed = Posed.of(scene(CLAMP, end, law=Variational(delta=0.005)))
+    found = next(iter(Automatic(posed).guesses(posed, Ledger())))
+    assert isinstance(found, Solution) and found.scene.law == posed.scene.law
+    assert len(minimised) == 1 + losses
+    assert all(there > further for there, further in zip(lost, minimised[1:], strict=True))
 
 
 # Loops that scenes make without saying so.
