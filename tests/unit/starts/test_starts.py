@@ -25,8 +25,10 @@ from ribbonopt.scene import (
     Boundary,
     Collocation,
     End,
+    Kirchhoff,
     LabVector,
     LoadGuess,
+    Loads,
     Loop,
     Sadowsky,
     Scene,
@@ -40,6 +42,7 @@ from ribbonopt.starts.automatic import Automatic
 from ribbonopt.starts.equilibria import _variants as variants
 from ribbonopt.starts.equilibria import equilibria, potential
 from ribbonopt.starts.first_shape import shapes_for
+from ribbonopt.starts.grading import is_coarse
 from ribbonopt.starts.homotopy import HomotopyPath, smooth_of
 from ribbonopt.starts.loops import closed_posed, fundamental_scene, loop_of
 
@@ -365,6 +368,31 @@ def test_the_work_of_dead_forces_counts() -> None:
     assert potential(found) == pytest.approx(found.energy - tip[0], abs=1e-12)
     start = solve(scene(End("free", force=(-1, 0, 0)), CLAMP))
     assert potential(start) == pytest.approx(potential(found), abs=1e-9)
+
+
+def test_the_work_of_a_weight_counts() -> None:
+    """Potential: strain energy less the force per length times the position, along the ribbon."""
+    f = np.array([2.0, 0.5, -1.0])
+    found = solve(scene(CLAMP, End("free"), loads=Loads(force=tuple(f))))
+    s = np.linspace(0, 1, 2001)
+    work = np.trapezoid(found.sample(s, "r") @ f, s)
+    assert abs(work) > 0.1
+    assert potential(found) == pytest.approx(found.energy - work, abs=1e-6)
+
+
+@pytest.mark.parametrize("length", [0.3, 1.0, 4.0])
+@pytest.mark.parametrize(("intervals", "coarse"), [(4, True), (8, False)])
+def test_an_interval_is_coarse_by_the_angle_it_turns(
+    length: float, intervals: int, coarse: bool
+) -> None:
+    """Six radians of a circle, however long: a radian is too much for an interval."""
+    mesh = Collocation(degree=3, intervals=intervals)
+    end = End("free", force=(0, 0, 0), moment=(0, 6.0 / length, 0))
+    guess = LoadGuess((0, 0, 0), (0, 6 / length, 0))
+    law, interval = Kirchhoff(B2=1.0, B3=1.0), (0.0, length)
+    found = solve(scene(CLAMP, end, law=law, interval=interval, transcription=mesh, guess=guess))
+    assert found.verified
+    assert is_coarse(found) == coarse
 
 
 def test_equal_seeds_perturb_alike_and_others_do_not() -> None:

@@ -7,8 +7,8 @@ from matplotlib.colors import to_rgba
 from ribbonopt.views.camera import Camera
 from ribbonopt.views.facets import BACK, FRONT, draw_surface
 from ribbonopt.views.pieces import Piece
-from ribbonopt.views.style import ALLOWED, FORBIDDEN, blank
 from ribbonopt.views.plane import _shade
+from ribbonopt.views.style import ALLOWED, FORBIDDEN, blank
 from ribbonopt.views.surface import sweep
 
 AXES = np.eye(3)
