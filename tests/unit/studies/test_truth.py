@@ -8,10 +8,10 @@ from typing import Any
 import numpy as np
 import pytest
 
-from ribbonopt.scene import Scene, load_scene
+from ribbonopt.scene import Collocation, Scene, load_scene
 from ribbonopt.scene.units import Units
 from ribbonopt.studies.comparison import truth
-from ribbonopt.studies.comparison.measure import Measurement
+from ribbonopt.studies.comparison.measure import Measurement, measure
 from ribbonopt.studies.comparison.profile import Profile, errors_of, load_sizes
 from ribbonopt.studies.comparison.truth import FINE, fine_solves, truth_of
 
@@ -54,11 +54,11 @@ def test_the_truth_is_known_ten_times_better_than_what_it_judges(
 ) -> None:
     meshes: list[int] = []
 
-    def measure(pair: Any, scene: Scene, mesh: Any, repeat: int) -> tuple[Measurement, None]:
+    def told(pair: Any, scene: Scene, mesh: Any, repeat: int) -> tuple[Measurement, None]:
         meshes.append(mesh.intervals)
         return measured(estimates[len(meshes) - 1]), None
 
-    monkeypatch.setattr(truth, "measure", measure)
+    monkeypatch.setattr(truth, "measure", told)
     found = fine_solves(load_scene(configs / "moebius_half.yaml"), 1e-6)
     assert len(found) == count and meshes == sorted(set(meshes))
 
@@ -70,3 +70,16 @@ def test_the_truth_is_the_best_that_is_verified(monkeypatch: pytest.MonkeyPatch)
     assert best is not None
     assert best.error == 1e-9
     assert np.linalg.norm(best.profile.n0) == pytest.approx(1e-9)
+
+
+@pytest.mark.parametrize("name", ["moebius_half", "helix_clamped"])
+def test_its_own_estimate_is_the_larger_error_of_both_loads(configs: Path, name: str) -> None:
+    scene = load_scene(configs / f"{name}.yaml")
+    fine, coarse = (
+        measure(FINE, scene, Collocation(degree=degree, intervals=count), repeat=1)[0]
+        for degree, count in ((8, 40), (2, 6))
+    )
+    assert fine.profile is not None and coarse.profile is not None
+    errors = errors_of(coarse.profile, fine.profile)
+    assert errors["error_n0"] > 1.5 * errors["error_m0"]
+    assert coarse.estimate == pytest.approx(errors["error_n0"], rel=0.1)
