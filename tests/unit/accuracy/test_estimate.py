@@ -8,6 +8,8 @@ import pytest
 
 from ribbonopt.accuracy.estimate import SAFETY, Analysis, analyse, estimate_error
 from ribbonopt.accuracy.recorded import recorded_errors
+from ribbonopt.pipeline.prepared import solve
+from ribbonopt.scene import loads_scene
 from ribbonopt.solution.solution import Solution
 
 Solved = Callable[..., Solution]
@@ -36,6 +38,30 @@ def test_in_phases_the_estimate_is_the_error_at_the_same_arclength(
     for name, error in off.items():
         assert error > 1e-10
         assert bars[name] == pytest.approx(SAFETY * error, rel=0.1), name
+
+
+@pytest.mark.parametrize(
+    "law", ["{type: kirchhoff, B2: 1, B3: 2}", "{type: variational, delta: 0.3}"]
+)
+def test_under_loads_bars_are_known_and_tight(law: str) -> None:
+    """H changes along a ribbon that bears its own weight, and is no witness of its errors."""
+    text = f"""
+name: heavy
+law: {law}
+boundary:
+  start: {{support: clamped, position: [0, 0, 0], directors: identity}}
+  end: {{support: clamped, position: [0.1, 0.05, 0.8], directors: identity}}
+loads: {{force: [5, 2, 0]}}
+"""
+    mesh = "transcription={{type: collocation, degree: {}, intervals: {}}}"
+    found, exact = (
+        solve(loads_scene(text, overrides=[mesh.format(*size)])) for size in ((3, 8), (8, 20))
+    )
+    assert float(np.ptp(exact.at_nodes["H"])) > 0.1
+    bars = estimate_error(found)
+    for name, off in (("n0", found.n0 - exact.n0), ("m0", found.m0 - exact.m0)):
+        error = float(np.abs(off).max())
+        assert 1e-9 < error <= bars[name] < 20 * error
 
 
 def test_what_schemes_overlook_is_in_the_bars_of_records_too(solved: Solved) -> None:

@@ -4,13 +4,16 @@ A ribbon twice as short has twice the moments, and a rod may be as stiff as one 
 sign, what leaps and what is zero is told relative to the largest moment, never by itself.
 """
 
+from dataclasses import replace
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
 import pytest
 
-from ribbonopt.checks.arcs import leaps, sign_changes, with_mixtures
+from ribbonopt.checks.arcs import given_arcs, leaps, sign_changes, with_mixtures
+from ribbonopt.scene import load_scene
 from ribbonopt.solution.solution import Solution
 
 Array = np.ndarray
@@ -105,3 +108,17 @@ def test_what_shrinks_with_delta_is_a_layer_and_no_mixture() -> None:
     np.testing.assert_allclose(arcs.switches, [0.35, 0.6, 0.8], atol=0.01)
     layer = [ribbon(1.0, m2, leap, beyond((0.35 - h, 0.35 + h))) for h in (0.03, 0.09)]
     assert not list(with_mixtures(*layer))
+
+
+@pytest.mark.parametrize("mirror", [1, -1])
+def test_phases_that_a_scene_names_begin_on_the_side_where_the_ribbon_is(
+    configs: Path, mirror: int
+) -> None:
+    whole = load_scene(configs / "moebius_regularized.yaml")
+    named = replace(whole, switching=(0.2, 0.6))
+    source: Any = SimpleNamespace(
+        scene=whole, outputs=lambda s: {"m2": mirror * np.where(s < 0.15, 1.0, -1.0)}
+    )
+    found = given_arcs(source, named)
+    assert found.kinds == (mirror, -mirror, mirror)
+    np.testing.assert_allclose(found.switches, (0.2, 0.6))
