@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from ribbonopt.output.summary import summarize
-from ribbonopt.pipeline.prepared import solve
-from ribbonopt.scene import load_scene
+from ribbonopt.pipeline.prepared import prepare, solve
+from ribbonopt.scene import load_scene, loads_scene
 from ribbonopt.solution.solution import Solution
 
 Solved = Callable[..., Solution]
@@ -140,3 +140,44 @@ def test_summary_of_a_failed_solve_says_what_is_not_known(configs: Path) -> None
     assert set(summary["error_estimate"].values()) == {None}
     assert set(summary["invariant_drift"].values()) == {None}
     json.dumps(summary, allow_nan=False)
+
+
+def test_moments_about_another_point_are_not_taken_as_they_are(configs: Path) -> None:
+    """The same ribbon elsewhere: its constants are those about where it starts now."""
+    found, elsewhere = (
+        prepare(load_scene(configs / "helix_clamped.yaml", overrides))
+        for overrides in ([], ["boundary.start.position=[0.5, -0.3, 0.2]"])
+    )
+    solution, fractions = found.solve(), np.linspace(0, 1, 3)
+    for prepared, same in ((found, True), (elsewhere, False)):
+        theta = prepared.posed().values
+        taken = solution.unknowns_for(prepared.problem, theta, fractions)
+        assert (taken is not None) == same
+        # Either way the guess bears what the solution bears.
+        w, p = prepared.start(solution)
+        nodes, _, c = prepared.nlp.layout.unpack(w)
+        x = prepared.ribbon.section_function(nodes[0], c, prepared.nlp.layout.theta(p), 0.0)
+        np.testing.assert_allclose(np.array(x[5]).ravel(), solution.m0, atol=1e-9)
+
+
+def test_between_nodes_a_stiff_ribbon_is_as_exact_as_at_them() -> None:
+    """Where neighbouring solutions part fast, no step from one node may follow another of them."""
+    text = """
+name: stiff
+law: {type: regularized, epsilon: 0.001}
+boundary:
+  start: {position: [0, 0, 0], directors: identity}
+  end:
+    position: [0.494016840037, -0.701732434390, -0.380310185943]
+    directors: {rotation_vector: [1.1, 0.7, -2.0]}
+tolerance: %s
+"""
+    found, exact = (solve(loads_scene(text % tolerance)) for tolerance in (1e-4, 1e-10))
+    assert found.verified and exact.verified
+    assert found.dense.growth.max() > 30
+    between = np.linspace(0, 1, 3001)
+    off = []
+    for s in (found.nodes, between):
+        ours, true = found.outputs(s), exact.outputs(s)
+        off.append(max(float(np.abs(ours[k] - true[k]).max()) for k in ("r", "d1", "d2", "d3")))
+    assert off[1] < 20 * off[0] + 1e-6
