@@ -1,7 +1,8 @@
-"""What a search has cost, and where it resists."""
+"""What a search has cost, where it resists, and how far it goes."""
 
 from collections.abc import Callable
 from dataclasses import replace
+from pathlib import Path
 from types import SimpleNamespace
 from typing import Any
 
@@ -10,6 +11,9 @@ import pytest
 
 from ribbonopt.attempt.ledger import Ledger
 from ribbonopt.attempt.resistance import where_it_resists
+from ribbonopt.checks.verify import TOLERANCE
+from ribbonopt.pipeline.prepared import prepare
+from ribbonopt.scene import load_scene
 from ribbonopt.solution.solution import Solution
 from ribbonopt.solvers import SolveReport, Status
 from ribbonopt.solvers.auto import AutoSolver
@@ -58,3 +62,13 @@ def test_where_equations_have_no_number_they_resist_most(solved: Solved, value: 
     residuals[-1] = value
     name = list(found.problem.conditions)[-1]
     assert f"is the condition {name}" in where_it_resists(residuals, layout, found)
+
+
+@pytest.mark.parametrize("tolerance", [1e-2, 1e-6, 1e-12])
+def test_the_last_step_shows_neither_in_the_answer_nor_in_its_conditions(
+    configs: Path, tolerance: float
+) -> None:
+    scene = load_scene(configs / "moebius_half.yaml", [f"tolerance={tolerance}"])
+    enough = prepare(scene).search().plain.enough
+    assert 0 < enough <= tolerance / 50
+    assert enough <= TOLERANCE / 50

@@ -160,6 +160,7 @@ def test_moments_about_another_point_are_not_taken_as_they_are(configs: Path) ->
         np.testing.assert_allclose(np.array(x[5]).ravel(), solution.m0, atol=1e-9)
 
 
+@pytest.mark.slow
 def test_between_nodes_a_stiff_ribbon_is_as_exact_as_at_them() -> None:
     """Where neighbouring solutions part fast, no step from one node may follow another of them."""
     text = """

@@ -41,7 +41,7 @@ from ribbonopt.starts import automatic, homotopy
 from ribbonopt.starts.automatic import Automatic
 from ribbonopt.starts.equilibria import _variants as variants
 from ribbonopt.starts.equilibria import equilibria, potential
-from ribbonopt.starts.first_shape import shapes_for
+from ribbonopt.starts.first_shape import compresses, shapes_for
 from ribbonopt.starts.grading import is_coarse
 from ribbonopt.starts.homotopy import HomotopyPath, smooth_of
 from ribbonopt.starts.loops import closed_posed, fundamental_scene, loop_of
@@ -213,6 +213,31 @@ def test_where_a_path_is_lost_the_energy_is_minimised_further_down(
     assert isinstance(found, Solution) and found.scene.law == posed.scene.law
     assert len(minimised) == 1 + losses
     assert all(there > further for there, further in zip(lost, minimised[1:], strict=True))
+
+
+def test_a_smooth_law_is_started_under_itself() -> None:
+    """Blunter laws are on the way to it: what led nowhere from their end does so from before."""
+    end = End("clamped", (0, 0.05, 0.8), directors="identity")
+    posed = Posed.of(scene(CLAMP, end, law=Variational(delta=0.02)))
+    for guess in islice(Automatic(posed).guesses(posed, Ledger()), 2):
+        assert isinstance(guess, Solution) and guess.scene.law == posed.scene.law
+
+
+@pytest.mark.parametrize(
+    ("force", "pushed"),
+    [
+        ((0, 0, -1.0), True),
+        ((0, 0, 1.0), False),
+        ((3.0, -2.0, 0), False),
+        ((3.0, -2.0, -1e-16), False),  # across, to rounding
+        ((3.0, -2.0, -1e-6), True),
+        ((0, 0, 0), False),
+    ],
+)
+def test_a_strip_is_compressed_by_what_pushes_its_ends_together(force: Any, pushed: bool) -> None:
+    posed = Posed.of(scene(CLAMP, End("free", force=force)))
+    chord = Chord((np.zeros(3), np.eye(3)), (np.array([0, 0, 1.0]), np.eye(3)), 1.0)
+    assert compresses(posed, chord) == pushed
 
 
 # Loops that scenes make without saying so.
