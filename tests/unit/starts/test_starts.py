@@ -32,6 +32,8 @@ from ribbonopt.scene import (
     Loop,
     Sadowsky,
     Scene,
+    Turn,
+    Turns,
     Variational,
     load_scene,
 )
@@ -213,6 +215,20 @@ def test_where_a_path_is_lost_the_energy_is_minimised_further_down(
     assert isinstance(found, Solution) and found.scene.law == posed.scene.law
     assert len(minimised) == 1 + losses
     assert all(there > further for there, further in zip(lost, minimised[1:], strict=True))
+
+
+def test_uneven_rods_are_followed_along_the_secant() -> None:
+    """From where the path branches off to a ratio twenty times smaller: a few iterations a step.
+
+    From the point before, instead of the secant, it takes three times as many, and more steps.
+    """
+    end = End("clamped", (0.1, 0.05, 0.8), directors=Turns((Turn(y=0.5), Turn(z=0.8))))
+    posed, ledger = Posed.of(scene(CLAMP, end, law=Kirchhoff(B2=1.0, B3=0.003))), Ledger()
+    (found,) = islice(Automatic(posed).guesses(posed, ledger), 1)
+    assert isinstance(found, Solution)
+    last = [step for step in ledger.steps if "newton" in step["step"]][-1]
+    assert last["step"].endswith("B3 / B2 = 0.003")
+    assert last["iterations"] < 130
 
 
 def test_a_smooth_law_is_started_under_itself() -> None:

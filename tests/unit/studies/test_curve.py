@@ -1,5 +1,6 @@
 """A parameter from one value to another: what the equations read, and errors of its values."""
 
+from collections.abc import Callable
 from typing import Any
 
 import numpy as np
@@ -7,9 +8,12 @@ import pytest
 
 from ribbonopt.scene import loads_scene
 from ribbonopt.scene.stages import stages_of
+from ribbonopt.solution.solution import Solution
 from ribbonopt.studies.continuation import counts
+from ribbonopt.studies.continuation.coordinates import reduced
 from ribbonopt.studies.continuation.curve import Curve
 
+Solved = Callable[..., Solution]
 ARCH = """
 name: arch
 law: {type: kirchhoff, B2: 1, B3: 2}
@@ -85,3 +89,10 @@ def test_each_special_point_changes_the_count_by_one(
     assert (told == "") == explained
     if told:
         assert told.endswith(f"from {before} to {after}")
+
+
+def test_an_equilibrium_is_told_by_both_ends_its_loads_and_where_it_is(solved: Solved) -> None:
+    found = solved("clamped_arch")
+    told = reduced(found, np.append(found.dense.w, 0.7))
+    nodes, constants = found.dense.at_nodes, found.constants[:6]
+    np.testing.assert_array_equal(told, [*nodes[0], *nodes[-1], *constants, 0.7])
