@@ -32,6 +32,10 @@ class OutputError(RibbonoptError, OSError):
     """A place where results cannot be written or from which they cannot be read."""
 
 
+class PictureError(OutputError):
+    """Pictures that could not be drawn or written: says which and why; all else is there."""
+
+
 class ViewError(RibbonoptError, ValueError):
     """A picture that there is none of, such as the surface of a rod: says why."""
 
@@ -45,3 +49,8 @@ class ConvergenceError(RibbonoptError, RuntimeError):
     def __init__(self, message: str, status: str) -> None:
         super().__init__(message)
         self.status = status
+
+
+def no_memory(error: BaseException) -> bool:
+    """Whether an error says that there is no memory left, in the words of Python or of CasADi."""
+    return isinstance(error, MemoryError) or "std::bad_alloc" in str(error)

@@ -1,15 +1,17 @@
-"""Plain data, as YAML and JSON have them: rows, which values are numbers, and what JSON can say."""
+"""Plain data, as YAML and JSON have them: rows, which values are numbers, what JSON can say."""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from typing import Any
+from typing import Any, NoReturn
 
 Row = dict[str, Any]
 """What one ribbon of a study came to: plain values by the names of columns."""
 
 Rows = Sequence[Row]
+
+DEEPEST = 60  # lists and mappings in each other, in JSON that is read
 
 
 def is_number(value: Any) -> bool:
@@ -38,3 +40,68 @@ def json_text(value: Any) -> str:
     import json  # most commands print text
 
     return json.dumps(value, indent=2, allow_nan=False) + "\n"
+
+
+def parsed(text: str | bytes) -> Any:
+    """Return what JSON says: no key twice, all numbers finite, nothing nested without end.
+
+    Raises
+    ------
+    ValueError
+        Says why it cannot be, and quotes nothing.
+    """
+    import json  # most commands read none
+
+    try:
+        text = text.decode("utf-8") if isinstance(text, bytes) else text
+        found = json.loads(
+            text, parse_constant=_no_number, parse_float=_finite, object_pairs_hook=_once
+        )
+    except json.JSONDecodeError as error:
+        raise ValueError(f"no JSON at line {error.lineno}, column {error.colno}") from None
+    except UnicodeDecodeError as error:
+        raise ValueError(f"not a text in UTF-8 (byte {error.start})") from None
+    except _UnsoundError:
+        raise
+    except ValueError:  # of Python's, on converting digits
+        raise ValueError("a number of too many digits") from None
+    except RecursionError:
+        raise ValueError("lists in lists without end") from None
+    if _deep(found):
+        raise ValueError(f"lists or mappings in each other, more than {DEEPEST}")
+    return found
+
+
+class _UnsoundError(ValueError):
+    """What JSON may say and no file of ours does."""
+
+
+def _no_number(word: str) -> NoReturn:
+    raise _UnsoundError("a number that is not finite")
+
+
+def _finite(digits: str) -> float:
+    number = float(digits)
+    return number if abs(number) < float("inf") else _no_number(digits)
+
+
+def _once(pairs: list[tuple[str, Any]]) -> dict[str, Any]:
+    found = dict(pairs)
+    if len(found) < len(pairs):
+        raise _UnsoundError("a key that stands twice")
+    return found
+
+
+def _deep(value: Any) -> bool:
+    level = [value]
+    for _ in range(DEEPEST):
+        level = [item for held in level for item in _held(held)]
+        if not level:
+            return False
+    return True
+
+
+def _held(value: Any) -> list[Any]:
+    """Return the lists and mappings in one."""
+    items = value.values() if isinstance(value, dict) else value if isinstance(value, list) else ()
+    return [item for item in items if isinstance(item, dict | list)]

@@ -46,7 +46,8 @@ def analyticity(coefficients: Array) -> Array:
 
 def wanted_widths(widths: Array, local: Array, rho: Array, order: int, target: float) -> Array:
     """Width (N,) that each element should have at its singularity for a local error `target`."""
-    larger = (np.clip(local, FLOOR, WORST) / target) ** (1 / (order + 1))
+    least = np.finfo(float).tiny  # where no error is left at all
+    larger = (np.clip(local, FLOOR, WORST) / max(target, least)) ** (1 / (order + 1))
     # The singularity lies beyond an end of the element, by (rho + 1/rho)/2 - 1 half widths.
     after = np.maximum(rho * larger, NEAREST)
     change = _distance(rho) / _distance(after)

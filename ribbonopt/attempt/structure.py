@@ -10,9 +10,11 @@ import numpy as np
 from ribbonopt.arrays import Array
 from ribbonopt.errors import ModelError
 from ribbonopt.problem import BoundaryValueProblem, Posed, Ribbon, formulate
+from ribbonopt.scene import Ipopt
 from ribbonopt.solvers import solver_named
 from ribbonopt.transcription import NLP, Mesh
 
+from .afford import refuse_unaffordable
 from .attempt import Attempt
 from .discretize import transcription_of
 from .ledger import Ledger
@@ -79,6 +81,7 @@ class Structure:
         if elements not in self._programs:
             scene = self.posed.scene
             nlp = transcription_of(scene).transcribe(self.problem, elements)
+            refuse_unaffordable(nlp, sparse=not nlp.square or isinstance(scene.solver, Ipopt))
             options = {f.name: getattr(scene.solver, f.name) for f in fields(scene.solver)}
             self._programs[elements] = nlp, solver_named(options.pop("type"), nlp, options)
         return self._programs[elements]

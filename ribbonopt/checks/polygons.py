@@ -9,7 +9,10 @@ from numpy.typing import NDArray
 
 from ribbonopt.arrays import Array
 
+Index = NDArray[np.intp]
+
 AT_ONCE = 4096  # pairs
+LISTED = 1 << 22  # pairs whose indices are listed at once
 MEETING = 1e-6  # distance, relative to the length of the polygon, at which segments meet
 
 
@@ -99,16 +102,24 @@ def _pairs(r: Array) -> Iterator[list[Array]]:
 
     A few at a time: all at once would take more memory than the rest of a solve.
     """
-    i, j = np.triu_indices(len(r), 2)
-    apart = (i > 0) | (j < len(r) - 1)
-    i, j = i[apart], j[apart]
     after = np.roll(r, -1, axis=0)
-    for start in range(0, len(i), AT_ONCE):
-        part = slice(start, start + AT_ONCE)
-        first, second = i[part], j[part]
-        ends = (r, first), (after, first), (r, second), (after, second)
-        # Columns of three: numpy then works on long rows.
-        yield [np.ascontiguousarray(p[k].T) for p, k in ends]
+    for i, j in _indices(len(r)):
+        for start in range(0, len(i), AT_ONCE):
+            part = slice(start, start + AT_ONCE)
+            first, second = i[part], j[part]
+            ends = (r, first), (after, first), (r, second), (after, second)
+            # Columns of three: numpy then works on long rows.
+            yield [np.ascontiguousarray(p[k].T) for p, k in ends]
+
+
+def _indices(count: int) -> Iterator[tuple[Index, Index]]:
+    """Yield the indices of those pairs, i < j, of as many i at once as memory is no matter for."""
+    rows = max(1, LISTED // count)
+    for start in range(0, count, rows):
+        firsts = range(start, min(start + rows, count))
+        seconds = [np.arange(k + 2, count - (k == 0)) for k in firsts]
+        i = np.repeat(np.array(firsts), [len(part) for part in seconds])
+        yield i, np.concatenate(seconds)
 
 
 def _cross(u: Array, v: Array) -> Array:

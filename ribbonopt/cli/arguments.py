@@ -8,10 +8,12 @@ from ribbonopt.errors import SceneError
 from ribbonopt.studies.continuation.columns import COLUMNS, HINT
 from ribbonopt.version import VERSION
 
+from .terminal import Parser
+
 
 def parser() -> argparse.ArgumentParser:
     """Return the parser of all verbs; `verb` names the one that was given."""
-    result = argparse.ArgumentParser(
+    result = Parser(
         prog="ribbonopt",
         description="Equilibria of elastic ribbons from YAML scenes.",
         formatter_class=_help,
@@ -159,15 +161,23 @@ def numbers(option: str, text: str | None) -> list[float] | None:
     except ValueError:
         found = [0.0]
     if found is not None and not all(0 < number < 1 for number in found):
-        raise SceneError(f"{option}: found {text!r}; expected numbers between 0 and 1: 1e-6,1e-9")
+        wanted = "expected numbers between 0 and 1: 1e-6,1e-9"
+        raise SceneError(f"{option}: found {_short(str(text))}; {wanted}")
     return found
 
 
-def count(option: str, text: str) -> int:
-    """Read a positive whole number; SceneError for anything else."""
-    if not (text.isascii() and text.isdigit() and int(text) > 0):
-        raise SceneError(f"{option}: found {text!r}; expected a whole number from 1")
-    return int(text)
+def count(option: str, text: str, most: int) -> int:
+    """Read a whole number from 1 to a limit; SceneError for anything else."""
+    digits = text.lstrip("0")
+    if not (text.isascii() and text.isdigit() and digits):
+        raise SceneError(f"{option}: found {_short(text)}; expected a whole number from 1")
+    if len(digits) > len(str(most)) or int(digits) > most:
+        raise SceneError(f"{option}: found {_short(text)}; expected at most {most:,}")
+    return int(digits)
+
+
+def _short(text: str) -> str:
+    return repr(text) if len(text) < 60 else f"{text[:56]!r} ..."
 
 
 def _words(text: str | None) -> list[str] | None:

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import argparse
 import gc
-import sys
 from collections import Counter
 from collections.abc import Sequence
 from contextlib import closing
@@ -12,10 +11,13 @@ from datetime import timedelta
 from typing import TYPE_CHECKING, Any
 
 from ribbonopt.errors import SceneError
+from ribbonopt.scene.limits import JOBS
+from ribbonopt.text import one_line
 
 from .arguments import count
-from .common import INTERRUPTED, NOT_CONVERGED, default_folder, pairs_of, print_json
+from .common import INTERRUPTED, NOT_CONVERGED, default_folder, drawn, listing, pairs_of
 from .progress import ProgressLine
+from .terminal import complain, say, say_json
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -33,11 +35,11 @@ def batch(options: argparse.Namespace) -> int:
     from ribbonopt.studies.batch.sweep import load_study
 
     gc.enable()  # many rows, and threads that serve the workers
-    jobs = None if options.jobs is None else count("--jobs", options.jobs)
+    jobs = None if options.jobs is None else count("--jobs", options.jobs, JOBS)
     study = load_study(options.study, options.set)
+    study.check()
     if study.count > HUGE and not options.yes:
         raise SceneError(f"{study.name}: {study.count:,} ribbons; say --yes if that is meant")
-    study.check()
     _known(pairs or [], study.columns)
     if options.scheduler:
         from ribbonopt.studies.batch.cluster import check_cluster
@@ -46,29 +48,31 @@ def batch(options: argparse.Namespace) -> int:
     folder = BatchFolder(
         options.out or default_folder(study.name, "batch"), study, resume=options.resume
     )
-    rows = run_batch(
-        study,
-        jobs=jobs,
-        scheduler=options.scheduler,
-        known=folder.known,
-        folder=str(folder.folder.absolute()),
-    )
-    line, before = ProgressLine(quiet=options.quiet), len(folder.rows)
     try:
-        with closing(folder), closing(rows), closing(line):
-            for row in rows:
-                folder.append(row)
-                if line.due or len(folder.rows) == study.count:
-                    line.show(_progress(folder, line.rate(len(folder.rows) - before)))
-        _draw(study.name, study.count, study.keys, folder.rows, folder.folder, pairs)
+        with closing(folder):
+            rows = run_batch(
+                study,
+                jobs=jobs,
+                scheduler=options.scheduler,
+                known=folder.known,
+                folder=str(folder.folder.absolute()),
+            )
+            line, before = ProgressLine(quiet=options.quiet), len(folder.rows)
+            with closing(rows), closing(line):
+                for row in rows:
+                    folder.append(row)
+                    if line.due or len(folder.rows) == study.count:
+                        line.show(_progress(folder, line.rate(len(folder.rows) - before)))
+            folder.finish()
+            named = study.name, study.count, study.keys
+            status = drawn(lambda: _draw(*named, folder.rows, folder.folder, pairs))
     except KeyboardInterrupt:
-        print(
-            f"ribbonopt: interrupted; {len(folder.rows)} of {study.count} rows kept in "
-            f"{folder.folder}, --resume goes on from there",
-            file=sys.stderr,
+        complain(
+            f"interrupted; {len(folder.rows)} of {study.count} rows kept in {folder.folder}, "
+            "--resume goes on from there"
         )
         return INTERRUPTED
-    return _tell(options, folder)
+    return _tell(options, folder) or status
 
 
 def draw(result: Path, out: Path, pairs: list[tuple[str, str]]) -> list[Path]:
@@ -116,7 +120,7 @@ def _tell(options: argparse.Namespace, folder: BatchFolder) -> int:
     failed = [row for row in folder.rows if not row["verified"]]
     statuses = Counter(row["status"] for row in folder.rows)
     if options.json:
-        print_json(
+        say_json(
             {
                 "name": folder.study.name,
                 "status": "converged" if not failed else "some_failed",
@@ -129,20 +133,18 @@ def _tell(options: argparse.Namespace, folder: BatchFolder) -> int:
     elif not options.quiet:
         study = ", ".join(f"{number} {status}" for status, number in statuses.most_common())
         seconds = sum(row.get("seconds", 0.0) for row in folder.rows)
-        names = ", ".join(sorted(path.name for path in folder.folder.iterdir()))
-        print(
+        say(
             f"{folder.study.name}: {len(folder.rows)} ribbons: {study}\n"
             f"{_noted(folder)}"
             f"  {seconds:.1f} s of solving\n"
-            f"  written: {folder.folder}: {names}"
+            f"  written: {one_line(listing(folder.folder))}"
         )
     if not failed:
         return 0
     first = min(failed, key=lambda row: int(row["number"]))
-    print(
-        f"ribbonopt: {folder.study.name}: {len(failed)} of {len(folder.rows)} ribbons failed; the "
-        f"first is number {first['number']}: {first['status']}: {first['message']}",
-        file=sys.stderr,
+    complain(
+        f"{folder.study.name}: {len(failed)} of {len(folder.rows)} ribbons failed; the "
+        f"first is number {first['number']}: {first['status']}: {first['message']}"
     )
     return NOT_CONVERGED
 

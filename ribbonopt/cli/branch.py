@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import argparse
 import gc
-import sys
-from collections.abc import Generator, Iterator
+from collections.abc import Generator
 from contextlib import closing
 from typing import TYPE_CHECKING, Any
 
@@ -16,12 +15,13 @@ from .common import (
     INTERRUPTED,
     NOT_CONVERGED,
     default_folder,
+    drawn,
     load,
     pairs_of,
-    print_json,
     say_left_out,
 )
 from .progress import ProgressLine
+from .terminal import complain, say, say_json
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -48,22 +48,23 @@ def follow(options: argparse.Namespace) -> int:
     pairs = None if pairs is None else _columns(pairs, continuation.recorder)
     place = options.out or default_folder(scene.name, "continue")
     folder = BranchFolder(place, scene, resume=options.resume)
-    line = ProgressLine(quiet=options.quiet)
-    shown = _shown(folder.follow(continuation), continuation, line)
+    status = 0
     try:
-        with closing(shown):  # takes the line away before anything is said
-            for _ in shown:
-                pass
-        if pairs is not None:
-            _draw(continuation, folder.lines, pairs, folder.folder)
+        with closing(folder):
+            shown = _shown(folder, continuation, ProgressLine(quiet=options.quiet))
+            with closing(shown):  # takes the line away before anything is said
+                for _ in shown:
+                    pass
+            if pairs is not None:
+                place = folder.folder
+                status = drawn(lambda: _draw(continuation, folder.lines, pairs, place, place))
     except KeyboardInterrupt:
-        print(
-            f"ribbonopt: interrupted; {len(folder.rows)} points kept in {folder.folder}, "
-            "--resume goes on from there",
-            file=sys.stderr,
+        complain(
+            f"interrupted; {len(folder.rows)} points kept in {folder.folder}, "
+            "--resume goes on from there"
         )
         return INTERRUPTED
-    return _tell(options, folder, continuation)
+    return _tell(options, folder, continuation) or status
 
 
 def draw(result: Path, out: Path, pairs: list[tuple[str, str]]) -> list[Path]:
@@ -74,7 +75,7 @@ def draw(result: Path, out: Path, pairs: list[tuple[str, str]]) -> list[Path]:
 
     scene, lines = load_branch(result)
     pairs = _columns(pairs, Recorder(scene))  # before anything is built
-    return _draw(Continuation(scene), lines, pairs, out)
+    return _draw(Continuation(scene), lines, pairs, out, result)
 
 
 def _columns(pairs: list[tuple[str, str]], recorder: Recorder) -> list[tuple[str, str]]:
@@ -90,8 +91,9 @@ def _draw(
     lines: list[dict[str, Any]],
     pairs: list[tuple[str, str]],
     out: Path,
+    source: Path,
 ) -> list[Path]:
-    from ribbonopt.studies.continuation.files import rows_of
+    from ribbonopt.studies.continuation.files import FILE, rows_of
     from ribbonopt.studies.continuation.stored import restored
     from ribbonopt.studies.continuation.walk.steps import JUMPED
     from ribbonopt.views.branch import save_branch_figures
@@ -106,7 +108,8 @@ def _draw(
         jumps=[row["number"] for row in rows if JUMPED in row.get("note", "")],
         si=scene.ribbon is not None,
     )
-    solutions = dict(restored(continuation, lines, [row["number"] for row in figure.pictured]))
+    numbers = [row["number"] for row in figure.pictured]
+    solutions = dict(restored(continuation, lines, numbers, source / FILE))
     drawn = save_branch_figures(figure, solutions, out)
     say_left_out(drawn.left_out)
     return drawn.paths
@@ -124,7 +127,7 @@ def _usual(rows: Rows, recorder: Recorder) -> list[tuple[str, str]]:
 def _tell(options: argparse.Namespace, folder: BranchFolder, continuation: Continuation) -> int:
     ending = continuation.ending
     if options.json:
-        print_json(
+        say_json(
             {
                 "name": folder.scene.name,
                 "status": "converged" if ending.reached else "target_not_reached",
@@ -140,22 +143,21 @@ def _tell(options: argparse.Namespace, folder: BranchFolder, continuation: Conti
             }
         )
     elif not options.quiet:
-        print(report(folder, continuation))
+        say(report(folder, continuation))
     if ending.reached:
         return 0
-    print(
-        f"ribbonopt: {folder.scene.name}: the goal was not reached: {ending.reason}; "
-        f"{len(folder.rows)} points kept in {folder.folder}",
-        file=sys.stderr,
+    complain(
+        f"{folder.scene.name}: the goal was not reached: {ending.reason}; "
+        f"{len(folder.rows)} points kept in {folder.folder}"
     )
     return NOT_CONVERGED
 
 
 def _shown(
-    points: Iterator[Point[Solution]], continuation: Continuation, line: ProgressLine
+    folder: BranchFolder, continuation: Continuation, line: ProgressLine
 ) -> Generator[Point[Solution], None, None]:
-    """Give the points on, with a line of progress on a terminal."""
-    with closing(line):
+    """Give the points as they are written, with a line of progress on a terminal."""
+    with closing(line), closing(folder.follow(continuation)) as points:
         for count, point in enumerate(points, start=1):
             if line.due:
                 line.show(f"{_progress(point, continuation)}, {line.rate(count):.1f}/s")

@@ -7,6 +7,9 @@ from itertools import groupby, pairwise
 from typing import TYPE_CHECKING, Any
 
 from ribbonopt.studies.continuation.recorded import value_of
+from ribbonopt.text import one_line
+
+from .common import listing
 
 if TYPE_CHECKING:
     from ribbonopt.studies.continuation.continuation import Continuation
@@ -28,8 +31,7 @@ def report(folder: BranchFolder, continuation: Continuation) -> str:
                 more = _more(row, before, continuation.stages[stage].switch)
                 lines.append(f"    {row['kind']} at {_place(row, '.10g')}{more}")
         lines += [f"    {change}" for change in _changes(rows)]
-    names = ", ".join(sorted(path.name for path in folder.folder.iterdir()))
-    return "\n".join([*lines, f"  written: {folder.folder}: {names}"])
+    return "\n".join([*lines, f"  written: {one_line(listing(folder.folder))}"])
 
 
 def _place(row: Row, digits: str) -> str:

@@ -1,16 +1,19 @@
-"""What all verbs share: exit status, reading the scene, printing JSON."""
+"""What all verbs share: exit status, reading the scene, columns to draw."""
 
 from __future__ import annotations
 
 import argparse
-import sys
 import time
-from collections.abc import Iterable
-from typing import TYPE_CHECKING, Any
+from collections.abc import Callable, Iterable
+from typing import TYPE_CHECKING
 
-from ribbonopt.errors import SceneError
+from ribbonopt.errors import RibbonoptError, SceneError
+
+from .terminal import complain
 
 if TYPE_CHECKING:
+    from pathlib import Path
+
     from ribbonopt.scene import Scene
 
 BAD_INPUT, NOT_CONVERGED = 2, 3
@@ -52,14 +55,27 @@ def pairs_of(texts: list[str] | None) -> list[tuple[str, str]] | None:
     return pairs
 
 
+def listing(folder: Path) -> str:
+    """Return a folder and what is in it."""
+    return f"{folder}: {', '.join(sorted(path.name for path in folder.iterdir()))}"
+
+
 def say_left_out(left_out: Iterable[str]) -> None:
     """Say on stderr what could not be drawn or written, and why."""
     for text in left_out:
-        print(f"ribbonopt: left out: {text}", file=sys.stderr)
+        complain(f"left out: {text}")
 
 
-def print_json(value: dict[str, Any], indent: int | None = None) -> None:
-    """Print one JSON object."""
-    import json  # most commands print text
+def drawn(draw: Callable[[], object]) -> int:
+    """Draw what was asked for besides numbers, and return the exit status.
 
-    print(json.dumps(value, indent=indent, allow_nan=False))
+    The numbers are on disk by now: whatever a picture comes to, it is told, and nothing is lost.
+    """
+    try:
+        draw()
+    except Exception as error:
+        known = isinstance(error, RibbonoptError)
+        reason = str(error) if known else f"cannot be drawn ({type(error).__name__}: {error})"
+        complain(f"pictures: {reason}; the numbers are kept")
+        return NOT_CONVERGED
+    return 0

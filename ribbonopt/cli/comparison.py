@@ -4,12 +4,14 @@ from __future__ import annotations
 
 import argparse
 import gc
-import sys
 from collections.abc import Callable
 from typing import TYPE_CHECKING
 
+from ribbonopt.scene.limits import REPEATS
+
 from .arguments import chosen, count, numbers
-from .common import NOT_CONVERGED, load, print_json
+from .common import NOT_CONVERGED, drawn, load
+from .terminal import complain, say, say_json
 
 if TYPE_CHECKING:
     from ribbonopt.studies.comparison.benchmark import Benchmark
@@ -27,7 +29,7 @@ def compare(options: argparse.Namespace) -> int:
 
 def bench(options: argparse.Namespace) -> int:
     """Measure time against error over degrees and meshes."""
-    repeat = count("--repeat", options.repeat)
+    repeat = count("--repeat", options.repeat, REPEATS)
     scene, _ = load(options)
     from ribbonopt.studies.comparison.benchmark import benchmark
 
@@ -49,17 +51,17 @@ def _study(
         with staged_result(options.out, files_of(name)) as stage:
             study = run()
             save_study(study, stage.folder, name)
-            save_figure(study.plain(), stage.folder / f"{name}.png")
-            stage.commit()
+            written = stage.commit()
+            status = drawn(lambda: save_figure(study.plain(), written / f"{name}.png"))
     else:
-        study = run()
+        study, status = run(), 0
     if options.json:
-        print_json(study.plain())
+        say_json(study.plain())
     elif not options.quiet:
         from ribbonopt.studies.comparison.table import table
 
-        print(table(study))
+        say(table(study))
     if study.solved:
-        return 0
-    print(f"ribbonopt: {study.name}: no pair gave a verified solution", file=sys.stderr)
+        return status
+    complain(f"{study.name}: no pair gave a verified solution")
     return NOT_CONVERGED

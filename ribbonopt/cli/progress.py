@@ -6,8 +6,11 @@ Nothing of it is written where stderr is no terminal, or nobody wants it (`--qui
 from __future__ import annotations
 
 import shutil
-import sys
 import time
+
+from ribbonopt.text import one_line
+
+from .terminal import overwrite, seen
 
 OFTEN = 0.1  # seconds between two pictures of the line
 
@@ -17,7 +20,7 @@ class ProgressLine:
 
     def __init__(self, *, quiet: bool) -> None:
         """Write nothing yet; the clock starts."""
-        self.wanted = not quiet and sys.stderr.isatty()
+        self.wanted = not quiet and seen()
         self.started, self._shown, self._width = time.perf_counter(), 0.0, 0
 
     @property
@@ -34,12 +37,12 @@ class ProgressLine:
         if not self.wanted:
             return
         # The last column would wrap, and what has wrapped is not written over.
-        text = text[: shutil.get_terminal_size().columns - 1]
-        print("\r" + text.ljust(self._width), end="", file=sys.stderr, flush=True)
+        text = one_line(text)[: shutil.get_terminal_size().columns - 1]
+        overwrite(text.ljust(self._width))
         self._shown, self._width = time.perf_counter(), len(text)
 
     def close(self) -> None:
         """Take the line away."""
         if self._width:
-            print("\r" + " " * self._width + "\r", end="", file=sys.stderr, flush=True)
+            overwrite(" " * self._width, "")
             self._width = 0

@@ -3,17 +3,18 @@
 from __future__ import annotations
 
 import argparse
-import sys
+import os
 from typing import TYPE_CHECKING, Any
 
 from ribbonopt.errors import SceneError
+from ribbonopt.reading import is_file
 
-from .common import NOT_CONVERGED, default_folder, load, pairs_of, print_json, say_left_out
+from .common import NOT_CONVERGED, default_folder, drawn, listing, load, pairs_of, say_left_out
+from .terminal import complain, say, say_json, say_line
 
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from ribbonopt.output.exports import Export
     from ribbonopt.solution.solution import Solution
 
 
@@ -30,15 +31,18 @@ def solve(options: argparse.Namespace) -> int:
     # Claimed before solving, so that a folder that cannot be written costs no solve.
     with staged_result(options.out or default_folder(scene.name, "solve")) as stage:
         solution = solve(scene)
-        exports: list[Export] = []
-        if options.plot:
-            from ribbonopt.views import Pictures
-
-            exports = [Pictures()]
-        left_out = save_solution(solution, stage.folder, exports)
+        say_left_out(save_solution(solution, stage.folder))
         written = stage.commit(solution.status.failure)
+        status = drawn(lambda: _draw(solution, written)) if options.plot else 0
+    return _tell(options, solution, import_seconds, written) or status
+
+
+def _draw(solution: Solution, folder: Path) -> list[Path]:
+    from ribbonopt.views.files import draw_figures
+
+    paths, left_out = draw_figures(solution, folder)
     say_left_out(left_out)
-    return _tell(options, solution, import_seconds, written)
+    return paths
 
 
 def _tell(
@@ -50,16 +54,15 @@ def _tell(
     summary = summarize(solution)
     summary["timings"] = {"import": import_seconds} | summary["timings"]
     if options.json:
-        print_json(summary)
+        say_json(summary)
     elif not options.quiet:
-        print(report(summary))
+        say(report(summary))
         if written:
-            names = ", ".join(sorted(p.name for p in written.iterdir()))
-            print(f"  written: {written}: {names}")
+            say_line(f"  written: {listing(written)}")
     if solution.verified:
         return 0
     kept = f"; kept in {written}" if written else ""
-    print(f"ribbonopt: {solution.scene.name}: {solution.message}{kept}", file=sys.stderr)
+    complain(f"{solution.scene.name}: {solution.message}{kept}")
     return NOT_CONVERGED
 
 
@@ -70,9 +73,9 @@ def check(options: argparse.Namespace) -> int:
 
     found = check_scene(scene)
     if options.json:
-        print_json(found)
+        say_json(found)
     elif not options.quiet:
-        print(_checked(found))
+        say(_checked(found))
     return 0
 
 
@@ -94,40 +97,46 @@ def schema(options: argparse.Namespace) -> int:
     """Print the JSON schema of scenes."""
     from ribbonopt.scene import json_schema
 
-    print_json(json_schema(), indent=2)
+    say_json(json_schema(), indent=2)
     return 0
 
 
 def plot(options: argparse.Namespace) -> int:
     """Draw the pictures of a saved result."""
-    from pathlib import Path
-
+    from ribbonopt.output.claims import pictures_in
     from ribbonopt.output.results import load_solution
-    from ribbonopt.output.staging import picture_folder
-    from ribbonopt.views.files import draw_figures
+    from ribbonopt.output.staging import recovered
 
-    result, pairs = Path(options.result), pairs_of(options.plot) or []
-    if (result / "branch.jsonl").is_file():
+    result, pairs = recovered(options.result), pairs_of(options.plot) or []
+    if is_file(result / "branch.jsonl"):
         from .branch import draw as draw_branch
 
-        paths = draw_branch(result, picture_folder(options.out or result), pairs)
-    elif (result / "rows.jsonl").is_file():
+        def draw(folder: Path) -> list[Path]:
+            return draw_branch(result, folder, pairs)
+
+    elif is_file(result / "rows.jsonl"):
         from .batch import draw as draw_batch
 
-        paths = draw_batch(result, picture_folder(options.out or result), pairs)
+        def draw(folder: Path) -> list[Path]:
+            return draw_batch(result, folder, pairs)
+
     elif pairs:
         raise SceneError(
             f"--plot: {result} is no branch and no batch, whose columns could be drawn"
         )
-    elif not result.is_dir():
-        beside = Path(f"{result}-branch")
-        near = f"; did you mean {beside}?" if beside.is_dir() else ""
+    elif not os.path.isdir(result):
+        beside = f"{result}-branch"
+        near = f"; did you mean {beside}?" if os.path.isdir(beside) else ""
         wanted = "expected one written by ribbonopt solve, continue or batch"
         raise SceneError(f"{result}: no such folder; {wanted}{near}")
     else:
         solution = load_solution(result)
-        paths, left_out = draw_figures(solution, picture_folder(options.out or result))
-        say_left_out(left_out)
+
+        def draw(folder: Path) -> list[Path]:
+            return _draw(solution, folder)
+
+    with pictures_in(options.out or result) as folder:
+        paths = draw(folder)
     for path in paths:
-        print(path)
+        say_line(str(path))
     return 0

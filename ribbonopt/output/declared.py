@@ -6,14 +6,16 @@ What every version knows is passed as `own`. Whoever writes more says so to the 
 
 from __future__ import annotations
 
-import json
 import os
 from collections.abc import Collection, Iterable
 from pathlib import Path
 
+from ribbonopt.errors import OutputError
 from ribbonopt.plain import json_text
+from ribbonopt.reading import MEGA, Kind, read_json
 
 MANIFEST = "exports.json"
+FILE = Kind("names of files", most=10 * MEGA)
 
 NONE: frozenset[str] = frozenset()
 
@@ -47,8 +49,8 @@ def foreign_in(folder: Path, own: Collection[str]) -> list[str]:
 def _declared(folder: Path) -> frozenset[str]:
     """Return what a folder says; nothing where it says nothing that can be understood."""
     try:
-        found = json.loads((folder / MANIFEST).read_text(encoding="utf-8"))
-    except (OSError, ValueError):
+        found = read_json(folder / MANIFEST, FILE)
+    except OutputError:
         return NONE
     names = found.get("files") if isinstance(found, dict) else None
     return frozenset(n for n in names if isinstance(n, str)) if isinstance(names, list) else NONE

@@ -2,26 +2,45 @@
 
 from __future__ import annotations
 
-import json
-from collections.abc import Iterable, Sequence
+import os
+from collections.abc import Iterable, Mapping, Sequence
 from pathlib import Path
-from zipfile import BadZipFile
+from typing import Any
 
 import numpy as np
 
 from ribbonopt.attempt.structure import Structure
 from ribbonopt.errors import OutputError
-from ribbonopt.problem import Posed
-from ribbonopt.scene import Scene, load_scene, validate_scene
+from ribbonopt.problem import BoundaryValueProblem, Posed
+from ribbonopt.reading import is_file
+from ribbonopt.scene import Scene, validate_scene
+from ribbonopt.scene.faults import shown
 from ribbonopt.scene.units import Units, units_of
 from ribbonopt.solution.made import solution_at
 from ribbonopt.solution.solution import Solution
 from ribbonopt.solution.verification import Verification
-from ribbonopt.solvers import Status
 
 from .declared import declare
 from .exports import EQUILIBRIA, STANDARD, Export
-from .staging import OWN_FILES, unwritable
+from .places import unwritable
+from .saved import (
+    NUMBERS,
+    RESULT,
+    SAME,
+    SUMMARY,
+    SavedNumbers,
+    SavedSummary,
+    answers_of,
+    read_numbers,
+    read_scene,
+    read_summary,
+    refuse_other,
+)
+from .staging import OWN_FILES, recovered
+from .summary import settings_of
+
+#: what a summary says of its scene that decides what the numbers are
+SETTINGS = ("name", "formulation", "states", "transcription", "scheme", "parameters", "interval")
 
 
 def save_solution(
@@ -86,12 +105,12 @@ def load_solution(path: str | Path, scene: Scene | None = None) -> Solution:
     Raises
     ------
     OutputError
-        If there is no whole result.
+        If there is no whole result, or its files are damaged or do not belong together.
     """
-    folder = Path(path)
-    folder = folder.parent if folder.is_file() else folder
-    needed = ["summary.json", "solution.npz"] + (["scene.yaml"] if scene is None else [])
-    missing = [name for name in needed if not (folder / name).is_file()]
+    folder = recovered(path)
+    folder = folder.parent if is_file(folder) else folder
+    needed = [SUMMARY, NUMBERS] + (["scene.yaml"] if scene is None else [])
+    missing = [name for name in needed if not os.path.exists(folder / name)]
     if missing == ["scene.yaml"]:
         raise OutputError(
             f"{path}: scene.yaml missing; if the scene was declared in Python, give it: "
@@ -102,49 +121,68 @@ def load_solution(path: str | Path, scene: Scene | None = None) -> Solution:
             f"{path}: not a result of ribbonopt, {', '.join(missing)} missing; expected a folder "
             "written by `ribbonopt solve --out`"
         )
-    scene = load_scene(folder / "scene.yaml") if scene is None else validate_scene(scene)
+    scene = read_scene(folder / "scene.yaml") if scene is None else validate_scene(scene)
+    summary, plain = read_summary(folder)
+    saved = read_numbers(folder, summary)
     try:
-        summary = json.loads((folder / "summary.json").read_text(encoding="utf-8"))
-        with open(folder / "solution.npz", "rb") as file, np.load(file) as data:
-            names = ("w", "widths", "theta", "multipliers")
-            w, widths, theta, multipliers = (data[name] for name in names)
-            inside = tuple(map(float, data["units"])) if "units" in data else None
-            sheets, elements = (
-                tuple(int(v) for v in data[name]) for name in ("sheets", "elements")
-            )
-        status = Status[summary["status"].upper()]
-    except (ValueError, KeyError, TypeError, OSError, EOFError, BadZipFile) as error:
-        raise OutputError(f"{folder}: damaged result ({error}); solve the scene again") from error
-    posed = Posed.of(scene, _units(scene, inside))
-    structure = Structure.of(posed).in_phases(sheets)
-    problem, (nlp, _) = structure.problem, structure.on(elements)
-    if len(w) != nlp.unknowns or len(theta) != problem.parameters.numel():
-        raise OutputError(
-            f"{folder}: damaged result ({len(w)} unknowns, its scene has {nlp.unknowns}); "
-            "solve the scene again"
+        posed = Posed.of(scene, _units(scene, saved.units))
+        structure = Structure.of(posed).in_phases(saved.sheets)
+        problem, (nlp, _) = structure.problem, structure.on(saved.elements)
+        _refuse_other_scene(plain, saved, posed, problem, nlp.unknowns)
+        # The saved parameters, because some follow from the solution (loads from costates).
+        p = np.concatenate([saved.theta, saved.widths])
+        solution = solution_at(
+            posed,
+            problem,
+            nlp,
+            saved.w,
+            p,
+            status=summary.ended,
+            message=summary.message,
+            iterations=summary.iterations,
+            multipliers=saved.multipliers,
+            timings=summary.timings,
+            steps=tuple(plain["path"]),
+            skipped=summary.skipped,
+            given_up=summary.given_up,
+            fell_back=summary.fell_back,
+            verification=_verification(summary),
+            sheets=saved.sheets,
         )
-    # The saved parameters, because some follow from the solution (loads from costates).
-    p = np.concatenate([theta, widths])
-    drift = {k: _number(v) for k, v in summary["invariant_drift"].items()}
-    keys = ("worst_condition", "residual_between_nodes", "law_residual")
-    worst, between, law = (_number(summary[key]) for key in keys)
-    return solution_at(
-        posed,
-        problem,
-        nlp,
-        w,
-        p,
-        status=status,
-        message=summary["message"],
-        iterations=summary["iterations"],
-        multipliers=multipliers,
-        timings=summary["timings"],
-        steps=tuple(summary["path"]),
-        skipped=tuple(summary["skipped"]),
-        given_up=tuple(summary.get("given_up", ())),
-        fell_back=tuple(summary.get("fell_back", ())),
-        verification=Verification((), worst, between, law, drift),
-        sheets=sheets,
+        if summary.ended.converged:
+            refuse_other(answers_of(solution), plain)
+    except (ValueError, ArithmeticError, RuntimeError) as error:
+        raise RESULT.damaged(folder, str(error)) from error
+    return solution
+
+
+def _refuse_other_scene(
+    plain: Mapping[str, Any],
+    saved: SavedNumbers,
+    posed: Posed,
+    problem: BoundaryValueProblem,
+    unknowns: int,
+) -> None:
+    """Refuse numbers of another scene; ValueError says what tells them apart."""
+    names, theta, given = problem.parameter_names, saved.theta, posed.values
+    if len(saved.w) != unknowns or len(theta) != len(names):
+        raise ValueError(f"{len(saved.w)} unknowns, its scene has {unknowns}")
+    settings = settings_of(posed.given)
+    for key, value in ((key, settings[key]) for key in SETTINGS):
+        if plain.get(key, value) != value:
+            raise ValueError(f"{SUMMARY} says {key}: {shown(plain[key])}, its scene {shown(value)}")
+    for name, here, there in zip(names, theta, given, strict=True):
+        if name not in problem.recovered and not np.isclose(here, there, rtol=SAME, atol=1e-12):
+            raise ValueError(f"it was solved at {name} = {here:.6g}, its scene says {there:.6g}")
+
+
+def _verification(summary: SavedSummary) -> Verification:
+    return Verification(
+        (),
+        _number(summary.worst_condition),
+        _number(summary.residual_between_nodes),
+        _number(summary.law_residual),
+        {name: _number(value) for name, value in summary.invariant_drift.items()},
     )
 
 

@@ -1,14 +1,14 @@
 """Folders of results, and single files, that appear whole or not at all.
 
-Files are written to a folder beside the wanted one, which takes its place when complete. An older
-result there is replaced; other files are never touched.
+Files are written to `.NAME.new` beside the wanted place and take it when complete; an older result
+steps aside as `.NAME.old` for that moment. Each place is locked by who writes there (`locks`), so
+that what is found there under such a name is of a dead process: it is put right, then removed.
+Other files are never touched.
 """
 
 from __future__ import annotations
 
 import os
-import shutil
-import tempfile
 from collections.abc import Collection, Iterator
 from contextlib import contextmanager, suppress
 from dataclasses import dataclass
@@ -17,7 +17,20 @@ from typing import IO
 
 from ribbonopt.errors import OutputError
 
-from .declared import PICTURES, foreign_in
+from .declared import PICTURES
+from .disk import sync
+from .locks import refuse_held
+from .places import (
+    LOCK,
+    made_folders,
+    place_of,
+    refuse_foreign,
+    refuse_irreplaceable,
+    unwritable,
+)
+from .placing import beside, locked, place, put_right, recover
+
+WAIT = 1.0  # seconds for who writes the result of a failed solve to the same place
 
 #: files of a result that every version knows; others are declared by the folder itself
 OWN_FILES = frozenset(("scene.yaml", "summary.json", "solution.npz", "equilibria", *PICTURES))
@@ -30,49 +43,112 @@ class Stage:
     folder: Path
     target: Path
     own: Collection[str]
+    durable: bool = True
 
     def commit(self, failure: str = "") -> Path:
         """Put the files in place and return where: a failed solve never hides an older result.
 
         `failure` names what there is instead of a result, such as "not-converged".
+
+        Raises
+        ------
+        OutputError
+            If they cannot be put there (any more); then says where they are kept.
         """
         target = self.target
-        if failure:
-            target = target.with_name(f"{target.name}.{failure}")
-            _refuse_foreign(target, self.own)
-        _replace(target, self.folder)
+        if not failure:
+            place(self.folder, target, self.own, self.durable)
+            return target
+        target = target.with_name(f"{target.name}.{failure}")
+        with locked(target, WAIT):
+            recover(target)
+            staged = beside(target)
+            try:
+                self.folder.replace(staged)  # under that name it is found after a kill
+                place(staged, target, self.own, self.durable)
+            finally:
+                recover(target)
         return target
 
 
 @contextmanager
-def staged_result(target: str | Path, own: Collection[str] = OWN_FILES) -> Iterator[Stage]:
+def staged_result(
+    target: str | Path,
+    own: Collection[str] = OWN_FILES,
+    *,
+    wait: float = 0.0,
+    durable: bool = True,
+) -> Iterator[Stage]:
     """Give a stage to write into; what is not committed leaves no trace.
 
-    `own` names the files that an older result may consist of, besides those that it declares: what
-    would be replaced.
+    Parameters
+    ----------
+    target
+        Where the result is wanted.
+    own
+        The files that an older result may consist of, besides those that it declares: what would
+        be replaced.
+    wait
+        Seconds to wait for another process that writes there.
+    durable
+        Whether the disk has the result when `commit` returns, which a power loss then spares.
 
     Raises
     ------
     OutputError
-        If `target` cannot be written, is a file, or holds files that are not a result.
+        If `target` cannot be written or replaced, is written by another process, is a file or a
+        link, or holds files that are not a result.
     """
+    target, failures = place_of(target), _failures()
+    refuse_foreign(target, own)
+    refuse_irreplaceable(target, max(failures, key=len))
+    folder = beside(target)
+    with made_folders(target.parent), locked(target, wait):
+        for failure in failures:
+            put_right(target.with_name(f"{target.name}.{failure}"))
+        try:
+            recover(target)
+            refuse_foreign(target, own)  # which may be another one now
+            refuse_held(target / LOCK, target)
+            folder.mkdir()
+        except OutputError:  # an OSError too, but one that says what to do
+            raise
+        except OSError as error:
+            raise unwritable(target, error) from error
+        try:
+            yield Stage(folder, target, own, durable)
+        finally:
+            recover(target)
+
+
+def recovered(target: str | Path) -> Path:
+    """Return a folder; a result that a process was just replacing when it died is put back."""
     target = Path(target)
-    _refuse_foreign(target, own)
+    if target.name and not os.path.lexists(target):
+        put_right(target)
+    return target
+
+
+@contextmanager
+def replaced(path: Path) -> Iterator[Path]:
+    """Give a path beside that of a file, which takes its place once it is complete.
+
+    A link is replaced, not followed.
+
+    Raises
+    ------
+    OSError
+        If it cannot be written.
+    """
+    new = beside(path)
+    new.unlink(missing_ok=True)  # of a dead process, or a link
     try:
-        target.parent.mkdir(parents=True, exist_ok=True)
-        folder = Path(tempfile.mkdtemp(prefix=f".{target.name}.", dir=target.parent))
-        folder.chmod(0o777 & ~_umask())
-    except OSError as error:
-        raise unwritable(target, error) from error
-    try:
-        yield Stage(folder, target, own)
+        yield new
+        sync(new)
+        new.replace(path)
     finally:
-        shutil.rmtree(folder, ignore_errors=True)
-
-
-def beside(path: Path) -> Path:
-    """Return where a file is for a moment, before it takes its place."""
-    return path.with_name(f".{path.name}.new")
+        with suppress(OSError):
+            new.unlink(missing_ok=True)
 
 
 @contextmanager
@@ -86,73 +162,15 @@ def replacing(
     OSError
         If it cannot be written.
     """
-    new = beside(path)
-    try:
-        with open(new, "w", encoding="utf-8", newline=newline, errors=errors) as file:
-            yield file
-        new.replace(path)
-    finally:
-        with suppress(OSError):
-            new.unlink(missing_ok=True)
+    with (
+        replaced(path) as new,
+        open(new, "w", encoding="utf-8", newline=newline, errors=errors) as file,
+    ):
+        yield file
 
 
-def picture_folder(target: str | Path) -> Path:
-    """Return a folder for pictures, made if need be; a file of a result stands for its folder.
+def _failures() -> set[str]:
+    """Return what a commit may be told there is instead of a result."""
+    from ribbonopt.solvers.status import Status
 
-    Raises
-    ------
-    OutputError
-        If it cannot be written.
-    """
-    folder = Path(target)
-    folder = folder.parent if folder.is_file() else folder
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        with tempfile.TemporaryFile(dir=folder):
-            pass
-    except OSError as error:
-        raise unwritable(folder, error) from error
-    return folder
-
-
-def _refuse_foreign(target: Path, own: Collection[str]) -> None:
-    try:
-        foreign = foreign_in(target, own) if target.exists() else []
-    except NotADirectoryError as error:
-        raise OutputError(f"{target}: is a file, expected a folder for results") from error
-    except OSError as error:
-        raise OutputError(f"{target}: cannot be read ({error.strerror})") from error
-    if foreign:
-        raise OutputError(
-            f"{target}: holds files that are not a result of ribbonopt ({', '.join(foreign[:3])}); "
-            "choose a new or an empty folder"
-        )
-
-
-def _replace(target: Path, staging: Path) -> None:
-    """Put the complete staging folder in the place of `target`, which may hold an older result."""
-    try:
-        if target.exists():
-            retired = Path(tempfile.mkdtemp(prefix=f".{target.name}.old.", dir=target.parent))
-            target.replace(retired)
-            try:
-                staging.replace(target)
-            except OSError:
-                retired.replace(target)
-                raise
-            shutil.rmtree(retired, ignore_errors=True)
-        else:
-            staging.replace(target)
-    except OSError as error:
-        raise unwritable(target, error) from error
-
-
-def unwritable(target: Path, error: OSError) -> OutputError:
-    """Return the error of a place that cannot be written."""
-    return OutputError(f"{target}: cannot be written ({error.strerror}); choose another folder")
-
-
-def _umask() -> int:
-    mask = os.umask(0)
-    os.umask(mask)
-    return mask
+    return {status.failure for status in Status} - {""}

@@ -15,6 +15,7 @@ from ribbonopt.checks.validity import warnings_of
 from ribbonopt.checks.zero_moment import lacks_linearisation
 from ribbonopt.plain import finite
 from ribbonopt.problem import formulation_name
+from ribbonopt.scene import Scene
 from ribbonopt.solution.solution import Solution
 from ribbonopt.version import VERSION
 
@@ -28,21 +29,13 @@ def summarize(solution: Solution) -> dict[str, Any]:
     Numbers that are not known are None.
     """
     scene, dense, checks = solution.scene, solution.dense, solution.verification
-    start = solution.start
-    law = {f.name: getattr(scene.law, f.name) for f in fields(scene.law)}
+    start, settings = solution.start, settings_of(scene)
     summary = {
-        "name": scene.name,
+        "name": settings.pop("name"),
         "status": solution.status.name.lower(),
         "verified": solution.verified,
         "message": solution.message,
-        "formulation": formulation_name(scene),
-        "states": scene.states,
-        "transcription": scene.transcription.type,
-        "scheme": scene.transcription.scheme,
-        "solver": scene.solver.type,
-        "law": law,
-        "parameters": dict(scene.parameters),
-        "interval": list(scene.interval),
+        **settings,
         "loads_from": "costates" if solution.problem.recovered else "unknowns",
         "n0": start["n"].tolist(),
         "m0": start["m"].tolist(),
@@ -76,6 +69,21 @@ def summarize(solution: Solution) -> dict[str, Any]:
     }
     plain: dict[str, Any] = finite(summary)
     return plain
+
+
+def settings_of(scene: Scene) -> dict[str, Any]:
+    """Return what a summary says of the scene."""
+    return {
+        "name": scene.name,
+        "formulation": formulation_name(scene),
+        "states": scene.states,
+        "transcription": scene.transcription.type,
+        "scheme": scene.transcription.scheme,
+        "solver": scene.solver.type,
+        "law": {f.name: getattr(scene.law, f.name) for f in fields(scene.law)},
+        "parameters": dict(scene.parameters),
+        "interval": list(scene.interval),
+    }
 
 
 def _equilibrium(solution: Solution) -> dict[str, Any]:

@@ -26,6 +26,7 @@ from ribbonopt.accuracy.remesh import (
     wanted_widths,
 )
 from ribbonopt.arrays import Array
+from ribbonopt.attempt.afford import TooLargeError
 from ribbonopt.attempt.attempt import verified
 from ribbonopt.solution.solution import Solution
 from ribbonopt.solvers import Status
@@ -94,7 +95,10 @@ def refine(
         goal = aim * tolerance * (1 / CLOSE if stuck and close else 1.0)
         mesh, short = _better_mesh(solution, goal, error, stuck and not close)
         before = error
-        attempt = attempt_on(mesh, solution.trajectory.ends[1:-1])
+        try:
+            attempt = attempt_on(mesh, solution.trajectory.ends[1:-1])
+        except TooLargeError:  # what there is is worth more than a message
+            break
         if not attempt.run(solution, quick=True, check=False) or attempt.best is None:
             break
         solution = attempt.best
@@ -129,7 +133,10 @@ def on_finer_mesh(missed: Solution, solve: Callable[[Scene], Solution]) -> Solut
     if sum(missed.mesh.elements) > count:
         return missed
     finer = replace(scene.transcription, intervals=2 * count)
-    found = solve(replace(scene, transcription=finer))
+    try:
+        found = solve(replace(scene, transcription=finer))
+    except TooLargeError:
+        return missed
     if not found.verified:
         return missed
     steps, iterations = (*missed.steps, *found.steps), missed.iterations + found.iterations

@@ -8,6 +8,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated, Literal
 
+from . import limits
 from .schema.bounds import Bounds
 
 Step = Annotated[float, Bounds(gt=0)]
@@ -56,10 +57,10 @@ class ContinuationStage:
     first: Step | None = None
     smallest: Step | None = None
     largest: Step | None = None
-    points: Annotated[int, Bounds(ge=1)] = 500
+    points: Annotated[int, Bounds(ge=1, most=limits.POINTS)] = 500
     stop: tuple[str, ...] = ()
     special: bool = True
-    switch: bool | Annotated[int, Bounds(ge=0)] = False
+    switch: bool | Annotated[int, Bounds(ge=0, most=limits.BRANCHES)] = False
     stability: bool | Literal["eigenvalue"] = True
 
     @property

@@ -9,12 +9,14 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Annotated, Literal
 
-from .schema.bounds import InPython
+from . import limits
+from .schema.bounds import Bounds, InPython
 from .supports import SUPPORTS, Support, SupportName
 
 Value = float | str
 Triple = tuple[Value, Value, Value]
 Director = Literal["d1", "d2", "d3"]
+HalfTwists = Annotated[int, Bounds(most=limits.HALF_TWISTS)]
 
 
 @dataclass(frozen=True)
@@ -125,7 +127,7 @@ class Loop:
     fundamental one of length L / (2 |half_twists|) of a band with dihedral symmetry.
     """
 
-    half_twists: int
+    half_twists: HalfTwists
     piece: Literal["whole", "half", "fundamental"] = "whole"
 
     @property

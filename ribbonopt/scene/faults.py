@@ -8,9 +8,14 @@ from __future__ import annotations
 from collections.abc import Iterable, Mapping
 from typing import NamedTuple
 
+from ribbonopt.text import one_line, shortened
+
 KeyPath = tuple[str | int, ...]
 
 _LONGEST = 60
+_LONGEST_KEY, _LONGEST_FAULT = 120, 2000
+_LONGEST_GUESSED = 60  # letters of a word that may be another misspelt
+_MOST = 20  # problems that are told one by one
 
 
 class Problem(NamedTuple):
@@ -51,7 +56,9 @@ class Place(NamedTuple):
 
     def __str__(self) -> str:
         """Return the place as messages cite it."""
-        return f"--set {self.override}" if self.override else f"line {self.line}"
+        if self.override:
+            return f"--set {quotable(self.override)}"
+        return f"line {self.line}"
 
 
 def dotted(path: KeyPath) -> str:
@@ -59,10 +66,18 @@ def dotted(path: KeyPath) -> str:
     return ".".join(str(key) for key in path)
 
 
+def quotable(words: str, most: int = _LONGEST_KEY) -> str:
+    """Return what a user wrote (a key, an override) as messages quote it: on one line, bounded."""
+    return one_line(shortened(words, most))
+
+
 def shown(value: object) -> str:
     """Return a value as a YAML user knows it, on one line and not too long."""
     words = {"None": "null", "True": "true", "False": "false"}
-    text = repr(value)
+    try:
+        text = repr(value)
+    except ValueError:  # what Python refuses to write in decimals
+        text = "a number of thousands of digits"
     text = words.get(text, text)
     return text if len(text) <= _LONGEST else f"{text[: _LONGEST - 4]} ..."
 
@@ -75,6 +90,8 @@ def suggestion(word: str, known: Iterable[str]) -> str:
 
 def nearest(word: str, known: Iterable[str]) -> str:
     """Return the known word that `word` was probably meant to be, or an empty text."""
+    if len(word) > _LONGEST_GUESSED:
+        return ""
     # Imported late: only a mistake pays for it.
     from difflib import get_close_matches
 
@@ -99,11 +116,14 @@ def report(source: str, problems: Iterable[Problem], places: Mapping[KeyPath, Pl
         ((_place(problem.path, places), problem) for problem in problems),
         key=lambda pair: (bool(pair[0].override), pair[0].line),
     )
-    lines = [_line(place, problem) for place, problem in placed]
+    source = one_line(source)
+    lines = [_line(place, problem) for place, problem in placed[:_MOST]]
     if len(lines) == 1:
         separator = ", " if placed[0][0] != Place() else ": "
         return f"{source}{separator}{lines[0]}"
-    return "\n  ".join([f"{source}: {len(lines)} problems", *lines])
+    if len(placed) > _MOST:
+        lines.append(f"and {len(placed) - _MOST:,} more")
+    return "\n  ".join([f"{source}: {len(placed):,} problems", *lines])
 
 
 def _place(path: KeyPath, places: Mapping[KeyPath, Place]) -> Place:
@@ -118,5 +138,6 @@ def _line(place: Place, problem: Problem) -> str:
     where = [] if place == Place() else [str(place)]
     # An override that sets this very key has already named it.
     if key and not (place.override and place.override.split("=")[0].strip() == key):
-        where.append(key)
-    return ": ".join(part for part in (", ".join(where), str(problem)) if part)
+        where.append(quotable(key))
+    told = quotable(str(problem), _LONGEST_FAULT)
+    return ": ".join(part for part in (", ".join(where), told) if part)

@@ -10,13 +10,17 @@ from __future__ import annotations
 from dataclasses import dataclass, field
 from typing import Annotated, Literal
 
+from . import limits
 from .continuation import ContinuationStage
-from .ends import Boundary, Loop, Value
+from .ends import Boundary, HalfTwists, Loop, Value
 from .laws import Law
 from .loads import Loads
 from .schema.bounds import Bounds
 
 Numbers3 = tuple[float, float, float]
+Intervals = Annotated[int, Bounds(ge=1, most=limits.INTERVALS)]
+Iterations = Annotated[int, Bounds(ge=1, most=limits.ITERATIONS)]
+SolverTolerance = Annotated[float, Bounds(gt=0, le=1)]
 
 
 @dataclass(frozen=True)
@@ -70,7 +74,7 @@ class Band:
     Without a piece: that of the scene's loop, or the whole.
     """
 
-    half_twists: int
+    half_twists: HalfTwists
     piece: Literal["whole", "half", "fundamental"] | None = None
 
 
@@ -99,7 +103,7 @@ class Collocation:
     type: Literal["collocation"] = "collocation"
     scheme: Literal["gauss", "radau", "lobatto"] = "gauss"
     degree: Annotated[int, Bounds(ge=1, le=10)] = 6
-    intervals: Annotated[int, Bounds(ge=1)] = 10
+    intervals: Intervals = 10
 
 
 @dataclass(frozen=True)
@@ -112,9 +116,9 @@ class Shooting:
 
     type: Literal["shooting"] = "shooting"
     scheme: Literal["rk4", "rk8", "gauss"] = "rk8"
-    steps: Annotated[int, Bounds(ge=1)] = 1
+    steps: Annotated[int, Bounds(ge=1, most=limits.STEPS)] = 1
     degree: Annotated[int, Bounds(ge=1, le=10)] = 3
-    intervals: Annotated[int, Bounds(ge=1)] = 20
+    intervals: Intervals = 20
 
 
 @dataclass(frozen=True)
@@ -137,8 +141,8 @@ class Ipopt:
     """IPOPT: globalised, bounded, able to minimise; `tolerance` is that of the nonlinear solver."""
 
     type: Literal["ipopt"] = "ipopt"
-    tolerance: Annotated[float, Bounds(gt=0)] = 1e-12
-    max_iterations: Annotated[int, Bounds(ge=1)] = 200
+    tolerance: SolverTolerance = 1e-12
+    max_iterations: Iterations = 200
 
 
 @dataclass(frozen=True)
@@ -146,8 +150,8 @@ class Newton:
     """Newton's method with kept factors; `tolerance` is relative to the size of the unknowns."""
 
     type: Literal["newton"] = "newton"
-    tolerance: Annotated[float, Bounds(gt=0)] = 1e-13
-    max_iterations: Annotated[int, Bounds(ge=1)] = 50
+    tolerance: SolverTolerance = 1e-13
+    max_iterations: Iterations = 50
 
 
 @dataclass(frozen=True)
@@ -184,8 +188,8 @@ class Scene:
     law: Law
     boundary: Boundary
     guess: Guess = "auto"
-    starts: Annotated[int, Bounds(ge=1)] = 1
-    seed: Annotated[int, Bounds(ge=0)] = 0
+    starts: Annotated[int, Bounds(ge=1, most=limits.STARTS)] = 1
+    seed: Annotated[int, Bounds(ge=0, most=limits.SEED)] = 0
     formulation: Literal["inverted", "algebraic", "differentiated", "energy"] | Algebraic = (
         "inverted"
     )

@@ -12,6 +12,7 @@ from .faults import KeyPath
 from .formulas.parsing import FormulaError, evaluate_value, parse_expression
 from .formulas.words import RESERVED
 from .lens import value_at, with_value
+from .limits import COUNTED
 from .model import Scene
 from .quantities import OUTPUTS, Shape
 
@@ -20,7 +21,7 @@ GRAMMAR = RESERVED - OUTPUTS.keys()
 
 _AT = re.compile(r"(.*)\sat\s(.*)", re.DOTALL)
 _WORD = re.compile(r"(?<![\w.])[A-Za-z_]\w*(?:\.[A-Za-z_]\w*)*")  # not the e of 1e3
-_SPECIAL = re.compile(r"(?:(\d+) +)?(fold|branch point|buckling point|kink)(s?)")
+_SPECIAL = re.compile(r"(?:([0-9]+) +)?(fold|branch point|buckling point|kink)(s?)")
 _STOP = (
     "expected 'A > B' or 'A < B', such as 'energy > 30'; or fold, branch point, buckling point, "
     "kink, or a number of them, such as '2 folds'"
@@ -132,7 +133,10 @@ def special_stop(text: str) -> tuple[str, int] | None:
     named = _SPECIAL.fullmatch(text.strip())
     if named is None:
         return None
-    count, kind, several = int(named[1] or 1), named[2], bool(named[3])
+    digits, kind, several = named[1] or "1", named[2], bool(named[3])
+    count = int(digits) if len(digits) <= len(str(COUNTED)) else COUNTED + 1
+    if count > COUNTED:
+        raise FormulaError(text, None, f"found a number too large, expected at most {COUNTED}")
     if count < 1 or several != (count > 1):
         example = f"'{kind}', or '2 {kind}s' for the second one"
         raise FormulaError(text, None, f"found a number that does not fit, expected {example}")

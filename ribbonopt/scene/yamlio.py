@@ -8,15 +8,21 @@ from dataclasses import replace
 from typing import Any
 
 from ribbonopt.errors import SceneError
+from ribbonopt.reading import MEGA, Kind, read_text
 
 from .checks.whole import check
 from .ends import Boundary
-from .faults import InvalidSceneError, Problem, report
+from .faults import InvalidSceneError, Problem, nearest, report
 from .laws import Sadowsky
 from .model import Scene
+from .schema.annotations import written_keys
 from .schema.validation import validate
 from .supports import SUPPORTS
 from .text.yamltext import PlainData, YamlTextError, read
+
+#: what scenes, and studies of them, are read from; a megabyte holds thousands of them
+SCENE = Kind("a scene file", most=10 * MEGA, error=SceneError, piped=True)
+LOOKED_AT, LONGEST = 20, 100  # keys that may be misspelt, of a file that may have any; letters
 
 
 def load_scene(path: str | os.PathLike[str], overrides: Sequence[str] = ()) -> Scene:
@@ -39,8 +45,7 @@ def load_scene(path: str | os.PathLike[str], overrides: Sequence[str] = ()) -> S
     SceneError
         If the file cannot be read, or for all problems of the scene together, each with its line.
     """
-    source = os.fspath(path)
-    return loads_scene(_text_of(path, source), source, overrides)
+    return loads_scene(read_text(path, SCENE), os.fspath(path), overrides)
 
 
 def locate(path: str | os.PathLike[str], overrides: Sequence[str], key: str) -> str:
@@ -57,9 +62,13 @@ def locate(path: str | os.PathLike[str], overrides: Sequence[str], key: str) -> 
     Returns
     -------
     str
-        "line 7", "--set boundary.end.d1=...", or "" where nothing of it was written.
+        "line 7", "--set boundary.end.d1=...", or "" where nothing of it was written, or the file
+        can be read only once.
     """
-    plain = read(_text_of(path, os.fspath(path)))
+    try:
+        plain = read(read_text(path, replace(SCENE, piped=False)))
+    except SceneError:
+        return ""
     if overrides:
         from .text.overrides import override
 
@@ -69,21 +78,6 @@ def locate(path: str | os.PathLike[str], overrides: Sequence[str], key: str) -> 
         if parts[:length] in plain.places:
             return str(plain.places[parts[:length]])
     return ""
-
-
-def _text_of(path: str | os.PathLike[str], source: str) -> str:
-    try:
-        with open(path, "rb") as file:
-            return file.read().decode("utf-8-sig")
-    except FileNotFoundError:
-        raise SceneError(f"{source}: no such file") from None
-    except IsADirectoryError:
-        raise SceneError(f"{source}: is a directory; expected a scene file in it") from None
-    except UnicodeDecodeError as error:
-        raise SceneError(f"{source}: not a text in UTF-8 (byte {error.start})") from None
-    except (OSError, ValueError) as error:
-        reason = getattr(error, "strerror", None) or error
-        raise SceneError(f"{source}: cannot be read: {reason}") from None
 
 
 def loads_scene(text: str, source: str = "<string>", overrides: Sequence[str] = ()) -> Scene:
@@ -98,6 +92,7 @@ def loads_scene(text: str, source: str = "<string>", overrides: Sequence[str] = 
     if not isinstance(written.data, dict):
         kind = "a list" if isinstance(written.data, list) else "a single value"
         raise SceneError(f"{source}: is {kind}; expected keys such as name, law, boundary")
+    refuse_foreign(written, source, written_keys(Scene))
     plain = written
     if overrides:
         from .text.overrides import override  # only scenes that are overridden pay for it
@@ -113,19 +108,42 @@ def loads_scene(text: str, source: str = "<string>", overrides: Sequence[str] = 
     return scene
 
 
+def refuse_foreign(found: PlainData, source: str, known: Sequence[str]) -> None:
+    """Refuse what has no key that it might have: no message is to quote what is no scene.
+
+    Raises
+    ------
+    SceneError
+        If all keys are foreign, and none is a known one misspelt.
+    """
+    keys = list(found.data) if isinstance(found.data, dict) else []
+    if any(key in known for key in keys) or not (keys or found.problems):
+        return
+    if not any(nearest(key[:LONGEST], known) for key in keys[:LOOKED_AT]):
+        raise SceneError(
+            f"{source}: is no scene, none of its keys is one of a scene; expected keys such as "
+            "name, law, boundary"
+        )
+
+
 def plain_yaml(text: str, source: str) -> Any:
     """Read YAML text as plain data; `source` names it in the SceneError of what is no YAML."""
     return read_yaml(text, source).data
 
 
-def read_yaml(text: str, source: str) -> PlainData:
-    """Read YAML text as plain data with the places of its values; see `plain_yaml`."""
+def read_yaml(text: str, source: str, known: Sequence[str] = ()) -> PlainData:
+    """Read YAML text as plain data with the places of its values; see `plain_yaml`.
+
+    `known` are keys of which it should have one, see `refuse_foreign`.
+    """
     try:
         found = read(text)
     except YamlTextError as error:
         where = f"{source}, line {error.line}" if error.line else source
         raise SceneError(f"{where}: {error}") from None
     if found.problems:
+        if known:
+            refuse_foreign(found, source, known)
         raise SceneError(report(source, found.problems, found.places))
     return found
 
@@ -202,5 +220,5 @@ def _further(data: object, problems: Sequence[Problem]) -> list[Problem]:
         faulty.add("ribbon")  # which would seem not to be as long as the default
     parts = {"interval", "parameters", "boundary", "guess", "ribbon"} - faulty
     sound = {key: value for key, value in data.items() if key in parts}
-    blank = {"name": "", "law": Sadowsky(), "boundary": Boundary()}
+    blank = {"name": "scene", "law": Sadowsky(), "boundary": Boundary()}
     return check(validate(Scene, blank | sound))

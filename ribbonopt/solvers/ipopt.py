@@ -36,6 +36,10 @@ _STATUS = {
 }
 
 
+# How CasADi tells of Ctrl-C, which it takes for itself; nothing else of ours throws there.
+INTERRUPTED = "NonIpopt_Exception_Thrown"
+
+
 @dataclass(frozen=True, eq=False)
 class IpoptSolver:
     """IPOPT with MUMPS on one NLP; `tolerance` bounds residuals and dual infeasibility."""
@@ -100,6 +104,8 @@ class IpoptSolver:
         result = solver(x0=w, p=p, lbg=lower, ubg=0.0)
         total = time.perf_counter() - start
         stats = solver.stats()
+        if stats["return_status"] == INTERRUPTED:
+            raise KeyboardInterrupt
         status = _STATUS.get(stats["return_status"], Status.INFEASIBLE)
         if status is Status.STALLED and self._at_rounding(stats["iterations"]):
             status = Status.CONVERGED

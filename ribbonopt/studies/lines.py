@@ -2,33 +2,41 @@
 
 from __future__ import annotations
 
-import json
 from collections.abc import Callable
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
-from ribbonopt.errors import OutputError
+from ribbonopt.plain import parsed
+from ribbonopt.reading import Kind, read_lines
+
+T = TypeVar("T")
 
 
-def whole_lines(path: Path, sound: Callable[[Any], bool]) -> list[dict[str, Any]]:
-    """Return the objects of a file, a line each; the last one may have been cut short.
+def whole_lines(path: Path, kind: Kind, checked: Callable[[Any, str], T]) -> list[T]:
+    """Return what the lines of a file say; the last one, if it has no end, may have been cut short.
+
+    Parameters
+    ----------
+    path, kind
+        The file.
+    checked
+        Returns what the data of a line are, or raises the error of the kind; takes where that is.
 
     Raises
     ------
     OutputError
-        If a line is whole, but not sound.
+        If any other line is damaged: names it.
     """
-    lines: list[dict[str, Any]] = []
-    for number, text in enumerate(path.read_bytes().split(b"\n"), start=1):
-        if not text:
+    lines: list[T] = []
+    for number, text in enumerate(read_lines(path, kind), start=1):
+        where = f"{path}, line {number}"
+        if not text.strip():
             continue
         try:
-            line = json.loads(text)
-        except ValueError:
-            break  # cut short when the process died, and nothing after it
-        if not sound(line):
-            raise OutputError(
-                f"{path}, line {number}: is damaged; remove it and all lines after it to go on"
-            )
-        lines.append(line)
+            data = parsed(text)
+        except ValueError as error:
+            if not text.endswith(b"\n") and (text.startswith(b"{") or not text.strip(b"\0")):
+                break  # cut short when the process died, and nothing after it
+            raise kind.damaged(where, str(error)) from None
+        lines.append(checked(data, where))
     return lines

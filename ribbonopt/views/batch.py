@@ -4,17 +4,19 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ribbonopt.plain import Rows, is_number
+from ribbonopt.text import drawn
 
 from .branch import COLOURS
 from .columns import ColumnPair, as_text, is_logarithmic, is_numeric, numbers, varied, words
 from .histogram import histogram_of
-from .style import BENDING, FAINT, INK, TWIST, blank, save_all, tidy
+from .style import BENDING, FAINT, INK, TWIST, blank, draw_all, tidy
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -23,7 +25,6 @@ if TYPE_CHECKING:
 OUTCOMES = ("energy", "error", "seconds", "H0", "u2")  # those that vary, three of them
 MOST = 4  # panels of a figure
 PALETTE = tuple(colour for colour in COLOURS if colour != TWIST)  # which tells what failed
-LETTERS = 40  # of a text in a figure
 
 
 def save_batch_figures(
@@ -45,14 +46,14 @@ def save_batch_figures(
     Raises
     ------
     OutputError
-        If a file cannot be written.
+        If a file cannot be drawn or written.
     """
     chosen = list(pairs) or usual_pairs(rows, inputs)
-    figures = {
-        "outcomes.png": plot_outcomes(rows),
-        "scatter.png": plot_scatter(rows, chosen, inputs),
+    drawings = {
+        "outcomes.png": partial(plot_outcomes, rows),
+        "scatter.png": partial(plot_scatter, rows, chosen, inputs),
     }
-    return save_all(figures, Path(folder))
+    return draw_all(drawings, Path(folder)).paths
 
 
 def usual_pairs(rows: Rows, inputs: Sequence[str]) -> list[ColumnPair]:
@@ -68,23 +69,23 @@ def plot_outcomes(rows: Rows) -> Figure:
     from matplotlib.ticker import MaxNLocator
 
     counts = Counter((bool(row["verified"]), str(row["status"])) for row in rows)
-    drawn = [found for name in OUTCOMES if (found := histogram_of(rows, name))][: MOST - 1]
-    figure = blank(3.2 * (len(drawn) + 1), 3.2)
-    axes, *others = np.atleast_1d(figure.subplots(1, len(drawn) + 1))
+    histograms = [found for name in OUTCOMES if (found := histogram_of(rows, name))][: MOST - 1]
+    figure = blank(3.2 * (len(histograms) + 1), 3.2)
+    axes, *others = np.atleast_1d(figure.subplots(1, len(histograms) + 1))
     # What is verified, and then what is frequent, at the top.
     for (verified, status), count in sorted(counts.items(), key=lambda item: (item[0][0], item[1])):
-        bar = axes.barh(_plain(status), count, color=BENDING if verified else TWIST)
+        bar = axes.barh(drawn(status), count, color=BENDING if verified else TWIST)
         axes.bar_label(bar, padding=3, fontsize=9, color=INK)
     axes.margins(x=0.2)
     axes.set_xlabel("ribbons")
     axes.xaxis.set_major_locator(MaxNLocator(4, integer=True))
-    for other, histogram in zip(others, drawn, strict=True):
+    for other, histogram in zip(others, histograms, strict=True):
         edges = np.array([histogram.edges(bar) for bar in histogram.bars]).reshape(-1, 2)
         good, bad = np.array([(bar.verified, bar.failed) for bar in histogram.bars]).T
         style = {"align": "edge", "edgecolor": "white", "lw": 0.5}
         other.bar(edges[:, 0], good, np.diff(edges)[:, 0], color=BENDING, **style)
         other.bar(edges[:, 0], bad, np.diff(edges)[:, 0], good, color=TWIST, **style)
-        other.set(xlabel=histogram.name, xscale="log" if histogram.log else "linear")
+        other.set(xlabel=drawn(histogram.name), xscale="log" if histogram.log else "linear")
         other.yaxis.set_major_locator(MaxNLocator(5, integer=True))
     for each in (axes, *others):
         tidy(each)
@@ -139,9 +140,9 @@ def _panel(figure: Figure, axes: Axes, rows: Rows, pair: ColumnPair, shade: str)
         title = f"{int(known.any(axis=1).sum())} failed"
         axes.set_title(title, fontsize=9, color=TWIST, loc="right")
     for axis, name, scale in zip("xy", pair, scales, strict=True):
-        axes.set(**{f"{axis}label": _plain(name)})
+        axes.set(**{f"{axis}label": drawn(name)})
         if isinstance(scale, list):
-            labels = [_plain(word) for word in scale]
+            labels = [drawn(word) for word in scale]
             axes.set(**{f"{axis}ticks": range(len(scale)), f"{axis}ticklabels": labels})
         else:
             axes.set(**{f"{axis}scale": scale})
@@ -159,8 +160,8 @@ def _draw(figure: Figure, axes: Axes, rows: Rows, points: np.ndarray, shade: str
         values = np.array([_place(row.get(shade), "") for row in rows])
         norm = LogNorm() if is_logarithmic(numbers(rows, shade)) else None
         style |= {"c": values, "cmap": "viridis", "norm": norm, "plotnonfinite": True}
-        drawn = axes.scatter(*points.T, **style)
-        bar = figure.colorbar(drawn, ax=axes, label=_plain(shade), aspect=30, pad=0.02)
+        dots = axes.scatter(*points.T, **style)
+        bar = figure.colorbar(dots, ax=axes, label=drawn(shade), aspect=30, pad=0.02)
         if norm is not None:
             few = max(values[np.isfinite(values)]) < 1e3 * min(values[np.isfinite(values)])
             bar.ax.yaxis.set_major_locator(LogLocator(subs=(1, 2, 5) if few else (1,)))
@@ -172,17 +173,11 @@ def _draw(figure: Figure, axes: Axes, rows: Rows, points: np.ndarray, shade: str
         known = words(rows, shade)
         which = np.array([as_text(row.get(shade)) for row in rows])
         for word, colour in zip(known, PALETTE, strict=False):
-            axes.scatter(*points[which == word].T, color=colour, label=_plain(word), **style)
+            axes.scatter(*points[which == word].T, color=colour, label=drawn(word), **style)
         axes.scatter(*points[which == ""].T, color=FAINT, **style)
-        axes.legend(fontsize=8, frameon=False, title=_plain(shade), title_fontsize=8)
+        axes.legend(fontsize=8, frameon=False, title=drawn(shade), title_fontsize=8)
     else:
         axes.scatter(*points.T, color=BENDING, **style)
-
-
-def _plain(text: str) -> str:
-    """Return text that matplotlib draws as it is, cut where it is too long for a figure."""
-    text = text if len(text) <= LETTERS else text[: LETTERS - 1] + "…"
-    return text.replace("$", r"\$")
 
 
 def _scale(rows: Rows, name: str) -> str | list[str]:

@@ -16,6 +16,7 @@ import numpy as np
 
 from ribbonopt.plain import Row, Rows
 from ribbonopt.solution.solution import Solution
+from ribbonopt.text import drawn
 
 from .branch_axes import COUNTS, dress, label, unit_of
 from .branch_numbers import write_numbers
@@ -24,7 +25,7 @@ from .branch_style import DOT, STYLES, UNKNOWN, mark_of, marks_of, state_of
 from .columns import ColumnPair
 from .curves import Array, curves_through
 from .strip import plot_strip
-from .style import BENDING, FAINT, INK, SI, SPECIAL, TWIST, Drawn, blank, draw_all, tidy
+from .style import BENDING, FAINT, INK, SI, SPECIAL, TWIST, Drawn, blank, draw_all, tidy, title
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -87,7 +88,7 @@ def draw_branch(subject: BranchFigure, numbered: Sequence[int]) -> Figure:
     grid = figure.add_gridspec(count, columns)
     for i, pair in enumerate(pairs):
         _panel(figure, grid[divmod(i, columns)], subject, pair, numbered)
-    figure.axes[0].set_title(subject.title, loc="left", fontsize=12, fontweight="bold")
+    title(figure.axes[0], subject.title)
     if subject.title:
         across = len(subject.axes_of(pairs[0])) if columns == 1 else min(columns, len(pairs))
         last = figure.axes[across - 1]
@@ -192,7 +193,7 @@ def _plain(subject: BranchFigure) -> dict[str, Any]:
 
 def _caption(row: Row, subject: BranchFigure) -> str:
     """Return what stands under a ribbon: number, kind, parameter, branch."""
-    kind = "" if row["kind"] == POINT else f"  {row['kind']}"
+    kind = "" if row["kind"] == POINT else f"  {drawn(row['kind'])}"
     branch = f"\nbranch {row['branch']}" if row["branch"] else ""
     unit = unit_of(row["parameter"], subject.si)
     value = f"{row[row['parameter']]:.4g}{f' {unit}' if unit else ''}"

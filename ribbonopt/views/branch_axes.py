@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 from ribbonopt.scene.quantities import START_VECTORS
+from ribbonopt.text import drawn
 
 from .branch_rows import VALUE, Plane
 from .columns import LEAST, NOISE
@@ -44,7 +45,7 @@ def unit_of(column: str, si: bool) -> str:
 def label(column: str, si: bool) -> str:
     """Return the words for a column, with its unit."""
     unit = unit_of(column, si)
-    return LABELS.get(column, column) + (f" ({unit})" if unit else "")
+    return LABELS.get(column, drawn(column)) + (f" ({unit})" if unit else "")
 
 
 def dress(axes: Axes, plane: Plane) -> None:

@@ -6,13 +6,15 @@ They take rows as plain mappings, as `comparison.json` and `benchmark.json` hold
 from __future__ import annotations
 
 from collections.abc import Mapping
+from functools import partial
 from itertools import cycle
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from ribbonopt.plain import Row, Rows
+from ribbonopt.text import drawn
 
-from .style import FAINT, INK, blank, save_all, tidy
+from .style import FAINT, INK, blank, draw_all, tidy, title
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -39,7 +41,7 @@ def _comparison(study: Mapping[str, Any]) -> Figure:
     _work_precision(axes, study["rows"], study.get("peers", ()))
     for tolerance in study.get("tolerances", ()):
         axes.axvline(tolerance, color=FAINT, lw=0.5, ls=":", zorder=0)
-    axes.set_title(study["name"], loc="left", fontsize=12, fontweight="bold")
+    title(axes, study["name"])
     return figure
 
 
@@ -48,14 +50,14 @@ def _benchmark(study: Mapping[str, Any]) -> Figure:
     left, right = figure.subplots(1, 2)
     _work_precision(left, study["rows"], study["peers"])
     _orders(right, study)
-    left.set_title(study["name"], loc="left", fontsize=12, fontweight="bold")
+    title(left, study["name"])
     return figure
 
 
 def save_figure(study: Mapping[str, Any], path: str | Path) -> None:
-    """Write the figure of a study; OutputError if it cannot be written."""
+    """Write the figure of a study; OutputError if it cannot be drawn or written."""
     path = Path(path)
-    save_all({path.name: plot_study(study)}, path.parent)
+    draw_all({path.name: partial(plot_study, study)}, path.parent)
 
 
 def _work_precision(axes: Axes, rows: Rows, peers: Rows) -> None:
@@ -66,7 +68,9 @@ def _work_precision(axes: Axes, rows: Rows, peers: Rows) -> None:
         axes.plot(*zip(*_front(xy), strict=True), **styles[pair])
     for shade, ((name,), points) in zip(PEERS, _grouped(peers, ("name",)).items(), strict=False):
         xy = sorted((max(peer["error"], FLOOR), 1e3 * peer["solve"]) for peer in points)
-        axes.plot(*zip(*xy, strict=True), label=name, color=shade, marker="x", ls=":", lw=1.6)
+        axes.plot(
+            *zip(*xy, strict=True), label=drawn(name), color=shade, marker="x", ls=":", lw=1.6
+        )
     axes.set(xscale="log", yscale="log")
     axes.invert_xaxis()
     axes.set_xlabel("relative error of n(0), m(0)")
@@ -122,7 +126,7 @@ def _legend(axes: Axes, rows: Rows) -> None:
     handles += [Line2D([], [], color=INK, marker=marker, ls="") for marker in markers.values()]
     states = [name for name in STATES if any(row["states"] == name for row in rows)]
     handles += [Line2D([], [], color=INK, ls=STATES[name]) for name in states]
-    labels = [*colours, *markers, *(f"{name} states" for name in states), *names]
+    labels = [*map(drawn, (*colours, *markers)), *(f"{name} states" for name in states), *names]
     axes.legend(
         [*handles, *peers],
         labels,

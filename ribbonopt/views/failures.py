@@ -6,9 +6,9 @@ import math
 import re
 from collections.abc import Sequence
 from dataclasses import dataclass
-from html import escape
 
 from ribbonopt.plain import Row, Rows
+from ribbonopt.text import marked_up
 
 from .columns import is_logarithmic, is_numeric, numbers, words
 
@@ -56,8 +56,8 @@ def failures_html(rows: Rows, inputs: Sequence[str], colours: dict[str, str]) ->
         )
         parts.append(
             f'<section class="why" style="border-color:{colours[failure.status]}">'
-            f"<h3>{len(failure.rows)} {escape(failure.status)}</h3>"
-            f"<p>{escape(failure.message or 'no message')}</p>"
+            f"<h3>{len(failure.rows)} {marked_up(failure.status)}</h3>"
+            f"<p>{marked_up(failure.message or 'no message')}</p>"
             f'<p class="faint">ribbon{"s" * (len(failure.rows) > 1)} {named}</p>'
             f"<dl>{ranges}</dl></section>"
         )
@@ -75,7 +75,7 @@ def _range(group: Rows, key: str, every: Sequence[float]) -> str:
     low, high = min(values), max(values)
     left, right = (100 * _share(value, every) for value in (low, high))
     return (
-        f'<dt>{escape(key)}</dt><dd><i class="track" title="of {min(every):.4g} to '
+        f'<dt>{marked_up(key)}</dt><dd><i class="track" title="of {min(every):.4g} to '
         f'{max(every):.4g}"><i style="left:{left:.1f}%;right:{100 - right:.1f}%"></i></i>'
         f"{low:.4g}{f' to {high:.4g}' if high > low else ''}</dd>"
     )
@@ -88,7 +88,7 @@ def _words(group: Rows, rows: Rows, key: str) -> str:
         return ""
     text = f"all {total} values" if len(some) == total else " | ".join(some[:WORDS])
     more = f" | {len(some) - WORDS} more" if WORDS < len(some) < total else ""
-    return f"<dt>{escape(key)}</dt><dd>{escape(text + more)}</dd>"
+    return f"<dt>{marked_up(key)}</dt><dd>{marked_up(text + more)}</dd>"
 
 
 def _share(value: float, every: Sequence[float]) -> float:

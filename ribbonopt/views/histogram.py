@@ -8,10 +8,10 @@ from __future__ import annotations
 import math
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
-from html import escape
 from itertools import pairwise
 
 from ribbonopt.plain import Rows, is_number
+from ribbonopt.text import marked_up
 
 from .columns import as_text, columns, is_logarithmic, is_missing, is_numeric, varied, words
 
@@ -133,11 +133,11 @@ def _figure(histogram: Histogram) -> str:
         low, high = histogram.edges(bar)
         where = histogram.words[i] if histogram.words else f"{low:.4g} to {high:.4g}"
         title = f"{where}: {bar.verified} verified, {bar.failed} failed"
-        drawn.append(f"<g><title>{escape(title)}</title>{rects}</g>")
+        drawn.append(f"<g><title>{marked_up(title)}</title>{rects}</g>")
     under = histogram.words or [f"{end:.4g}" for end in histogram.ends]
-    texts = "".join(f"<span>{escape(text)}</span>" for text in under)
+    texts = "".join(f"<span>{marked_up(text)}</span>" for text in under)
     return (
-        f"<figure><figcaption><span>{escape(histogram.name)}{' (log)' * histogram.log}</span>"
+        f"<figure><figcaption><span>{marked_up(histogram.name)}{' (log)' * histogram.log}</span>"
         f'<em>{most}</em></figcaption><svg viewBox="0 0 100 {HEIGHT}" preserveAspectRatio="none">'
         f'{"".join(drawn)}</svg><small class="{"words" * bool(histogram.words)}">{texts}</small>'
         "</figure>"

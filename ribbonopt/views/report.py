@@ -10,7 +10,6 @@ import json
 import re
 from collections import Counter
 from collections.abc import Sequence
-from html import escape
 from importlib.resources import files
 from pathlib import Path
 from statistics import median
@@ -20,6 +19,7 @@ from ribbonopt.errors import OutputError
 from ribbonopt.output.staging import replacing
 from ribbonopt.plain import Row, Rows, is_number
 from ribbonopt.scene.quantities import START_VECTORS
+from ribbonopt.text import marked_up
 
 from .columns import (
     as_text,
@@ -86,7 +86,7 @@ def _page(rows: Rows, inputs: tuple[str, ...], name: str, count: int, here: Path
     colours = {status: BAD[i % len(BAD)] for i, status in enumerate(bad)}
     colours = {status: colours.get(status, GOOD) for status in statuses}
     parts = {
-        "title": escape(name),
+        "title": marked_up(name),
         "head": _summary(rows, name, count, {s: (counts[s], c) for s, c in colours.items()}),
         "failures": failures_html(rows, inputs, colours),
         "distributions": distributions_html(rows, inputs),
@@ -120,11 +120,11 @@ def _summary(rows: Rows, name: str, count: int, statuses: dict[str, tuple[int, s
     parts += [("missing", missing, NONE)] if missing else []
     bar = "".join(f'<div style="flex:{n} 0 0;background:{colour}"></div>' for _, n, colour in parts)
     legend = "".join(
-        f'<span><i style="background:{colour}"></i>{escape(status)} {n}</span>'
+        f'<span><i style="background:{colour}"></i>{marked_up(status)} {n}</span>'
         for status, n, colour in parts
     )
     return (
-        f"<h1>{escape(name)}</h1><p>{count} ribbon{'s' * (count != 1)}</p>"
+        f"<h1>{marked_up(name)}</h1><p>{count} ribbon{'s' * (count != 1)}</p>"
         f'<div class="tiles">{shown}</div><div class="bar">{bar}</div>'
         f'<div class="legend">{legend}</div>'
     )
@@ -148,7 +148,7 @@ def _table(rows: Rows, inputs: tuple[str, ...], here: Path) -> str:
     whole = " and ".join(  # links where the report lies beside the rows
         f'<a href="{file}">{file}</a>' if (here / file).is_file() else file for file in FILES
     )
-    head = "".join(f'<th class="{_kind(name)}">{escape(name)}</th>' for name in names)
+    head = "".join(f'<th class="{_kind(name)}">{marked_up(name)}</th>' for name in names)
     body = "".join(f"<tr>{_cells(row, names, folders)}</tr>" for row in chosen)
     which = f"the first {LISTED}" + (" and those that failed" if failed else "")
     which += f" ({FAILED} of {len(failed)} more)" if len(failed) > FAILED else ""
@@ -166,8 +166,8 @@ def _cells(row: Row, names: Sequence[str], folders: set[str]) -> str:
         value = row.get(name)
         text, title, kind = as_text(value), "", _kind(name)
         if len(text) > LONGEST:
-            text, title = text[: LONGEST - 1] + "…", f' title="{escape(text)}"'
-        text = escape(text)
+            text, title = text[: LONGEST - 1] + "…", f' title="{marked_up(text)}"'
+        text = marked_up(text)
         if name == "number" and text in folders:
             text = f'<a href="{SOLUTIONS}/{text}/">{text}</a>'
         if name == "status" and not row["verified"]:

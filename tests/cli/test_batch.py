@@ -14,7 +14,6 @@ import pytest
 from batches import STUDY, without_times, written
 from half_studies import SCENE
 
-from ribbonopt.cli import batch
 from ribbonopt.pipeline.prepared import solve
 from ribbonopt.scene import load_scene
 from ribbonopt.studies.batch.batch import run_batch
@@ -165,11 +164,24 @@ def test_what_the_scene_records_is_a_column(run: Run, study: Path, tmp_path: Pat
     for row in written(tmp_path / "out"):
         scene = load_scene(tmp_path / "scene.yaml", [f"law.epsilon={row['law.epsilon']}"])
         assert row["deflection"] == pytest.approx(float(solve(scene).sample(0.5, "r")[0]), rel=1e-6)
-    (tmp_path / "scene.yaml").write_text(SCENE + "record: {seconds: 'dot(r, ex) at 0.5'}\n")
-    assert run("batch", study, "--out", tmp_path / "b", "--quiet").status == 0
-    (tmp_path / "scene.yaml").write_text(SCENE + "record: {status: 'dot(r, ex) at 0.5'}\n")
-    assert run("batch", study, "--out", tmp_path / "c", "--quiet").status == 3
-    assert "record.status: every row has that already" in written(tmp_path / "c")[0]["message"]
+
+
+@pytest.mark.parametrize("name", ["status", "seconds", "equilibria"])
+def test_what_a_scene_records_never_hides_a_column(
+    run: Run, study: Path, tmp_path: Path, name: str
+) -> None:
+    bad = SCENE + f"starts: 2\nrecord: {{{name}: 'dot(r, ex) at 0.5'}}\n"
+    (tmp_path / "scene.yaml").write_text(bad)
+    status, _, err = run("batch", study, "--out", tmp_path / "out", "--quiet")
+    assert (status, (tmp_path / "out").exists()) == (2, False)
+    assert f"record.{name}: every row has that already" in err
+    # Beside a good scene it spoils its own row only.
+    (tmp_path / "good.yaml").write_text(SCENE)
+    scenes = (tmp_path / "good.yaml", tmp_path / "scene.yaml")
+    assert run("batch", *scenes, "--out", tmp_path / "both", "--quiet").status == 3
+    rows = {row["number"]: row for row in written(tmp_path / "both")}
+    assert rows[1]["verified"]
+    assert f"record.{name}: every row has that already" in rows[2]["message"]
 
 
 def test_report_and_figures(run: Run, study: Path, tmp_path: Path) -> None:
@@ -209,7 +221,7 @@ def test_progress_is_shown_on_terminals_only(
 ) -> None:
     study.write_text(STUDY.replace("count: 30", "count: 8"))
     assert run("batch", study, "--out", tmp_path / "a").err == ""
-    monkeypatch.setattr(batch.sys, "stderr", terminal := Terminal())
+    monkeypatch.setattr(sys, "stderr", terminal := Terminal())
     assert run("batch", study, "--out", tmp_path / "b").status == 0
     shown = terminal.getvalue().split("\r")
     assert any(part.startswith("8/8 done, 0 failed, ") and "left" in part for part in shown)

@@ -93,7 +93,7 @@ def test_a_folder_is_written_by_one_batch_at_a_time(run: Run, study: Path) -> No
     until(lambda: (study.parent / "hanging").exists() and rows_there(out) == 3, process)
     before = (out / "rows.jsonl").read_bytes()
     status, _, err = run("batch", study, "--out", out, "--resume")
-    assert (status, "is being written by another batch" in err) == (2, True)
+    assert (status, "is being written by another process" in err) == (2, True)
     assert (out / "rows.jsonl").read_bytes() == before
     process.kill()
     process.wait()

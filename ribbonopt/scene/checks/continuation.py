@@ -26,6 +26,7 @@ from ribbonopt.scene.stages import (
     words_of,
 )
 from ribbonopt.scene.wording import written
+from ribbonopt.text import is_word
 
 Check = Callable[[Scene], list[Problem]]
 
@@ -63,7 +64,7 @@ def check_continuation(scene: Scene, check: Check | None) -> list[Problem]:
 def _records(scene: Scene) -> Iterator[Problem]:
     for name, text in scene.record.items():
         path: KeyPath = ("record", name)
-        if not (name.isascii() and name.isidentifier()) or name in GRAMMAR:
+        if not is_word(name) or name in GRAMMAR:
             message = "is no name for a record; use letters, digits and _, and no word of formulas"
             yield Problem(path, message)
         try:

@@ -8,6 +8,9 @@ from keyword import iskeyword
 from ribbonopt.scene.faults import KeyPath, Problem, dotted
 from ribbonopt.scene.formulas.parsing import FormulaError, evaluate_value, parse_equation
 from ribbonopt.scene.formulas.words import RESERVED
+from ribbonopt.text import is_word
+
+from .magnitudes import as_written
 
 
 def values_of(
@@ -17,16 +20,19 @@ def values_of(
     values, problems = {}, []
     for path, formula in formulas.items():
         try:
-            values[path] = evaluate_value(formula, parameters)
+            value = evaluate_value(formula, parameters)
         except FormulaError as error:
             problems.append(Problem(path, str(error)))
+        else:
+            values[path] = value
+            problems += as_written(value, path)
     return values, problems
 
 
 def check_parameters(parameters: Mapping[str, float]) -> Iterator[Problem]:
     """Yield the parameters that no formula could name."""
     for name in parameters:
-        if not (name.isascii() and name.isidentifier()) or iskeyword(name):
+        if not is_word(name) or iskeyword(name):
             message = "is no name; use letters, digits and _, with a letter first"
             yield Problem(("parameters", name), message)
         elif name in RESERVED:

@@ -11,21 +11,25 @@ from itertools import pairwise
 from typing import Any, get_origin
 
 from ribbonopt.scene.ends import Boundary
-from ribbonopt.scene.faults import KeyPath, Problem
+from ribbonopt.scene.faults import KeyPath, Problem, shown
 from ribbonopt.scene.loads import Loads
 from ribbonopt.scene.model import Guess, MoebiusGuess, RibbonSizes, Scene
 from ribbonopt.scene.schema.annotations import branches, hints, inside
 from ribbonopt.scene.wording import written
+from ribbonopt.text import name_fault
 
 from .frames import check_frame
 from .loops import check_loop, check_piece
+from .magnitudes import as_written, in_units
 from .supports import check_supports
 
 
 def check(scene: Scene) -> list[Problem]:
     """Return the problems of a scene whose single values are valid."""
     boundary = scene.boundary
-    problems = list(_interval(scene.interval))
+    if problems := list(as_written(scene)):
+        return problems  # what follows computes with these numbers
+    problems = [*_name(scene.name), *_interval(scene.interval)]
     formulas = dict(_formulas(boundary, Boundary, ("boundary",)))
     formulas |= _formulas(scene.loads, Loads, ("loads",))
     formulas |= _formulas(scene.guess, Guess, ("guess",))
@@ -49,12 +53,19 @@ def check(scene: Scene) -> list[Problem]:
         problems += _switching(scene.switching, scene.interval)
     if scene.ribbon is not None:
         problems += [*_sizes(scene.ribbon), *_fits(scene, scene.ribbon)]
+    if not problems:
+        problems += in_units(scene, values)
     if scene.record or scene.continuation is not None:
         # Imported late: few scenes are continued.
         from .continuation import check_continuation
 
         problems += check_continuation(scene, None if problems else check)
     return problems
+
+
+def _name(name: str) -> Iterator[Problem]:
+    if fault := name_fault(name):
+        yield Problem(("name",), fault, shown(name))
 
 
 def _interval(interval: tuple[float, float]) -> Iterator[Problem]:

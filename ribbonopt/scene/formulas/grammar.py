@@ -14,6 +14,7 @@ from typing import NoReturn
 
 from ribbonopt.errors import SceneError
 from ribbonopt.scene.faults import suggestion
+from ribbonopt.scene.limits import LARGEST
 from ribbonopt.scene.quantities import AT_ENDS, Shape
 
 from .expressions import (
@@ -139,8 +140,8 @@ class Parser:
             number = float(value)
         except OverflowError:
             number = math.inf
-        if not math.isfinite(number):
-            self._refuse(node, "found a number too large to represent")
+        if number > LARGEST:
+            self._refuse(node, f"found a number too large, expected at most {LARGEST:g}")
         if exponent:
             return Number(number)
         self.numbers += 1

@@ -90,6 +90,8 @@ def _problem(place: _Place, error: ErrorDetails) -> Problem:
     if isinstance(value, dict) and (types := types_of(annotation)):
         return _without_type((*path, "type"), value, types)
     remedy = ""
+    if isinstance(value, int) and (most := _most(annotation)) and abs(value) > most:
+        return Problem(path, f"expected at most {most:,}", shown(value))
     if isinstance(value, float) and not math.isfinite(value):
         remedy = "; it must be finite"
     elif isinstance(value, str):
@@ -151,6 +153,11 @@ def _limits(bounds: Bounds) -> str:
     signs = {">": bounds.gt, ">=": bounds.ge, "<": bounds.lt, "<=": bounds.le}
     limits = [f"{sign} {limit:g}" for sign, limit in signs.items() if limit is not None]
     return " " + " and ".join(limits) if limits else ""
+
+
+def _most(annotation: Any) -> int | None:
+    bounds = next((b for b in get_args(annotation) if isinstance(b, Bounds)), None)
+    return None if bounds is None else bounds.most
 
 
 def _one_of(values: Iterable[object]) -> str:

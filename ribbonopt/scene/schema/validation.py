@@ -105,6 +105,8 @@ def _number(number: Any, bounds: Bounds | None = None) -> CoreSchema:
         for name in ("gt", "ge", "lt", "le")
         if (limit := getattr(bounds, name, None)) is not None
     }
+    if bounds is not None and bounds.most is not None:
+        limits = {"ge": -bounds.most, "le": bounds.most} | limits
     if number is int:
         return core_schema.int_schema(strict=True, **limits)
     return core_schema.float_schema(strict=True, allow_inf_nan=False, **limits)

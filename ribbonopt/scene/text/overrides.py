@@ -9,7 +9,7 @@ from collections.abc import Sequence
 from typing import Any
 
 from ribbonopt.errors import SceneError
-from ribbonopt.scene.faults import KeyPath, Place, dotted, shown
+from ribbonopt.scene.faults import KeyPath, Place, dotted, quotable, shown
 
 from .yamltext import PlainData, YamlTextError, read
 
@@ -45,11 +45,14 @@ def _parse(text: str) -> tuple[list[str], PlainData]:
     key, equals, value = text.partition("=")
     path = key.strip().split(".")
     if not equals or not all(path):
-        raise SceneError(f"--set {text}: expected path=value, such as law.epsilon=1e-3")
+        raise SceneError(f"--set {quotable(text)}: expected path=value, such as law.epsilon=1e-3")
     try:
+        key.encode()
         return path, read(value)
+    except UnicodeEncodeError:
+        raise SceneError(f"--set {quotable(text)}: the key is no text in UTF-8") from None
     except YamlTextError as error:
-        raise SceneError(f"--set {text}: the value is {error}") from None
+        raise SceneError(f"--set {quotable(text)}: the value is {error}") from None
 
 
 def _put(data: Any, path: list[str], value: Any, text: str) -> KeyPath:
@@ -70,14 +73,14 @@ def _put(data: Any, path: list[str], value: Any, text: str) -> KeyPath:
 
 
 def _step(holder: Any, name: str, steps: KeyPath, text: str) -> str | int:
-    where = dotted(steps) or "the scene"
+    where, said = quotable(dotted(steps)) or "the scene", quotable(text)
     if isinstance(holder, dict):
         return name
     if isinstance(holder, list):
         if name.isascii() and name.isdigit() and int(name[:9]) < len(holder):
             return int(name)
         raise SceneError(
-            f"--set {text}: {where} is a list of {len(holder)} items; "
-            f"found {name!r}, expected an index from 0 to {len(holder) - 1}"
+            f"--set {said}: {where} is a list of {len(holder)} items; "
+            f"found {shown(name)}, expected an index from 0 to {len(holder) - 1}"
         )
-    raise SceneError(f"--set {text}: {where} is {shown(holder)}, which has no key {name!r}")
+    raise SceneError(f"--set {said}: {where} is {shown(holder)}, which has no key {shown(name)}")

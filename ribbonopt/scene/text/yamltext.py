@@ -6,12 +6,13 @@ parser is used: scalars are resolved here by the core schema of YAML 1.2 (sectio
 
 from __future__ import annotations
 
+import math
 from collections.abc import Iterator
 from typing import Any, NamedTuple
 
 import yaml
 
-from ribbonopt.scene.faults import KeyPath, Place, Problem, shown
+from ribbonopt.scene.faults import KeyPath, Place, Problem, quotable, shown
 
 _DEEPEST = 50
 _MOST_VALUES = 100_000
@@ -34,7 +35,7 @@ class YamlTextError(Exception):
     """Text that is no YAML, or YAML that is no plain data: one message, with its line if known."""
 
     def __init__(self, message: str, line: int = 0) -> None:
-        super().__init__(message)
+        super().__init__(quotable(message, 300))
         self.line = line
 
 
@@ -86,7 +87,7 @@ def _number(text: str) -> int | float | None:
         if digits.isascii() and digits.isdigit() and len(digits) < _LONGEST_INT:
             return int(text)
         if text.startswith(("0o", "0x")) and "_" not in text:
-            return int(text, 0)
+            return int(text, 0) if len(text) < _LONGEST_INT else math.inf
         return float(text) if _OF_NUMBERS.issuperset(text) else None
     except ValueError:
         return None
@@ -175,9 +176,7 @@ class _Reader:
 
     def _alias(self, event: Any, line: int) -> Any:
         if event.anchor not in self.anchors:
-            raise YamlTextError(
-                f"alias *{event.anchor} is not defined before it, or repeats itself", line
-            )
+            raise YamlTextError("an alias (*) is not defined before it, or repeats itself", line)
         return self._copy(self.anchors[event.anchor], line)
 
     def _copy(self, data: Any, line: int) -> Any:

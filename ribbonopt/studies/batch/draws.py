@@ -9,18 +9,18 @@ from typing import Any
 
 import numpy as np
 
+from ribbonopt.arrays import Array
 from ribbonopt.plain import is_number
 from ribbonopt.scene.faults import InvalidSceneError, Problem, shown
+from ribbonopt.scene.limits import LARGEST, SEED, VALUES
 
 Two = tuple[float, float]
 
-#: two numbers each: bounds, or mean and standard deviation
-DISTRIBUTIONS: dict[str, Callable[[np.random.Generator, float, float], float]] = {
-    "uniform": lambda rng, a, b: float(rng.uniform(a, b)),
-    "log_uniform": lambda rng, a, b: float(
-        np.clip(np.exp(rng.uniform(np.log(a), np.log(b))), a, b)
-    ),
-    "normal": lambda rng, a, b: float(rng.normal(a, b)),
+#: of two numbers each, bounds, or mean and standard deviation: some draws
+DISTRIBUTIONS: dict[str, Callable[[np.random.Generator, float, float, int], Array]] = {
+    "uniform": lambda rng, a, b, count: rng.uniform(a, b, count),
+    "log_uniform": lambda rng, a, b, count: rng.uniform(np.log(a), np.log(b), count),
+    "normal": lambda rng, a, b, count: rng.normal(a, b, count),
 }
 EXAMPLE = "expected {count: 100, seed: 1, over: {parameters.a: {uniform: [0, 1]}}}"
 
@@ -41,17 +41,26 @@ class Draws:
         over = value.get("over")
         if not isinstance(over, dict) or not over:
             raise _fault(("over",) if "over" in value else (), EXAMPLE, over)
-        count, seed = (_whole(n, value.get(n, d)) for n, d in (("count", None), ("seed", 0)))
+        count = _whole("count", value.get("count"), VALUES)
+        seed = _whole("seed", value.get("seed", 0), SEED)
         return cls(count, seed, {str(key): _distribution(key, item) for key, item in over.items()})
 
+    def row(self, index: int) -> dict[str, float]:
+        """Return the inputs of a ribbon."""
+        return {key: self._value(key, index) for key in self.over}
+
     @cached_property
-    def rows(self) -> list[dict[str, float]]:
-        """Inputs of all ribbons; each key has a stream of its own."""
+    def _drawn(self) -> dict[str, Array]:
+        """Draws for all ribbons; each key has a stream of its own."""
         streams = {key: np.random.default_rng([self.seed, i]) for i, key in enumerate(self.over)}
-        return [
-            {key: DISTRIBUTIONS[kind](streams[key], *two) for key, (kind, two) in self.over.items()}
-            for _ in range(self.count)
-        ]
+        return {
+            key: DISTRIBUTIONS[kind](streams[key], *two, self.count)
+            for key, (kind, two) in self.over.items()
+        }
+
+    def _value(self, key: str, index: int) -> float:
+        (kind, two), drawn = self.over[key], self._drawn[key][index]
+        return float(np.clip(np.exp(drawn), *two) if kind == "log_uniform" else drawn)
 
 
 def _distribution(key: Any, item: Any) -> tuple[str, Two]:
@@ -67,14 +76,18 @@ def _distribution(key: Any, item: Any) -> tuple[str, Two]:
         raise _fault(path, "log_uniform needs bounds > 0", item)
     if kind == "normal" and two[1] < 0:
         raise _fault(path, "expected {normal: [mean, standard deviation >= 0]}", item)
+    if max(map(abs, two)) > LARGEST:
+        raise _fault(path, f"expected numbers of at most {LARGEST:g} in size", item)
     if kind != "normal" and two[0] > two[1]:
         raise _fault(path, f"expected {{{kind}: [lower, upper]}}", item)
     return str(kind), (float(two[0]), float(two[1]))
 
 
-def _whole(name: str, value: Any) -> int:
+def _whole(name: str, value: Any, most: int) -> int:
     if not isinstance(value, int) or isinstance(value, bool) or value < 0:
         raise _fault((name,), "expected a whole number >= 0", value)
+    if value > most:
+        raise _fault((name,), f"expected at most {most:,}", value)
     return value
 
 

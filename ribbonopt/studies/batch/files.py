@@ -7,21 +7,26 @@ says which study it is; `solutions/NUMBER` are full results.
 from __future__ import annotations
 
 import contextlib
-import csv
 import json
+import os
 from collections.abc import Sequence
 from pathlib import Path
-from typing import IO, Any
+from typing import Any
 
 from ribbonopt.errors import OutputError
-from ribbonopt.output.declared import BATCH_PICTURES, foreign_in
-from ribbonopt.output.staging import beside, replacing, unwritable
+from ribbonopt.output.claims import claimed, put_all_right
+from ribbonopt.output.declared import BATCH_PICTURES
+from ribbonopt.output.disk import Appended
+from ribbonopt.output.places import unwritable
+from ribbonopt.output.staging import replacing
+from ribbonopt.output.table import write_table
 from ribbonopt.plain import Row
-from ribbonopt.studies.lines import whole_lines
 
+from .cells import as_cell
+from .saved import ROWS, STUDY, read_rows, read_study
 from .study import Study
 
-ROWS, TABLE, STUDY, SOLUTIONS = "rows.jsonl", "table.csv", "study.json", "solutions"
+TABLE, SOLUTIONS = "table.csv", "solutions"
 
 
 class BatchFolder:
@@ -38,9 +43,13 @@ class BatchFolder:
         """
         self.folder, self.study = Path(folder), study
         self.rows: list[Row] = []
-        self.failed = 0
+        self.failed, self._finished = 0, False
         try:
-            self._claim(resume)
+            with contextlib.ExitStack() as refused:
+                own = {ROWS, TABLE, STUDY, SOLUTIONS, *BATCH_PICTURES}
+                self.folder = refused.enter_context(claimed(self.folder, own))
+                self._begin(resume)
+                self._claimed = refused.pop_all()  # the folder is ours until it is closed
         except OutputError:  # an OSError too, but one that says what to do
             raise
         except OSError as error:
@@ -52,30 +61,42 @@ class BatchFolder:
         return {row["number"]: row["status"] for row in self.rows}
 
     def append(self, row: Row) -> None:
-        """Add a row, on disk before this returns."""
+        """Add a row, which whatever ends this process spares; a power loss from a second on."""
         try:
             self._file.write(json.dumps(row) + "\n")
-            self._file.flush()
         except OSError as error:
-            with contextlib.suppress(OSError):  # it tries to write the rest of the row once more
-                self._file.close()
             raise self._full(error) from error
         self._count(row)
 
     def close(self) -> None:
-        """Write the table, sorted by number, and close the file of rows."""
+        """Finish, if that is not done, and give the folder up."""
+        with self._claimed:
+            self.finish()
+
+    def finish(self) -> None:
+        """End the file of rows, and write the table, sorted by number."""
+        if self._finished:
+            return
+        self._finished = True
         names: dict[str, None] = {}
         for row in self.rows:
             names |= dict.fromkeys(row)
+        put_all_right(self.folder / SOLUTIONS)  # of workers that were ended
         try:
-            self._lock.close()
             self._file.close()
-            with replacing(self.folder / TABLE, newline="") as file:
-                writer = csv.DictWriter(file, sorted_columns(list(names), self.study.keys))
-                writer.writeheader()
-                writer.writerows(sorted(self.rows, key=lambda row: row["number"]))
+            if not self.rows:  # nothing was found, and so nothing stays
+                for name in (ROWS, STUDY):
+                    (self.folder / name).unlink(missing_ok=True)
+                return
+            columns = sorted_columns(list(names), self.study.keys)
+            rows = sorted(self.rows, key=lambda row: int(row["number"]))
+            write_table(self.folder / TABLE, columns, (self._told(row) for row in rows))
         except OSError as error:
             raise self._full(error) from error
+
+    def _told(self, row: Row) -> Row:
+        """Return a row whose inputs are as a CSV of inputs would give them."""
+        return row | {key: as_cell(row[key]) for key in self.study.keys if key in row}
 
     def _count(self, row: Row) -> None:
         self.rows.append(row)
@@ -87,41 +108,30 @@ class BatchFolder:
             f"{self.study.count} rows are kept, make room and go on by --resume"
         )
 
-    def _claim(self, resume: bool) -> None:
-        self.folder.mkdir(parents=True, exist_ok=True)
-        files = (ROWS, TABLE, STUDY, *BATCH_PICTURES)
-        own = {SOLUTIONS, *files, *(beside(Path(name)).name for name in files)}
-        foreign = foreign_in(self.folder, own)
-        if foreign:
-            raise OutputError(
-                f"{self.folder}: holds files that are no batch ({', '.join(foreign[:3])}); choose "
-                "a new or an empty folder"
-            )
+    def _begin(self, resume: bool) -> None:
         record = {
             "name": self.study.name,
             "ribbons": self.study.count,
             "inputs": self.study.keys,
             "digest": self.study.digest,
         }
-        with contextlib.ExitStack() as refused:
-            self._lock = refused.enter_context(_locked(self.folder / STUDY))
-            if (self.folder / STUDY).stat().st_size:
-                self._go_on(str(record["digest"]), resume)
-            elif (self.folder / ROWS).is_file() and (self.folder / ROWS).stat().st_size:
-                raise OutputError(
-                    f"{self.folder}: holds rows without {STUDY}, which said of what study; choose "
-                    "another folder"
-                )
-            else:
-                self._lock.write((json.dumps(record, indent=2) + "\n").encode())
-                self._lock.flush()
-            with replacing(self.folder / ROWS) as file:
-                file.writelines(json.dumps(row) + "\n" for row in self.rows)
-            self._file = open(self.folder / ROWS, "a", encoding="utf-8")
-            refused.pop_all()  # the folder is ours until it is closed
+        put_all_right(self.folder / SOLUTIONS)
+        if (self.folder / STUDY).is_file() and (self.folder / STUDY).stat().st_size:
+            self._go_on(str(record["digest"]), resume)
+        elif (self.folder / ROWS).is_file() and (self.folder / ROWS).stat().st_size:
+            raise OutputError(
+                f"{self.folder}: holds rows without {STUDY}, which said of what study; choose "
+                "another folder"
+            )
+        else:
+            with replacing(self.folder / STUDY) as file:
+                file.write(json.dumps(record, indent=2) + "\n")
+        with replacing(self.folder / ROWS) as file:
+            file.writelines(json.dumps(row) + "\n" for row in self.rows)
+        self._file = Appended(open(self.folder / ROWS, "a", encoding="utf-8"))
 
     def _go_on(self, digest: str, resume: bool) -> None:
-        known = _record_of(self.folder)
+        known = read_study(self.folder)
         if known["digest"] != digest:
             raise OutputError(
                 f"{self.folder}: holds rows of another study ({known['name']}); choose another "
@@ -132,7 +142,7 @@ class BatchFolder:
                 f"{self.folder}: holds rows of this study already; go on by --resume, or choose "
                 "another folder"
             )
-        for row in _read(self.folder / ROWS):
+        for row in read_rows(self.folder, known, self.study):
             self._count(row)
 
 
@@ -153,48 +163,7 @@ def load_batch(folder: str | Path) -> tuple[dict[str, Any], list[Row]]:
         If it holds none, or is damaged.
     """
     folder = Path(folder)
-    try:
-        return _record_of(folder), _read(folder / ROWS)
-    except FileNotFoundError:
-        raise OutputError(
-            f"{folder}: no batch; expected a folder written by ribbonopt batch"
-        ) from None
-
-
-def _locked(path: Path) -> IO[bytes]:
-    """Open a file so that no other batch can; the system forgets it with this process."""
-    file = open(path, "ab")
-    try:
-        import fcntl  # where there is none, nothing is locked
-    except ImportError:
-        return file
-    try:
-        fcntl.flock(file, fcntl.LOCK_EX | fcntl.LOCK_NB)
-    except OSError as error:
-        if not isinstance(error, BlockingIOError):
-            return file  # on a file system without locks
-        file.close()
-        raise OutputError(
-            f"{path.parent}: is being written by another batch; wait for its end, or stop it"
-        ) from None
-    return file
-
-
-def _record_of(folder: Path) -> dict[str, Any]:
-    path = folder / STUDY
-    try:
-        record = json.loads(path.read_text(encoding="utf-8"))
-    except ValueError:
-        record = None
-    if not isinstance(record, dict) or not {"name", "ribbons", "inputs", "digest"} <= record.keys():
-        raise OutputError(f"{path}: is damaged; choose another folder")
-    return record
-
-
-def _read(path: Path) -> list[Row]:
-    return whole_lines(path, _sound) if path.exists() else []
-
-
-def _sound(row: Any) -> bool:
-    """Whether a line holds what `BatchFolder` writes."""
-    return isinstance(row, dict) and {"number", "status", "verified"} <= row.keys()
+    if not os.path.exists(folder / STUDY):
+        raise OutputError(f"{folder}: no batch; expected a folder written by ribbonopt batch")
+    study = read_study(folder)
+    return study, read_rows(folder, study)

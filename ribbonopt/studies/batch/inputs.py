@@ -5,8 +5,6 @@ Rows are made when they are asked for: how many there are is known before any ex
 
 from __future__ import annotations
 
-import csv
-import io
 import math
 from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass
@@ -14,11 +12,13 @@ from pathlib import Path
 from typing import Any, overload
 
 from ribbonopt.errors import SceneError
+from ribbonopt.reading import Kind, read_text
 from ribbonopt.scene.faults import InvalidSceneError, KeyPath, Problem, shown, suggestion
-from ribbonopt.scene.text.yamltext import YamlTextError, read
+from ribbonopt.scene.yamlio import SCENE
 
 from .draws import Draws
 from .spaced import Spaced
+from .tables import CSV, table_of
 
 Inputs = dict[str, Any]
 
@@ -82,15 +82,12 @@ def fault(path: KeyPath, message: str, *found: Any) -> InvalidSceneError:
     return InvalidSceneError([Problem(path, message, *(shown(value) for value in found))])
 
 
-def text_of(path: Path, key: KeyPath = ()) -> str:
+def text_of(path: Path, key: KeyPath = (), kind: Kind = SCENE) -> str:
     """Return the text of a file, that a key of the study names; SceneError if it cannot be read."""
     try:
-        return path.read_text(encoding="utf-8-sig")
-    except FileNotFoundError:
-        message = f"{path}: no such file"
-    except (OSError, ValueError) as error:
-        message = f"{path}: cannot be read: {error}"
-    raise fault(key, message) if key else SceneError(message)
+        return read_text(path, kind)
+    except SceneError as error:
+        raise (fault(key, str(error)) if key else error) from None
 
 
 def _product(parts: Sequence[InputRows]) -> InputRows:
@@ -139,41 +136,14 @@ def _list(_: Path, value: Any) -> InputRows:
 
 def _random(_: Path, value: Any) -> InputRows:
     draws = Draws.read(value)
-    return InputRows(draws.count, tuple(draws.over), lambda i: draws.rows[i])
+    return InputRows(draws.count, tuple(draws.over), draws.row)
 
 
 def _csv(folder: Path, value: Any) -> InputRows:
     if not isinstance(value, str):
         raise fault(("csv",), "expected the name of a CSV file", value)
     path = folder / value
-    lines = csv.reader(io.StringIO(text_of(path, ("csv",))))
-    try:
-        # Lines of a spreadsheet's end may hold nothing but separators.
-        rows = [(lines.line_num, row) for row in lines if any(cell.strip() for cell in row)]
-    except csv.Error as error:
-        raise SceneError(f"{path}, line {lines.line_num}: cannot be read: {error}") from None
-    if not rows:
-        raise SceneError(f"{path}: is empty; expected a line of keys and a line for each ribbon")
-    (first, names), *rest = rows
-    keys = [name.strip() for name in names]
-    if not all(keys) or len(set(keys)) < len(keys):
-        raise SceneError(f"{path}, line {first}: found {names}, expected keys, each of them once")
-    for line, row in rest:
-        if len(row) != len(keys):
-            raise SceneError(f"{path}, line {line}: found {len(row)} values, expected {len(keys)}")
-    return _table(
-        [
-            {key: _cell(text, f"{path}, line {line}") for key, text in zip(keys, row, strict=True)}
-            for line, row in rest
-        ]
-    )
-
-
-def _cell(text: str, where: str) -> Any:
-    try:
-        return read(text).data
-    except YamlTextError as error:
-        raise SceneError(f"{where}: found {text!r}, which is {error}") from None
+    return _table(table_of(text_of(path, ("csv",), CSV), str(path)))
 
 
 def _table(rows: list[Inputs]) -> InputRows:

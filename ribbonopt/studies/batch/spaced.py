@@ -5,12 +5,10 @@ from __future__ import annotations
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
 from typing import Any, overload
 
 from ribbonopt.plain import is_number
-
-MOST = 10**12  # values of a key
+from ribbonopt.scene.limits import VALUES
 
 
 @dataclass(frozen=True)
@@ -27,21 +25,19 @@ class Spaced(Sequence[float]):
         """Whether they can be made."""
         ends = (self.first, self.last)
         counts = isinstance(self.size, int) and not isinstance(self.size, bool)
-        if not (all(is_number(end) for end in ends) and counts and 1 <= self.size <= MOST):
+        if not (all(is_number(end) for end in ends) and counts and 1 <= self.size <= VALUES):
             return False
         return bool(self.scale == "linear" or (self.scale == "log" and min(ends) > 0))
 
-    @cached_property
-    def values(self) -> list[float]:
-        """The numbers."""
+    def value(self, index: int) -> float:
+        """Return one of them; the ends are the numbers given, to the last digit."""
         a, b = float(self.first), float(self.last)
-        inside = [i / (self.size - 1) for i in range(1, self.size - 1)]
+        if index in (0, self.size - 1):
+            return b if index else a
+        t = float(index / (self.size - 1))
         if self.scale == "log":
-            inside = [math.exp(math.log(a) * (1 - t) + math.log(b) * t) for t in inside]
-        else:
-            inside = [a * (1 - t) + b * t for t in inside]
-        # The ends are the numbers given, to the last digit.
-        return [a, *inside, b][: self.size]
+            return math.exp(math.log(a) * (1 - t) + math.log(b) * t)
+        return float(a * (1 - t) + b * t)
 
     def __len__(self) -> int:
         """Return how many there are."""
@@ -53,4 +49,5 @@ class Spaced(Sequence[float]):
     def __getitem__(self, index: slice) -> list[float]: ...
     def __getitem__(self, index: int | slice) -> float | list[float]:
         """Return one of them."""
-        return self.values[index]
+        found = range(self.size)[index]
+        return self.value(found) if isinstance(found, int) else [self.value(i) for i in found]

@@ -5,24 +5,26 @@ from __future__ import annotations
 import hashlib
 import itertools
 import json
-import re
 from collections.abc import Iterator, Mapping
 from dataclasses import dataclass, field
-from typing import Any, Literal
+from typing import Literal
 
 from ribbonopt.errors import SceneError
 from ribbonopt.scene import Scene
+from ribbonopt.scene.limits import RIBBONS
 from ribbonopt.scene.quantities import ANSWERS
 from ribbonopt.scene.yamlio import loads_scene
 
+from .cells import as_yaml
 from .inputs import NOTHING, InputRows, Inputs
 
-PAIR = re.compile(r"\\u(d[89ab][0-9a-f]{2})\\u(d[c-f][0-9a-f]{2})")
 #: of every row; a ribbon that failed has some of them only
 COLUMNS = (
     *("number", "scene", "status", "verified", *ANSWERS, "error"),
     *("start", "iterations", "path", "note", "message", "seconds"),
 )
+EQUILIBRIA = "equilibria"  # a column where scenes ask for several
+TAKEN = "every row has that already; choose another name"
 
 
 @dataclass(frozen=True)
@@ -68,13 +70,16 @@ class Sweep:
             scene = self._scene(self.common | self.inputs[0])
         except SceneError:
             return ()
-        return (*scene.record, *(("equilibria",) if scene.starts > 1 else ()))
+        return (*scene.record, *((EQUILIBRIA,) if scene.starts > 1 else ()))
 
     def _fault(self, inputs: Inputs) -> str:
         try:
-            self._scene(inputs)
+            scene = self._scene(inputs)
         except SceneError as error:
             return str(error)
+        taken = sorted({*scene.record} & {*COLUMNS, EQUILIBRIA, *self.inputs.keys})
+        if taken:
+            return f"{self.source.name}: record.{taken[0]}: {TAKEN}"
         return ""
 
     def _scene(self, inputs: Inputs) -> Scene:
@@ -136,13 +141,14 @@ class Study:
     @property
     def ribbons(self) -> Iterator[StudyRibbon]:
         """The ribbons, numbered from 1."""
+        self._refuse_too_many()
         numbers = itertools.count(1)
         for sweep in self.sweeps:
             for inputs in sweep.inputs:
                 yield StudyRibbon(next(numbers), sweep.source, sweep.common, inputs)
 
     def check(self) -> None:
-        """Refuse a study none of whose ribbons can be solved.
+        """Refuse a study of too many ribbons, or none of whose ribbons can be solved.
 
         Raises
         ------
@@ -150,9 +156,15 @@ class Study:
             If a key of the study does not fit its scene, or no scene is sound. A bad scene among
             good ones only spoils its own rows.
         """
+        self._refuse_too_many()
         faults = [sweep.check() for sweep in self.sweeps]
         if all(faults):
             raise SceneError(faults[0])
+
+    def _refuse_too_many(self) -> None:
+        if self.count > RIBBONS:
+            several = "make several studies of them"
+            raise SceneError(f"{self.name}: more than {RIBBONS:,} ribbons; {several}")
 
     @property
     def digest(self) -> str:
@@ -164,13 +176,3 @@ class Study:
 def assignments(inputs: Inputs) -> list[str]:
     """Return inputs as overrides of a scene."""
     return [f"{key}={as_yaml(value)}" for key, value in inputs.items()]
-
-
-def as_yaml(value: Any) -> str:
-    """Return plain data as YAML on one line, which JSON is but for two words on one character."""
-    return PAIR.sub(_joined, json.dumps(value))
-
-
-def _joined(pair: re.Match[str]) -> str:
-    high, low = (int(word, 16) for word in pair.groups())
-    return f"\\U{0x10000 + ((high - 0xD800) << 10) + low - 0xDC00:08x}"

@@ -19,17 +19,23 @@ from __future__ import annotations
 
 import glob
 import itertools
+import os
 from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from ribbonopt.errors import SceneError
 from ribbonopt.plain import is_number
+from ribbonopt.scene import Scene
 from ribbonopt.scene.faults import InvalidSceneError, KeyPath, Place, dotted, report, suggestion
+from ribbonopt.scene.limits import SECONDS
+from ribbonopt.scene.schema.annotations import written_keys
 from ribbonopt.scene.yamlio import plain_yaml, read_yaml
+from ribbonopt.text import name_fault
 
+from .cells import as_yaml
 from .inputs import NOTHING, Inputs, fault, rows_of, text_of
-from .study import Source, Study, Sweep, as_yaml
+from .study import Source, Study, Sweep
 
 KEYS = ("name", "scene", "set", "sweep", "save", "time_limit")
 SAVE = ("all", "failed", "none")
@@ -52,7 +58,7 @@ def load_study(paths: Sequence[str | Path], overrides: Sequence[str] = ()) -> St
     for file in files:
         text = text_of(file)
         try:
-            found = read_yaml(text, str(file))
+            found = read_yaml(text, str(file), (*KEYS, *written_keys(Scene)))
         except SceneError:
             if len(files) == 1:
                 raise
@@ -64,21 +70,30 @@ def load_study(paths: Sequence[str | Path], overrides: Sequence[str] = ()) -> St
             except InvalidSceneError as error:
                 raise SceneError(report(str(file), error.problems, found.places)) from None
             settings |= {k: found.data[k] for k in ("save", "time_limit") if k in found.data}
-            settings.setdefault("name", found.data.get("name", file.stem))
+            settings.setdefault("name", found.data.get("name", _named_after(file)))
         else:
             sweeps.append(Sweep(Source(str(file), text), common))
-    name = settings.pop("name", None) or (files[0].stem if len(files) == 1 else "batch")
+    name = settings.pop("name", None) or (_named_after(files[0]) if len(files) == 1 else "batch")
     return Study(name, tuple(sweeps), **settings)
+
+
+def _named_after(file: Path) -> str:
+    """Return the name of what a file says, where no other is given."""
+    return "batch" if name_fault(file.stem) else file.stem
 
 
 def _files(path: str) -> list[Path]:
     """Files that a path, a folder or a pattern stands for, sorted."""
-    if Path(path).is_dir():
-        found = sorted(file for file in Path(path).iterdir() if file.suffix in (".yaml", ".yml"))
+    if os.path.isdir(path):
+        try:
+            names = os.listdir(path)
+        except OSError as error:
+            raise SceneError(f"{path}: cannot be read: {error.strerror}") from None
+        found = sorted(Path(path, name) for name in names if name.endswith((".yaml", ".yml")))
         if not found:
             raise SceneError(f"{path}: holds no .yaml file; name a folder of scenes")
         return found
-    if any(character in path for character in "*?[") and not Path(path).exists():
+    if any(character in path for character in "*?[") and not os.path.exists(path):
         matches = sorted(glob.glob(path, recursive=True))
         if not matches:
             raise SceneError(f"{path}: no file matches")
@@ -94,13 +109,17 @@ def _study(
             known = f"unknown key of a study{suggestion(str(key), KEYS)} (known: {', '.join(KEYS)})"
             raise fault((key,), known)
     name = data.get("name", "study")
-    if not isinstance(name, str) or not name.strip(" .") or set(name) & set("/\\"):
+    if not isinstance(name, str):
         raise fault(("name",), "expected a name for the study and its folder of results", name)
+    if wrong := name_fault(name):
+        raise fault(("name",), wrong, name)
     if data.get("save", "none") not in SAVE:
         raise fault(("save",), f"expected one of {', '.join(SAVE)}", data["save"])
     limit = data.get("time_limit", 1.0)
     if not is_number(limit) or limit <= 0:
         raise fault(("time_limit",), "expected a number of seconds > 0", limit)
+    if limit > SECONDS:
+        raise fault(("time_limit",), f"expected at most {SECONDS:,.0f} seconds", limit)
     given = {} if data.get("set") is None else data["set"]
     if not isinstance(given, dict):
         raise fault(("set",), "expected keys of the scene and their values", given)

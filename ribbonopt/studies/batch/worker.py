@@ -16,6 +16,10 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from ribbonopt.signals import ignore_endings
+
+if __name__ == "__main__":
+    ignore_endings()  # before all that takes time to import
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 from ribbonopt.errors import ModelError, RibbonoptError
@@ -107,7 +111,7 @@ def _recorded(found: Solution, row: Row) -> Row:
     if not (scene.record and found.status.converged):
         return {}
     for name in scene.record:
-        if name in row:
+        if name in (*row, "seconds"):  # which comes last
             raise ModelError(f"record.{name}: every row has that already; choose another name")
     from ribbonopt.scene.stages import parse_record  # formulas, which few need
 
@@ -122,7 +126,10 @@ def _save(chunk: dict[str, Any], ribbon: dict[str, Any], row: Row, found: Soluti
     from ribbonopt.output.results import save_solution
     from ribbonopt.output.staging import staged_result
 
-    with staged_result(Path(chunk["folder"]) / "solutions" / str(ribbon["number"])) as stage:
+    place = Path(chunk["folder"]) / "solutions" / str(ribbon["number"])
+    # A worker of a batch that was killed may be there for a moment; not on disk at once, which
+    # would cost as much as a solve.
+    with staged_result(place, wait=2 * WATCH, durable=False) as stage:
         save_solution(found, stage.folder)
         stage.commit()
 

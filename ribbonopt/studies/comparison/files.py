@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-import csv
 from pathlib import Path
 
 from ribbonopt.errors import OutputError
+from ribbonopt.output.table import write_table
 from ribbonopt.plain import json_text
 
 from .benchmark import Benchmark
@@ -28,10 +28,7 @@ def save_study(study: Comparison | Benchmark, folder: str | Path, name: str) -> 
     """
     folder = Path(folder)
     try:
-        with open(folder / f"{name}.csv", "w", encoding="utf-8", newline="") as file:
-            writer = csv.DictWriter(file, COLUMNS, lineterminator="\n")
-            writer.writeheader()
-            writer.writerows(row.plain() for row in study.rows)
+        write_table(folder / f"{name}.csv", COLUMNS, (row.plain() for row in study.rows))
         (folder / f"{name}.json").write_text(json_text(study.plain()), encoding="utf-8")
     except OSError as error:
         raise OutputError(f"{folder}: cannot be written ({error.strerror})") from error

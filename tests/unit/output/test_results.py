@@ -89,21 +89,21 @@ def test_incomplete_results_are_refused(saved: Path, file: str) -> None:
 @pytest.mark.parametrize("content", ["", "{", "[]", "{}", '{"status": "fine"}', "null"])
 def test_damaged_summaries_are_refused(saved: Path, content: str) -> None:
     (saved / "summary.json").write_text(content)
-    with pytest.raises(OutputError, match="damaged result"):
+    with pytest.raises(OutputError, match="is damaged"):
         load_solution(saved)
 
 
 @pytest.mark.parametrize("content", [b"", b"PK\x03\x04 nothing", b"text"])
 def test_damaged_archives_are_refused(saved: Path, content: bytes) -> None:
     (saved / "solution.npz").write_bytes(content)
-    with pytest.raises(OutputError, match="damaged result"):
+    with pytest.raises(OutputError, match="is damaged"):
         load_solution(saved)
 
 
 def test_archives_of_another_scene_are_refused(saved: Path) -> None:
     scene = saved / "scene.yaml"
     scene.write_text(scene.read_text() + "states: full\n")
-    with pytest.raises(OutputError, match="damaged result"):
+    with pytest.raises(OutputError, match="is damaged"):
         load_solution(saved)
 
 

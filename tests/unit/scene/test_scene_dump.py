@@ -12,7 +12,8 @@ from hypothesis import strategies as st
 
 from ribbonopt import scene as room
 from ribbonopt.errors import SceneError
-from ribbonopt.scene import Scene, dump_scene, json_schema, loads_scene
+from ribbonopt.scene import Scene, dump_scene, json_schema, limits, loads_scene
+from ribbonopt.text import name_fault
 
 
 def test_dump_is_readable_and_omits_defaults() -> None:
@@ -35,7 +36,8 @@ def test_dump_refuses_what_would_not_load_back() -> None:
         dump_scene(dataclasses.replace(scene, law=room.Regularized(epsilon=-1)))
 
 
-floats = st.floats(allow_nan=False, allow_infinity=False)
+floats = st.floats(-1e4, 1e4)  # in any units below within `ribbonopt.scene.limits`
+of_any_size = st.floats(-limits.LARGEST, limits.LARGEST)
 values = st.one_of(floats, st.sampled_from(["turn", "1 - turn", "2*pi", "1e-3", "1"]))
 triples = st.tuples(values, values, values)
 partial = st.floats(-0.5, 0.5) | st.none()
@@ -43,9 +45,9 @@ lab = st.builds(room.LabVector, *[values | st.none()] * 3)
 director = st.none() | st.builds(room.LabVector, partial, partial)
 loads = st.none() | triples | st.builds(room.AnyVector, *[values | st.none()] * 6)
 PIECES = ["whole", "half", "fundamental"]
-positive = st.floats(0, exclude_min=True, allow_nan=False, allow_infinity=False)
+positive = st.floats(limits.SMALLEST, 1.0)
 laws = st.one_of(
-    st.builds(room.Kirchhoff, B2=positive, B3=positive),
+    st.builds(room.Kirchhoff, B2=st.floats(1e-2, 1e2), B3=st.floats(1e-8, 1e8)),
     st.builds(room.Sadowsky),
     st.builds(room.SingleSheet, chi=st.sampled_from([1, -1])),
     st.builds(room.Regularized, epsilon=positive),
@@ -73,7 +75,7 @@ along = st.sampled_from([(0.0, 0.0, 1.0), ("turn", 0.0, 1e-3)])
 held = st.builds(
     room.End,
     st.just("held"),
-    distance=st.floats(0, exclude_min=True, allow_infinity=False) | st.just("turn"),
+    distance=positive | st.just("turn"),
     moment=st.none() | triples,
 )
 supports = st.one_of(
@@ -93,15 +95,16 @@ loose = st.one_of(
     st.builds(room.End, st.just("free"), force=st.none() | triples, moment=st.none() | triples),
     st.builds(room.End, st.just("flip"), triples, axis=st.just("d1"), along=along),
 )
-loops = st.builds(room.Loop, st.integers(), st.sampled_from(["whole", "half"])) | st.builds(
-    room.Loop, st.integers(max_value=-2), st.just("fundamental")
+few = st.integers(-limits.HALF_TWISTS, limits.HALF_TWISTS)
+loops = st.builds(room.Loop, few, st.sampled_from(["whole", "half"])) | st.builds(
+    room.Loop, st.integers(-limits.HALF_TWISTS, -2), st.just("fundamental")
 )
 boundaries = st.one_of(
     st.builds(room.Boundary, supports, supports | loose | held),
     st.builds(room.Boundary, loose, supports | loose),
     st.builds(room.Boundary, loop=loops),
 )
-bands = st.builds(room.Band, st.integers(max_value=-1) | st.integers(1), st.sampled_from(PIECES))
+bands = st.builds(room.Band, few.filter(bool), st.sampled_from(PIECES))
 guesses = st.one_of(
     st.sampled_from(["auto", "circle"]),
     st.builds(room.StrainGuess, st.tuples(floats, floats)),
@@ -109,17 +112,20 @@ guesses = st.one_of(
     st.builds(room.HelixGuess, st.builds(room.Helix, values, st.floats(-1, 1))),
     st.builds(room.MoebiusGuess, bands),
 )
-ribbons = st.lists(positive, min_size=3, max_size=3, unique=True).flatmap(
+ribbons = st.lists(st.floats(0.1, 10), min_size=3, max_size=3, unique=True).flatmap(
     lambda sizes: st.builds(
         room.RibbonSizes,
         *(st.just(size) for size in sorted(sizes, reverse=True)),
-        youngs_modulus=positive,
+        youngs_modulus=st.floats(1e8, limits.LARGEST),
         poisson_ratio=st.floats(-1, 0.5, exclude_min=True),
     )
 )
+words = ["1e-2", "yes", "null", "1:30", "a: b", "0x1", "# x", "\x85", "~", "'", "!a", "&a", "%a"]
+text = st.text() | st.sampled_from(words)
+letters = st.text(st.characters(categories=["L", "M", "N", "S", "P"]), min_size=1, max_size=20)
 scenes = st.builds(
     Scene,
-    name=st.text() | st.sampled_from(["1e-2", "yes", "null", "1:30", "a: b", "0x1", "# x", "\x85"]),
+    name=(text | letters).filter(lambda name: not name_fault(name)),
     law=laws,
     boundary=st.builds(
         room.Boundary,
@@ -128,15 +134,17 @@ scenes = st.builds(
         also=st.sampled_from([(), ("n = [0, 0, 0]",), ("n = ex", "u2(end) = 1e-2*turn")]),
     ),
     guess=st.builds(room.LoadGuess, force=numbers, moment=numbers)
-    | st.builds(room.SolutionGuess, solution=st.text()),
+    | st.builds(room.SolutionGuess, solution=text),
     states=st.sampled_from(["reduced", "full"]),
-    interval=st.tuples(floats, floats).filter(lambda pair: pair[0] < pair[1]),
-    parameters=st.dictionaries(st.just("other"), floats).map(lambda some: {"turn": 0.5, **some}),
+    interval=st.tuples(floats, st.floats(0.1, 10)).map(lambda two: (two[0], sum(two))),
+    parameters=st.dictionaries(st.just("other"), of_any_size).map(
+        lambda some: {"turn": 0.5, **some}
+    ),
     transcription=st.builds(
         room.Collocation,
         scheme=st.sampled_from(["gauss", "radau"]),
         degree=st.integers(1, 10),
-        intervals=st.integers(1, 10**6),
+        intervals=st.integers(1, limits.INTERVALS),
     ),
     solver=st.builds(room.Newton, tolerance=positive) | st.builds(room.Ipopt, tolerance=positive),
 )
@@ -147,12 +155,17 @@ def test_dump_loads_back_to_an_equal_scene(scene: Scene) -> None:
     assert loads_scene(dump_scene(scene)) == scene
 
 
-@given(boundaries, guesses, ribbons | st.none(), st.integers(1), st.integers(0))
+@given(
+    boundaries,
+    guesses,
+    ribbons | st.none(),
+    st.integers(1, limits.STARTS),
+    st.integers(0, limits.SEED),
+)
 def test_supports_loops_guesses_and_sizes_load_back(
     boundary: room.Boundary, guess: Any, ribbon: Any, starts: int, seed: int
 ) -> None:
     assume(not boundary.loop or guess == "auto")
-    assume(not ribbon or ribbon.length > 1e-100)
     scene = Scene(
         "one",
         room.Sadowsky(),

@@ -331,7 +331,8 @@ def test_lines_are_json_objects_with_a_row_or_an_ending(
     found = [json.loads(line) for line in of.lines]
     assert [list(line) for line in found if "row" in line] == [["row", "state"]] * len(of.points)
     endings = [line["ending"] for line in found if "row" not in line]
-    assert all(list(end) == ["stage", "branch", "reached", "reason"] for end in endings)
+    keys = ["stage", "branch", "reached", "reason", "points"]
+    assert all(list(end) == keys for end in endings)
     places = list(dict.fromkeys((point.stage, point.branch) for point in of.points))
     assert [(end["stage"], end["branch"]) for end in endings] == places
     assert rows_of(found) == [dict(point.row) for point in of.points]

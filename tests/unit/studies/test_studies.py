@@ -77,16 +77,16 @@ def test_kinds_are_multiplied_in_the_order_of_the_file() -> None:
 
 def test_csv_cells_are_yaml(tmp_path: Path) -> None:
     (tmp_path / "rows.csv").write_text(
-        ' a ,b,"c"\n1,1e-3,"[1, 2]"\ntrue,"x, y",\n-0.5,"""7""","{type: sadowsky}"\n\n,,\n \n',
+        ' law.a ,b,"c"\n1,1e-3,"[1, 2]"\ntrue,"x, y",\n-0.5,"""7""","{type: sadowsky}"\n\n,,\n \n',
         encoding="utf-8-sig",  # as spreadsheets write it
     )
     found = list(rows_of(tmp_path, {"csv": "rows.csv"}))
     assert found == [
-        {"a": 1, "b": 1e-3, "c": [1, 2]},
-        {"a": True, "b": "x, y", "c": None},
-        {"a": -0.5, "b": "7", "c": {"type": "sadowsky"}},
+        {"law.a": 1, "b": 1e-3, "c": [1, 2]},
+        {"law.a": True, "b": "x, y", "c": None},
+        {"law.a": -0.5, "b": "7", "c": {"type": "sadowsky"}},
     ]
-    assert [type(row["a"]) for row in found] == [int, bool, float]
+    assert [type(row["law.a"]) for row in found] == [int, bool, float]
 
 
 SPACED = [(0.1, 0.7, 7), (0, 1, 11), (3, -2, 4), (0.83, 0.01, 13), (2.5, 9, 1), (-1, 1, 2)]

@@ -4,9 +4,11 @@ import re
 from pathlib import Path
 
 import pytest
+from hostile import NAMES_REFUSED
 
 from ribbonopt.errors import SceneError
 from ribbonopt.scene import loads_scene
+from ribbonopt.studies.batch.cells import as_yaml
 from ribbonopt.studies.batch.chunks import chunks_of
 from ribbonopt.studies.batch.sweep import load_study
 
@@ -299,3 +301,19 @@ def test_what_no_float_can_hold_and_broken_files(tmp_path: Path) -> None:
     path.write_text("scene: a.yaml\nsweep:\n  grid:\n    x: [1]\n    y: []\n")
     with pytest.raises(SceneError, match=r"line 5, sweep\.grid\.y: the sweep is empty"):
         load_study([path])
+
+
+@pytest.mark.parametrize(
+    "name", [name for name in NAMES_REFUSED if name.isprintable() or "\x1b" in name], ids=ascii
+)
+def test_names_of_studies_are_names_of_folders(folder: Path, name: str) -> None:
+    message = refusal(f"name: {as_yaml(name)}\nscene: scene.yaml\n")
+    assert "study.yaml, line 1, name: found" in message
+
+
+def test_files_that_name_no_folder_name_no_study(folder: Path) -> None:
+    for stem in ("..", "CON", "-a", "a:b", "equilibria", "a\n", " a"):
+        (folder / f"{stem}.yaml").write_text("scene: scene.yaml\n")
+        assert load_study([str(folder / f"{stem}.yaml")]).name == "batch"
+    (folder / "arches 2.yaml").write_text("scene: scene.yaml\n")
+    assert load_study([folder / "arches 2.yaml"]).name == "arches 2"

@@ -1,0 +1,174 @@
+"""Numbers of a scene that are finite, but not what becomes of them; see `ribbonopt.scene.limits`.
+
+What a number is worth in units L = 1, Dw = 1 is known only when all sizes are, so that this is
+looked at last, in a scene that is sound otherwise.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Iterator, Mapping
+from dataclasses import fields, is_dataclass
+from typing import Any, NamedTuple
+
+from ribbonopt.scene import limits
+from ribbonopt.scene.faults import KeyPath, Problem
+from ribbonopt.scene.laws import Kirchhoff
+from ribbonopt.scene.model import Scene
+from ribbonopt.scene.schema.annotations import key_of
+from ribbonopt.scene.units import Units, units_of
+
+_OURS = __name__.partition(".checks")[0]
+_NEVER_ZERO = ("ribbon", "B2", "B3", "first", "smallest", "largest", "tolerance", "distance")
+
+
+class _Kind(NamedTuple):
+    """What numbers at a place are: dimension, limit in units L = 1, Dw = 1, and what sets it."""
+
+    length: int
+    force: int
+    limit: float
+    unit: str
+    reason: str
+
+    def unit_of(self, units: Units) -> float:
+        """Return what 1 of the limit is in the units of the scene."""
+        return units.length**self.length * units.force**self.force
+
+
+_LENGTH = _Kind(1, 0, limits.REACH, "L", "so far away, rounding is seen in the shape")
+_FORCE = _Kind(0, 1, limits.FORCE, "D w / L^2", "it acts on a millionth of the length")
+_MOMENT = _Kind(1, 1, limits.MOMENT, "D w / L", "it bends to a millionth of the length")
+_STRAIN = _Kind(-1, 0, limits.STRAIN, "1 / L", "it bends to a millionth of the length")
+_PER_LENGTH = _Kind(
+    -1, 1, limits.FORCE_PER_LENGTH, "D w / L^3", "it acts on a millionth of the length"
+)
+_ANGLE = _Kind(0, 0, limits.ANGLE, "rad", "angles so large lose their digits")
+_TURNS = _Kind(0, 0, limits.ANGLE / 6, "turns", "angles so large lose their digits")
+_SMOOTHING = _Kind(0, 0, limits.SMOOTHING, "", "nothing is left of the law")
+
+_KINDS: dict[KeyPath, _Kind] = {
+    **{
+        ("boundary", end, *key): kind
+        for end in ("start", "end")
+        for key, kind in {
+            ("position",): _LENGTH,
+            ("distance",): _LENGTH,
+            ("force",): _FORCE,
+            ("moment",): _MOMENT,
+            ("directors", "rotation_vector"): _ANGLE,
+            ("directors", "turns"): _ANGLE,
+        }.items()
+    },
+    ("loads", "force"): _PER_LENGTH,
+    ("guess", "force"): _FORCE,
+    ("guess", "moment"): _MOMENT,
+    ("guess", "strains"): _STRAIN,
+    ("guess", "arc"): _ANGLE,
+    ("guess", "helix", "turns"): _TURNS,
+    ("reference", "n0"): _FORCE,
+    ("reference", "m0"): _MOMENT,
+    ("law", "epsilon"): _SMOOTHING,
+}
+
+
+def as_written(value: Any, path: KeyPath = ()) -> Iterator[Problem]:
+    """Yield the numbers whose products would not be finite, and lists that are too long."""
+    if isinstance(value, float):
+        yield from _size(value, path)
+    elif isinstance(value, tuple | dict):
+        most = limits.ITEMS_OF.get(str(path[-1]), limits.ITEMS)
+        if len(value) > most:
+            yield Problem(path, f"expected at most {most:,} of them", f"{len(value):,} items")
+            return
+        pairs = value.items() if isinstance(value, dict) else enumerate(value)
+        for key, item in pairs:
+            yield from as_written(item, (*path, key))
+    elif is_dataclass(value) and type(value).__module__.startswith(_OURS):
+        for member in fields(value):
+            yield from as_written(getattr(value, member.name), (*path, key_of(member.name)))
+    if path == ("interval",) and value[0] < value[1]:
+        yield from _interval(*value)
+
+
+def _size(number: float, path: KeyPath) -> Iterator[Problem]:
+    if abs(number) > limits.LARGEST:
+        message = f"expected at most {limits.LARGEST:g} in size, so that squares stay finite"
+        yield Problem(path, message, f"{number:g}")
+    elif 0 < abs(number) < limits.SMALLEST and {*_NEVER_ZERO} & {*map(str, path)}:
+        message = f"expected at least {limits.SMALLEST:g} in size, so that squares are not zero"
+        yield Problem(path, message, f"{number:g}")
+
+
+def _interval(start: float, end: float) -> Iterator[Problem]:
+    length = end - start
+    if length < limits.SMALLEST:
+        message = f"has length {length:g}, expected at least {limits.SMALLEST:g}"
+        yield Problem(("interval",), message, f"[{start:g}, {end:g}]")
+    elif max(abs(start), abs(end)) > limits.REACH * length:
+        message = (
+            f"begins further from 0 than {limits.REACH:g} times its length, {length:g}, where "
+        )
+        example = f'rounding is seen in the shape; write for example "interval: [0, {length:g}]"'
+        yield Problem(("interval",), message + example, f"[{start:.12g}, {end:.12g}]")
+
+
+def in_units(scene: Scene, values: Mapping[KeyPath, float]) -> Iterator[Problem]:
+    """Yield what is too large, or too unlike the rest, in units L = 1, Dw = 1.
+
+    `values` are those of the formulas, by path.
+    """
+    units = units_of(scene)
+    start, end = scene.interval
+    yield from _length(end - start, units)
+    if isinstance(scene.law, Kirchhoff):
+        ratio = scene.law.B3 / scene.law.B2
+        if not 1 / limits.RATIO <= ratio <= limits.RATIO:
+            message = f"which is {ratio:g} times law.B2; expected a ratio from "
+            message += f"{1 / limits.RATIO:g} to {limits.RATIO:g}"
+            yield Problem(("law", "B3"), message, f"{scene.law.B3:g}")
+    for path, kind in _KINDS.items():
+        unit = kind.unit_of(units)
+        for at, number in _numbers(_at(scene, path), path, values):
+            if abs(number) > kind.limit * unit:
+                yield Problem(at, _message(number, kind, unit, units), f"{number:g}")
+
+
+def _length(length: float, units: Units) -> Iterator[Problem]:
+    ratio = length / units.length
+    if not 1 / limits.REACH <= ratio <= limits.REACH:
+        what = "ribbon.length" if units.si else "the unit of its law or loads, which is 1"
+        message = f"has length {length:g}, {ratio:g} times {what}; expected from "
+        message += f"{1 / limits.REACH:g} to {limits.REACH:g} of it"
+        yield Problem(("interval",), message)
+
+
+def _message(number: float, kind: _Kind, unit: float, units: Units) -> str:
+    # The unit of the stiffness is the law's own where that is far from 1.
+    own = kind.unit if units.stiffness == 1 else kind.unit.replace("D w", "law.B2 D w")
+    name = f" {own}" if own else ""
+    worth = f"which is {abs(number) / unit:.3g}{name}, " if unit != 1 else ""
+    advice = "; look at ribbon as well, whose sizes set the units" if units.si else ""
+    return f"{worth}expected at most {kind.limit:g}{name} in size: {kind.reason}{advice}"
+
+
+def _at(value: Any, path: KeyPath) -> Any:
+    """Return what a path leads to; None where nothing is."""
+    for key in path:
+        value = getattr(value, str(key), None) if is_dataclass(value) else None
+    return value
+
+
+def _numbers(
+    value: Any, path: KeyPath, values: Mapping[KeyPath, float]
+) -> Iterator[tuple[KeyPath, float]]:
+    """Yield the numbers in a value with their paths, those of formulas as well."""
+    if isinstance(value, float):
+        yield path, value
+    elif isinstance(value, str) and path in values:
+        yield path, values[path]
+    elif isinstance(value, tuple):
+        for index, item in enumerate(value):
+            yield from _numbers(item, (*path, index), values)
+    elif is_dataclass(value):
+        for member in fields(value):
+            yield from _numbers(getattr(value, member.name), (*path, member.name), values)
