@@ -8,6 +8,7 @@ import pytest
 
 from ribbonopt.problem import Posed, Ribbon
 from ribbonopt.scene import loads_scene
+from ribbonopt.studies.buckling.buckling import SETTLED, _States
 from ribbonopt.studies.buckling.mode import Mode
 from ribbonopt.studies.buckling.rod import pure_stiffnesses
 
@@ -54,3 +55,26 @@ def test_modes_are_admitted_where_m2_has_the_sign_of_their_phases(
     phases = np.array([0, 0, 1, 1]) if kinds else np.zeros(4, int)
     trajectory: Any = SimpleNamespace(at_stages={"m": m}, stages=(None, None, None, phases))
     assert Mode(1.0, 0.0, trajectory, kinds).admissible == admitted
+
+
+@pytest.mark.parametrize(("low", "high"), [(1.0, 9.0), (-4.0, -1.0)])
+def test_the_bar_of_a_load_is_the_error_of_its_mode_on_the_range(low: float, high: float) -> None:
+    """Loads are known as fractions of the range, and no better than they are settled."""
+
+    class Straight(_States):
+        ribbon: Any = None
+
+        def at(self, value: float) -> np.ndarray:
+            return np.array([value])
+
+        def least(self, value: float) -> Any:
+            return None
+
+    nothing: Any = None
+    search: Any = SimpleNamespace(at=lambda load: np.array([low + load * (high - low)]))
+    for error in (1e-6, 0.0):
+        mode = Mode(0.25, error, nothing)
+        found = Straight(nothing, nothing, "parameters.P").settled(search, mode, low, high)
+        assert found is not None
+        assert found.value == pytest.approx(low + 0.25 * (high - low))
+        assert found.error >= max(error, SETTLED) * (high - low)
