@@ -99,3 +99,19 @@ def test_settings_of_starts_may_differ_in_a_chunk() -> None:
     one, many, other = rows_of([{"starts": 1}, {"starts": 3}, {"starts": 1}])
     assert many["energy"] <= one["energy"] * (1 + 1e-6)
     assert other["energy"] == pytest.approx(many["energy"], rel=1e-6)  # goes on from the lowest
+
+
+def test_neighbours_are_started_in_every_way_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What one way of starting misses another may find: each has its turn within as many rows."""
+    whole, tried = family._started, []
+
+    def started(prepared: Prepared, scene: Scene, numbers: range) -> list[Neighbour]:
+        tried.append(list(numbers))
+        return whole(prepared, scene, numbers)
+
+    monkeypatch.setattr(family, "_started", started)
+    rows_of([{"parameters.turn": 0.2 + 0.01 * i, "starts": 3} for i in range(7)])
+    first, *others = tried
+    assert first == [0, 1, 2]
+    for i in range(4):
+        assert sorted(others[i : i + 3]) == [[0], [1], [2]]
