@@ -32,6 +32,10 @@ class OutputError(RibbonoptError, OSError):
     """A place where results cannot be written or from which they cannot be read."""
 
 
+class WorkerError(RibbonoptError, RuntimeError):
+    """A worker process that cannot be started: says what it said, or why there is none."""
+
+
 class PictureError(OutputError):
     """Pictures that could not be drawn or written: says which and why; all else is there."""
 

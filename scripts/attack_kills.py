@@ -291,6 +291,9 @@ def main() -> int:
     parser.add_argument("--seed", type=int, default=1)
     parser.add_argument("--only", nargs="*", default=[])
     options = parser.parse_args()
+    for number in ENDINGS:
+        if number != signal.SIGKILL and signal.getsignal(number) == signal.SIG_IGN:
+            signal.signal(number, signal.SIG_DFL)  # else what is attacked would ignore it too
     with tempfile.TemporaryDirectory() as folder:
         report = attack(Path(folder), options.kills, options.seed, tuple(options.only))
     for ending, count in sorted(report.endings.items()):

@@ -147,7 +147,9 @@ def where_the_time_goes(study: Study) -> dict[str, float]:
 
 def solved(hand: worker.Worker, chunk: Chunk) -> int:
     """Solve a chunk as a worker does; return how many ribbons it has."""
-    return sum("row" in answer for answer in hand.answers(message(chunk, [], (), "none", "")))
+    return sum(
+        "row" in answer for answer in hand.answers(message(chunk.ribbons, [], (), "none", ""))
+    )
 
 
 def largest_worker() -> int:

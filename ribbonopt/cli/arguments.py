@@ -84,6 +84,11 @@ def parser() -> argparse.ArgumentParser:
     batch.add_argument("--jobs", metavar="N", help="worker processes (default: one for each core)")
     batch.add_argument("--out", metavar="DIR", help="folder of the rows (default: results/NAME)")
     batch.add_argument("--resume", action="store_true", help="complete the rows in the folder")
+    batch.add_argument(
+        "--retry",
+        action="store_true",
+        help="with --resume: also solve again what crashed, timed out or met an unforeseen error",
+    )
     batch.add_argument("--scheduler", metavar="ADDRESS", help="Dask scheduler to use instead")
     _columns(batch, "draw columns against each other too, such as law.epsilon:energy")
     batch.add_argument("--yes", action="store_true", help="solve more than 100,000 ribbons")

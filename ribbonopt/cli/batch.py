@@ -25,6 +25,7 @@ if TYPE_CHECKING:
     from ribbonopt.studies.batch.files import BatchFolder
 
 HUGE = 100_000  # ribbons, beyond which a study may be a mistake
+MANY = 5_000  # ribbons, beyond which it takes a while until the first one is begun
 
 
 def batch(options: argparse.Namespace) -> int:
@@ -34,6 +35,8 @@ def batch(options: argparse.Namespace) -> int:
     from ribbonopt.studies.batch.files import BatchFolder
     from ribbonopt.studies.batch.sweep import load_study
 
+    if options.retry and not options.resume:
+        raise SceneError("--retry: goes on with rows that are there; give --resume too")
     gc.enable()  # many rows, and threads that serve the workers
     jobs = None if options.jobs is None else count("--jobs", options.jobs, JOBS)
     study = load_study(options.study, options.set)
@@ -46,7 +49,10 @@ def batch(options: argparse.Namespace) -> int:
 
         check_cluster(options.scheduler)  # before anything is written
     folder = BatchFolder(
-        options.out or default_folder(study.name, "batch"), study, resume=options.resume
+        options.out or default_folder(study.name, "batch"),
+        study,
+        resume=options.resume,
+        retry=options.retry,
     )
     try:
         with closing(folder):
@@ -57,15 +63,17 @@ def batch(options: argparse.Namespace) -> int:
                 known=folder.known,
                 folder=str(folder.folder.absolute()),
             )
-            line, before = ProgressLine(quiet=options.quiet), len(folder.rows)
+            line, before = ProgressLine(quiet=options.quiet), folder.done
             with closing(rows), closing(line):
+                if study.count > MANY:
+                    line.show(f"ordering {study.count:,} ribbons")
                 for row in rows:
                     folder.append(row)
-                    if line.due or len(folder.rows) == study.count:
-                        line.show(_progress(folder, line.rate(len(folder.rows) - before)))
+                    if line.due or folder.done == study.count:
+                        line.show(_progress(folder, line.rate(folder.done - before)))
             folder.finish()
             named = study.name, study.count, study.keys
-            status = drawn(lambda: _draw(*named, folder.rows, folder.folder, pairs))
+            status = drawn(lambda: _draw(*named, list(folder.rows), folder.folder, pairs))
     except KeyboardInterrupt:
         complain(
             f"interrupted; {len(folder.rows)} of {study.count} rows kept in {folder.folder}, "
@@ -161,6 +169,6 @@ def _noted(folder: BatchFolder) -> str:
 
 def _progress(folder: BatchFolder, rate: float) -> str:
     """Return how far a batch is: done, failed, rows a second, time left."""
-    done, total = len(folder.rows), folder.study.count
+    done, total = folder.done, folder.study.count
     left = f"{timedelta(seconds=round((total - done) / rate))} left"
-    return f"{done}/{total} done, {folder.failed} failed, {rate:.1f}/s, {left}"
+    return f"{done}/{total} done, {folder.rows.failed} failed, {rate:.1f}/s, {left}"

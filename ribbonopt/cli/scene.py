@@ -6,7 +6,7 @@ import argparse
 import os
 from typing import TYPE_CHECKING, Any
 
-from ribbonopt.errors import SceneError
+from ribbonopt.errors import OutputError, SceneError
 from ribbonopt.reading import is_file
 
 from .common import NOT_CONVERGED, default_folder, drawn, listing, load, pairs_of, say_left_out
@@ -31,8 +31,12 @@ def solve(options: argparse.Namespace) -> int:
     # Claimed before solving, so that a folder that cannot be written costs no solve.
     with staged_result(options.out or default_folder(scene.name, "solve")) as stage:
         solution = solve(scene)
-        say_left_out(save_solution(solution, stage.folder))
-        written = stage.commit(solution.status.failure)
+        try:
+            say_left_out(save_solution(solution, stage.folder))
+            written = stage.commit(solution.status.failure)
+        except OutputError:  # such as of a disk that is full by now
+            _tell(options, solution, import_seconds, None)
+            raise
         status = drawn(lambda: _draw(solution, written)) if options.plot else 0
     return _tell(options, solution, import_seconds, written) or status
 

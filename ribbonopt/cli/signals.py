@@ -9,7 +9,6 @@ from __future__ import annotations
 import os
 import signal
 import sys
-import threading
 import time
 from collections.abc import Iterator
 from types import FrameType
@@ -21,21 +20,27 @@ if TYPE_CHECKING:
     from sys import UnraisableHookArgs
 
 AGAIN = 1.0  # seconds from which on another Ctrl-C is meant: many wrappers pass on the same twice
-SOON = 0.01  # seconds until a signal that came at a bad moment is told once more
+SOON, LATER = 0.01, 0.5  # seconds until it is told once more: at a bad moment, if it was lost
 WRITES = "ribbonopt.output"  # the room that is not interrupted: what it does is short
 COMMAND = "ribbonopt.cli.command"  # what is interrupted
 
 
 class Signals:
-    """What this process was told by signals."""
+    """What this process was told by signals.
+
+    Libraries may take an interruption for an error of theirs and go on (`except: pass`), and
+    Python drops one in a destructor: it is told again until it is heard.
+    """
 
     def __init__(self) -> None:
         """Listen from now on; what is ignored, as by `nohup`, stays so."""
-        self._told, self._at, self._heard = 0, 0.0, False
+        self._told, self._at = 0, 0.0
         sys.unraisablehook = self._unraisable
         for number in endings():
             if signal.getsignal(number) in (signal.SIG_DFL, signal.default_int_handler):
                 signal.signal(number, self._tell)
+        if hasattr(signal, "SIGALRM"):
+            signal.signal(signal.SIGALRM, self._tell_again)
 
     def status(self, status: int) -> int:
         """Return the exit status: which signal has ended a command, as shells count them.
@@ -50,37 +55,38 @@ class Signals:
         elif number == signal.SIGINT and time.monotonic() - self._at > AGAIN:
             # Who cannot wait has it end here and now: the next run puts away what is left.
             os._exit(128 + number)
-        if self._heard:
-            return  # what was begun is being put away
-        at = set(_rooms(frame))
-        if COMMAND not in at:
-            os._exit(128 + number)  # nothing is begun yet, or all is done
-        if any(room.startswith(WRITES) for room in at):
-            self._tell_soon()
-            return
-        self._heard = True
+        self._tell_again(number, frame)
+
+    def _tell_again(self, number: int, frame: FrameType | None) -> None:
+        if _is_heard():
+            return _later(LATER)  # what was begun is being put away
+        rooms = set(_rooms(frame))
+        if COMMAND not in rooms:
+            os._exit(128 + self._told)  # nothing is begun yet, or all is done
+        if any(room.startswith(WRITES) for room in rooms):
+            return _later(SOON)
+        _later(LATER)
         raise KeyboardInterrupt
 
-    def _tell_soon(self) -> None:
-        timer = threading.Timer(SOON, _send, (self._told,))
-        timer.daemon = True
-        timer.start()
-
     def _unraisable(self, what: UnraisableHookArgs) -> None:
-        """Tell it once more where it came when Python lets nothing pass, as in a destructor."""
         if what.exc_type is KeyboardInterrupt and self._told:
-            self._heard = False
-            self._tell_soon()
+            _later(SOON)
         else:
             sys.__unraisablehook__(what)
 
 
-def _send(number: int) -> None:
-    """Send a signal to the main thread, even where it waits for something."""
-    if hasattr(signal, "pthread_kill"):
-        signal.pthread_kill(threading.main_thread().ident or 0, number)
-    else:
-        signal.raise_signal(number)
+def _later(seconds: float) -> None:
+    """Have it told once more; without threads, whose locks may be held at any moment."""
+    if hasattr(signal, "setitimer"):
+        signal.setitimer(signal.ITIMER_REAL, seconds)
+
+
+def _is_heard() -> bool:
+    """Whether an interruption is on its way up: what runs now puts things away."""
+    error = sys.exc_info()[1]
+    while error is not None and not isinstance(error, KeyboardInterrupt):
+        error = error.__context__
+    return error is not None
 
 
 def _rooms(frame: FrameType | None) -> Iterator[str]:

@@ -144,6 +144,8 @@ def lock_beside(folder: Path) -> Path:
 
 def unwritable(target: Path, error: OSError) -> OutputError:
     """Return the error of a place that cannot be written."""
+    if target.name.startswith(".") and target.name.endswith(NEW):  # on the way to its place
+        target = target.with_name(target.name[1 : -len(NEW)])
     return OutputError(
         f"{target}: cannot be written ({error.strerror or error}); choose another folder"
     )

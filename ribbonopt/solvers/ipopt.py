@@ -66,6 +66,7 @@ class IpoptSolver:
             "ipopt": {
                 "print_level": 0,
                 "sb": "yes",
+                "option_file_name": "",  # an ipopt.opt of the working folder is not read
                 "max_iter": self.max_iterations,
                 "tol": self.tolerance,
                 "constr_viol_tol": self.tolerance,

@@ -43,9 +43,9 @@ def written(folder: Path) -> list[dict[str, Any]]:
     return without_times([json.loads(line) for line in lines])
 
 
-def on_purpose(study: Path, name: str, **more: Any) -> dict[str, str]:
-    """Make a study of six, the fourth of which crashes or hangs; return the environment."""
-    names = [f"r{i}" if i != 3 else name for i in range(6)]
+def on_purpose(study: Path, name: str, count: int = 6, **more: Any) -> dict[str, str]:
+    """Make a study of so many, the fourth of which crashes or hangs; return the environment."""
+    names = [f"r{i}" if i != 3 else name for i in range(count)]
     data = {"scene": "scene.yaml", "sweep": {"list": [{"name": n} for n in names]}} | more
     study.write_text(json.dumps(data))
     (study.parent / "sitecustomize.py").write_text(ON_PURPOSE)

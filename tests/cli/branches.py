@@ -65,7 +65,21 @@ LONG = {
 FOLD = 32.36335394  # of the snap, in degrees
 BRANCH, TABLE, SCENE = "branch.jsonl", "branch.csv", "scene.yaml"
 FILES = [TABLE, BRANCH, SCENE]
-WAIT = 60  # seconds, for a process on a busy machine
+WAIT = 600  # seconds until a process is taken to hang
+#: a process that follows a branch up to some point, and there waits for a signal
+WAITING = """\
+import sys, time
+from ribbonopt.studies.continuation.continuation import Continuation
+resume, count = Continuation.resume, int(sys.argv.pop(1))
+def waiting(self, history):
+    for number, point in enumerate(resume(self, history), start=1):
+        yield point
+        if number == count:
+            time.sleep(WAIT)
+Continuation.resume = waiting
+from ribbonopt.cli import run
+sys.exit(run())
+""".replace("WAIT", str(WAIT))
 
 each_long = pytest.mark.parametrize("name", LONG)
 
@@ -99,8 +113,12 @@ def environment() -> dict[str, str]:
     return {**os.environ, "PYTHONPATH": os.pathsep.join([root, known] if known else [root])}
 
 
-def started(*arguments: object, **keywords: Any) -> subprocess.Popen[bytes]:
-    command = [sys.executable, "-m", "ribbonopt", "continue", *map(str, arguments)]
+def started(
+    *arguments: object, waits: int | None = None, **keywords: Any
+) -> subprocess.Popen[bytes]:
+    """Start a process, which waits after so many points (by itself it ends when it is done)."""
+    program = ["-m", "ribbonopt"] if waits is None else ["-c", WAITING, str(waits)]
+    command = [sys.executable, *program, "continue", *map(str, arguments)]
     pipes = {"stdout": subprocess.PIPE, "stderr": subprocess.PIPE} | keywords
     return subprocess.Popen(command, env=environment(), **pipes)
 
@@ -114,9 +132,10 @@ def finished(*arguments: object) -> tuple[int, bytes, bytes]:
 def lines_appear(path: Path, count: int, process: subprocess.Popen[bytes]) -> None:
     """Wait until a file has so many lines, or the process that writes it has ended."""
     end = time.monotonic() + WAIT
-    while process.poll() is None and time.monotonic() < end:
+    while process.poll() is None:
         if path.exists() and path.read_bytes().count(b"\n") >= count:
             return
+        assert time.monotonic() < end, f"no {count} lines in {path}"
         time.sleep(0.001)
 
 

@@ -272,9 +272,9 @@ class Terminal(NamedTuple):
 
 
 def on_terminal(*arguments: object, interrupt: Path | None = None) -> Terminal:
-    """Run a process, and interrupt it when there are a few lines in the branch of a folder."""
+    """Run a process, and interrupt it after a few points of the branch in a folder."""
     master, slave = os.openpty()
-    process = started(*arguments, stderr=slave)
+    process = started(*arguments, stderr=slave, waits=None if interrupt is None else 4)
     os.close(slave)
     if interrupt is not None:
         lines_appear(interrupt / BRANCH, 4, process)

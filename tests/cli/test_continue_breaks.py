@@ -132,7 +132,7 @@ def test_interrupted_and_resumed_is_the_same(
 ) -> None:
     reference = whole("fold")
     folder = tmp_path / "branch"
-    process = started(reference.scene, "--out", folder, "--json")
+    process = started(reference.scene, "--out", folder, "--json", waits=3)
     lines_appear(folder / BRANCH, 3, process)
     process.send_signal(signal.SIGINT)
     out, err = process.communicate(timeout=WAIT)
@@ -140,7 +140,7 @@ def test_interrupted_and_resumed_is_the_same(
     assert (process.returncode, out) == (130, b"")
     told = f"ribbonopt: interrupted; {len(kept)} points kept in {folder}, --resume goes on"
     assert err.decode().startswith(told)
-    assert 3 <= len(kept) < len(points(reference.folder))
+    assert len(kept) == 3 < len(points(reference.folder))
     assert reference.data.startswith((folder / BRANCH).read_bytes())
     assert (folder / TABLE).read_text().count("\n") == len(kept) + 1
     assert run("continue", reference.scene, "--out", folder, "--resume").status == 3

@@ -55,7 +55,7 @@ def never(monkeypatch: pytest.MonkeyPatch) -> None:
 
     monkeypatch.setattr("ribbonopt.solvers.newton.NewtonSolver.solve", solve)
     monkeypatch.setattr("ribbonopt.solvers.ipopt.IpoptSolver.solve", solve)
-    monkeypatch.setattr("ribbonopt.studies.batch.processes.subprocess.Popen", solve)
+    monkeypatch.setattr("ribbonopt.studies.batch.child.subprocess.Popen", solve)
     monkeypatch.setattr("ribbonopt.views.files._save", solve)
 
 

@@ -98,3 +98,17 @@ def test_compare(run: Run, scene: Path, fails: None) -> None:
     status, out, err = run("compare", scene, *SMALL, "--out", "study")
     assert (status, "comparison.png: cannot be drawn" in err, "truth" in out) == (3, True, True)
     assert sorted(os.listdir("study")) == ["comparison.csv", "comparison.json"]
+
+
+def test_numbers_that_find_no_room_are_told(
+    run: Run, scene: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def full(*_: object) -> None:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr("ribbonopt.output.exports.Summary.write", full)
+    status, out, err = run("solve", scene, "--out", "result")
+    assert (status, "half: converged, verified" in out) == (2, True)
+    told = "ribbonopt: result: cannot be written (No space left on device); choose another folder"
+    assert err == told + "\n"
+    assert os.listdir(tmp_path) == ["half.yaml"]

@@ -65,6 +65,38 @@ def verb(options):
         143,
         TOLD,
     ),
+    "where a library takes all for an error and goes on": (
+        """
+def verb(options):
+    try:
+        tell()
+    except:
+        pass
+    time.sleep(60)
+""",
+        143,
+        TOLD,
+    ),
+    "while it takes long to put away": (
+        """
+from contextlib import closing
+
+def rows():
+    try:
+        yield 1
+    finally:
+        time.sleep(1.2)  # is told again meanwhile
+        print("put away", file=sys.stderr)
+
+def verb(options):
+    with closing(rows()) as found:
+        next(found)
+        tell()
+        time.sleep(60)
+""",
+        143,
+        "put away\n" + TOLD,
+    ),
     "while a result is written": (
         """
 def verb(options):
@@ -149,6 +181,10 @@ assert before == ([signal.getsignal(n) for n in numbers], sys.unraisablehook)
     assert (done.returncode, done.stderr.count("\n")) == (0, 1), done.stderr
 
 
+def lines(path: Path) -> int:
+    return path.read_bytes().count(b"\n") if path.exists() else 0
+
+
 def children(process: int) -> list[int]:
     files = Path(f"/proc/{process}/task").glob("*/children")  # each thread has its own
     return [int(word) for file in files for word in file.read_text().split()]
@@ -166,11 +202,15 @@ def test_all_processes_of_a_batch_are_told(
         [*COMMAND, str(study), "--jobs", "2", "--out", str(out)], stderr=subprocess.PIPE, text=True
     )
     rows = out / "rows.jsonl"
-    while process.poll() is None and not (rows.exists() and rows.read_bytes().count(b"\n") > 5):
+    while process.poll() is None and lines(rows) <= 5:
         pass
     workers = children(process.pid)
-    for one in (*workers, process.pid):
+    for one in workers:
         os.kill(one, number)
+    there = lines(rows)
+    while process.poll() is None and lines(rows) < there + 5:
+        pass  # what they were told changes nothing
+    process.send_signal(number)
     _, err = process.communicate(timeout=WAIT)
     assert workers
     text = rows.read_text()

@@ -9,7 +9,9 @@ from clamps import CLAMPED, EQUATIONS, FORMULATIONS
 from user_modules import Import
 
 from ribbonopt import save_solution, solve
-from ribbonopt.scene import Boundary, Collocation, Directors, End, Loads, Scene, Shooting
+from ribbonopt.problem import Posed
+from ribbonopt.scene import AnyVector, Boundary, Collocation, Directors, End, Loads, Scene, Shooting
+from ribbonopt.starts.first_shape import follower_loads
 from ribbonopt.studies.comparison.measure import LawResidual
 from ribbonopt.studies.comparison.profile import SAMPLES
 
@@ -87,3 +89,28 @@ def test_the_law_is_compared_where_it_holds(user: Import) -> None:
     found = solve(tapered(user, formulation="differentiated"))
     s = (np.arange(SAMPLES) + 0.5) / SAMPLES
     assert LawResidual(found.posed)(s, found.outputs(s), found.units) < 1e-9
+
+
+@pytest.mark.parametrize("start", [0.0, 0.2])
+def test_loads_that_follow_the_end_are_integrated_under_the_law_of_each_place(
+    user: Import, start: float
+) -> None:
+    """From the thin end back to the clamp: m = B(s) u with the width at that place."""
+    end = End(
+        "free", force=AnyVector(d1=0.2, d2=0.0, d3=-0.1), moment=AnyVector(d1=0, d2=0.3, d3=0.1)
+    )
+    boundary = Boundary(CLAMPED, end)
+    scene = Scene("follower", user("tapered").Tapered(), boundary, interval=(start, start + 0.8))
+    posed = Posed.of(scene)
+    guess = follower_loads(posed)
+    assert guess is not None
+    fraction = np.linspace(0, 1, 401)
+    found = guess.fields(fraction)
+    m = np.einsum("kij,ki->kj", found.frames, found.m)
+    turn = np.einsum("kji,kjl->kil", found.frames[:-2], found.frames[2:])
+    h = 2 * 0.8 / 400
+    strains = (
+        np.stack([turn[:, 0, 2] - turn[:, 2, 0], turn[:, 1, 0] - turn[:, 0, 1]], axis=1) / 2 / h
+    )
+    width = 1 - 0.7 * (start + 0.8 * fraction[1:-1, None])
+    np.testing.assert_allclose(width * strains, m[1:-1, 1:], atol=1e-4)

@@ -95,9 +95,8 @@ def solved_and_integrated(scenes: list[Scene]) -> tuple[int, int]:
 
 
 def test_clamps_are_solved_from_nothing() -> None:
-    confirmed, whole = solved_and_integrated(clamps(40))
-    assert confirmed >= 39  # 97 % of 40
-    assert whole >= 20
+    confirmed, _ = solved_and_integrated(clamps(12))  # the first of the 200 below
+    assert confirmed == 12
 
 
 @pytest.mark.slow

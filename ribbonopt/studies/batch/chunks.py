@@ -7,23 +7,21 @@ the same however many there are.
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator
 from dataclasses import dataclass
 
 import numpy as np
 
-from ribbonopt.arrays import Array
 from ribbonopt.errors import RibbonoptError
 from ribbonopt.plain import is_number
 from ribbonopt.scene.yamlio import loads_scene
 
+from .chain import chain
 from .study import Study, StudyRibbon
 
 Group = tuple[object, ...]
 Numbers = tuple[float, ...]
 
 LARGEST = 100  # ribbons of a chunk, the first of which starts from nothing
-MANY = 20_000  # above, neighbours are found by sorting instead of one after another
 
 
 @dataclass(frozen=True)
@@ -41,11 +39,14 @@ def chunks_of(study: Study) -> list[Chunk]:
         group, point = _swept(ribbon) if ribbon.inputs else _plain(ribbon)
         groups.setdefault(group, []).append(ribbon)
         points.setdefault(group, []).append(point)
-    return [
-        Chunk(tuple(part))
-        for group, ribbons in groups.items()
-        for part in _parts([ribbons[i] for i in _order(np.array(points[group]))])
-    ]
+    chunks = []
+    for group, ribbons in groups.items():
+        # About as many chunks as there are ribbons in each, so that all cores end together.
+        size = min(math.isqrt(len(ribbons) - 1) + 1, LARGEST)
+        order = chain(np.array(points[group]), size)
+        walked = [ribbons[i] for i in order]
+        chunks += [Chunk(tuple(walked[k : k + size])) for k in range(0, len(walked), size)]
+    return chunks
 
 
 def _swept(ribbon: StudyRibbon) -> tuple[Group, Numbers]:
@@ -66,32 +67,3 @@ def _plain(ribbon: StudyRibbon) -> tuple[Group, Numbers]:
         return posed.structure, tuple(posed.values.tolist())
     except RibbonoptError:  # its row will say so
         return ("no scene", ribbon.number), ()
-
-
-def _order(points: Array) -> list[int]:
-    """Order points (k, d) so that each is the nearest of those left to the one before.
-
-    In whatever order they are given, the result is the same.
-    """
-    count = len(points)
-    if not points.size:
-        return list(range(count))
-    spans = np.ptp(points, axis=0)
-    points = (points - points.min(axis=0)) / np.where(spans > 0, spans, 1.0)
-    sorted_ = np.lexsort(points.T[::-1])
-    if count > MANY:
-        return [int(i) for i in sorted_]
-    points, left = points[sorted_], np.ones(count, dtype=bool)
-    order, at = [], 0
-    for _ in range(count):
-        left[at] = False
-        order.append(int(sorted_[at]))
-        at = int(np.where(left, np.abs(points - points[at]).sum(axis=1), np.inf).argmin())
-    return order
-
-
-def _parts(ribbons: list[StudyRibbon]) -> Iterator[list[StudyRibbon]]:
-    """Yield chunks, about as many as there are ribbons in each, so that all cores end together."""
-    size = min(math.isqrt(len(ribbons) - 1) + 1, LARGEST)
-    for start in range(0, len(ribbons), size):
-        yield ribbons[start : start + size]

@@ -23,6 +23,7 @@ from ribbonopt.output.table import write_table
 from ribbonopt.plain import Row
 
 from .cells import as_cell
+from .kept import OneEach
 from .saved import ROWS, STUDY, read_rows, read_study
 from .study import Study
 
@@ -32,8 +33,10 @@ TABLE, SOLUTIONS = "table.csv", "solutions"
 class BatchFolder:
     """A folder that rows are written to."""
 
-    def __init__(self, folder: str | Path, study: Study, *, resume: bool) -> None:
-        """Claim the folder.
+    def __init__(
+        self, folder: str | Path, study: Study, *, resume: bool, retry: bool = False
+    ) -> None:
+        """Claim the folder; with `retry`, ribbons that were lost are not known, but to be solved.
 
         Raises
         ------
@@ -42,8 +45,7 @@ class BatchFolder:
             of another study.
         """
         self.folder, self.study = Path(folder), study
-        self.rows: list[Row] = []
-        self.failed, self._finished = 0, False
+        self.rows, self._twice, self._finished = OneEach(), False, False
         try:
             with contextlib.ExitStack() as refused:
                 own = {ROWS, TABLE, STUDY, SOLUTIONS, *BATCH_PICTURES}
@@ -54,11 +56,18 @@ class BatchFolder:
             raise
         except OSError as error:
             raise unwritable(self.folder, error) from error
+        # Their rows stay until there are others.
+        self._again = self.rows.to_try_again if retry else set()
 
     @property
     def known(self) -> dict[int, str]:
-        """Statuses of the ribbons whose rows are there."""
-        return {row["number"]: row["status"] for row in self.rows}
+        """Statuses of the ribbons whose rows are there and stay."""
+        return {n: status for n, status in self.rows.statuses.items() if n not in self._again}
+
+    @property
+    def done(self) -> int:
+        """How many rows are there and stay."""
+        return len(self.rows) - len(self._again)
 
     def append(self, row: Row) -> None:
         """Add a row, which whatever ends this process spares; a power loss from a second on."""
@@ -66,7 +75,8 @@ class BatchFolder:
             self._file.write(json.dumps(row) + "\n")
         except OSError as error:
             raise self._full(error) from error
-        self._count(row)
+        self._twice |= self.rows.add(row)
+        self._again.discard(row["number"])
 
     def close(self) -> None:
         """Finish, if that is not done, and give the folder up."""
@@ -81,13 +91,15 @@ class BatchFolder:
         names: dict[str, None] = {}
         for row in self.rows:
             names |= dict.fromkeys(row)
-        put_all_right(self.folder / SOLUTIONS)  # of workers that were ended
+        put_all_right(self.folder / SOLUTIONS)  # of workers that were ended, and dead batches
         try:
             self._file.close()
             if not self.rows:  # nothing was found, and so nothing stays
                 for name in (ROWS, STUDY):
                     (self.folder / name).unlink(missing_ok=True)
                 return
+            if self._twice:
+                self._write_rows()
             columns = sorted_columns(list(names), self.study.keys)
             rows = sorted(self.rows, key=lambda row: int(row["number"]))
             write_table(self.folder / TABLE, columns, (self._told(row) for row in rows))
@@ -98,9 +110,9 @@ class BatchFolder:
         """Return a row whose inputs are as a CSV of inputs would give them."""
         return row | {key: as_cell(row[key]) for key in self.study.keys if key in row}
 
-    def _count(self, row: Row) -> None:
-        self.rows.append(row)
-        self.failed += not row["verified"]
+    def _write_rows(self) -> None:
+        with replacing(self.folder / ROWS) as file:
+            file.writelines(json.dumps(row) + "\n" for row in self.rows)
 
     def _full(self, error: OSError) -> OutputError:
         return OutputError(
@@ -115,7 +127,6 @@ class BatchFolder:
             "inputs": self.study.keys,
             "digest": self.study.digest,
         }
-        put_all_right(self.folder / SOLUTIONS)
         if (self.folder / STUDY).is_file() and (self.folder / STUDY).stat().st_size:
             self._go_on(str(record["digest"]), resume)
         elif (self.folder / ROWS).is_file() and (self.folder / ROWS).stat().st_size:
@@ -126,8 +137,7 @@ class BatchFolder:
         else:
             with replacing(self.folder / STUDY) as file:
                 file.write(json.dumps(record, indent=2) + "\n")
-        with replacing(self.folder / ROWS) as file:
-            file.writelines(json.dumps(row) + "\n" for row in self.rows)
+        self._write_rows()
         self._file = Appended(open(self.folder / ROWS, "a", encoding="utf-8"))
 
     def _go_on(self, digest: str, resume: bool) -> None:
@@ -142,8 +152,7 @@ class BatchFolder:
                 f"{self.folder}: holds rows of this study already; go on by --resume, or choose "
                 "another folder"
             )
-        for row in read_rows(self.folder, known, self.study):
-            self._count(row)
+        self.rows = OneEach(read_rows(self.folder, known, self.study))
 
 
 def sorted_columns(names: list[str], inputs: Sequence[str]) -> list[str]:
@@ -155,7 +164,7 @@ def sorted_columns(names: list[str], inputs: Sequence[str]) -> list[str]:
 
 
 def load_batch(folder: str | Path) -> tuple[dict[str, Any], list[Row]]:
-    """Return what a batch folder says of its study (name, ribbons, inputs), and its rows.
+    """Return what a batch folder says of its study (name, ribbons, inputs), and a row a ribbon.
 
     Raises
     ------
@@ -166,4 +175,4 @@ def load_batch(folder: str | Path) -> tuple[dict[str, Any], list[Row]]:
     if not os.path.exists(folder / STUDY):
         raise OutputError(f"{folder}: no batch; expected a folder written by ribbonopt batch")
     study = read_study(folder)
-    return study, read_rows(folder, study)
+    return study, list(OneEach(read_rows(folder, study)))

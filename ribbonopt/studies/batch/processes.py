@@ -1,25 +1,28 @@
-"""One worker process and what may happen to it: it dies, it hangs, it is no longer wanted."""
+"""One worker process and what may happen to it: it dies, it hangs, it is no longer wanted.
+
+Each ribbon that is asked for gets one row, whatever the process does. One that is lost before it
+can solve anything is an error: the next would be lost too.
+"""
 
 from __future__ import annotations
 
-import json
-import os
-import queue
-import subprocess
+import signal
 import sys
 import threading
-from collections.abc import Iterator, Mapping, Sequence
-from contextlib import suppress
+from collections.abc import Collection, Generator, Iterator, Mapping, Sequence
 from typing import Any
 
+from ribbonopt.errors import WorkerError
 from ribbonopt.plain import Row
 
+from .child import Answer, Child, search_path
 from .chunks import Chunk
+from .kept import LOST
 from .study import StudyRibbon
 
-LOST = ("crashed", "timed_out")  # statuses of ribbons that took their worker with them
-STARTING = 60.0  # seconds that a new process may take before its first ribbon is counted
-ONE_THREAD = {"OPENBLAS_NUM_THREADS": "1", "OMP_NUM_THREADS": "1", "MKL_NUM_THREADS": "1"}
+STARTING = 120.0  # seconds that a new process may take until it can solve
+TRIES = 3  # to begin another one, after one that could
+FEWER = "free processes and memory for it, or use fewer by --jobs"
 
 
 class WorkerProcess:
@@ -28,42 +31,79 @@ class WorkerProcess:
     def __init__(self, save: str = "none", folder: str = "", time_limit: float = 300.0) -> None:
         """Begin without a process."""
         self.save, self.folder, self.time_limit = save, folder, time_limit
-        self._process: subprocess.Popen[str] | None = None
-        self._lock, self._ended, self._code = threading.Lock(), False, 0
-        self._answers: queue.Queue[str] = queue.Queue()
+        self._path = search_path()
+        self._child: Child | None = None
+        self._lock, self._ended, self._could = threading.Lock(), False, False
+
+    def begin(self) -> None:
+        """Begin a process, if there is none, and wait until it can solve.
+
+        Raises
+        ------
+        WorkerError
+            If it cannot be begun, is lost before that or takes too long; after processes that
+            could solve, if that happens again and again.
+        """
+        for left in range(TRIES if self._could else 1, 0, -1):
+            try:
+                self._begin()
+                return
+            except WorkerError:
+                if left == 1:
+                    raise
+
+    def _begin(self) -> None:
+        if self._child is not None or self._ended:
+            return
+        child = self._begun()
+        if child is None:
+            return
+        try:
+            answer = child.answer(STARTING)
+        except TimeoutError:
+            self._lose()
+            said = _quoted(child.said)
+            raise WorkerError(
+                f"a worker process did not start within {STARTING:g} s{said}; {FEWER}"
+            ) from None
+        if self._ended or answer == {"ready": True}:
+            self._could = True
+            return
+        how = _how(self._lose())
+        raise WorkerError(
+            f"a worker process ended before it could solve anything ({how}){_quoted(child.said)}; "
+            f"see whether {sys.executable} can import ribbonopt, and has the memory that it needs"
+        )
 
     def rows(self, chunk: Chunk, known: Mapping[int, str]) -> Iterator[Row]:
         """Yield the rows of a chunk; lost ribbons get a row that says so.
 
         Ribbons whose status is known are solved for their neighbours only, lost ones not again.
+
+        Raises
+        ------
+        WorkerError
+            If no process can be begun.
         """
+        wanted = {r.number: r for r in chunk.ribbons if r.number not in known}
         skip = [r.number for r in chunk.ribbons if known.get(r.number) in LOST]
-        done = set(known)
-        while True:
-            fresh = self._process is None
-            self._send(chunk, skip, done)
-            lost, at = "", chunk.ribbons[0].number
-            while True:
-                answer = self._answer(STARTING * fresh + self.time_limit)
-                fresh = False
-                if isinstance(answer, str):
-                    lost = answer
-                    break
-                if "at" in answer:
-                    at = answer["at"]
+        spared = False
+        while wanted:
+            count = len(wanted)
+            self.begin()
+            at, status, why = yield from self._asked(_needed(chunk, wanted), skip, wanted)
+            if self._ended or not wanted:
+                return
+            if at is None:
+                # Lost between two ribbons, perhaps by no fault of the next one: once more.
+                spared = not spared or len(wanted) < count
+                if spared:
                     continue
-                if "row" not in answer:
-                    return
-                done.add(answer["row"]["number"])
-                yield answer["row"]
-            if self._ended:
-                return
-            culprit = next(ribbon for ribbon in chunk.ribbons if ribbon.number == at)
+                at = next(iter(wanted))
             skip.append(at)
-            if at not in done:
-                yield lost_row(culprit, lost, self._reason(lost))
-            if all(r.number in done or r.number in skip for r in chunk.ribbons):
-                return
+            spared = False
+            if at in wanted:
+                yield lost_row(wanted.pop(at), status, why)
 
     def close(self) -> None:
         """End the process for good, whoever waits for its answers."""
@@ -71,76 +111,75 @@ class WorkerProcess:
             self._ended = True
         self._lose()
 
-    def _lose(self) -> None:
-        """End the process; the next chunk begins another."""
-        process, self._process = self._process, None
-        if process is not None:
-            process.kill()
-            self._code = process.wait()
-            for stream in (process.stdin, process.stdout):
-                if stream is not None:
-                    with suppress(OSError):  # what it was told and never read
-                        stream.close()
+    def _asked(
+        self, ribbons: Sequence[StudyRibbon], skip: Collection[int], wanted: dict[int, StudyRibbon]
+    ) -> Generator[Row, None, tuple[int | None, str, str]]:
+        """Yield the rows of ribbons, taken from those wanted, until all are there or it is lost.
 
-    def _reason(self, lost: str) -> str:
-        if lost == "timed_out":
-            limit = f"{self.time_limit:g} s"
-            return f"took more than {limit}: raise time_limit, or start from an easier ribbon"
-        how = f"signal {-self._code}" if self._code < 0 else f"exit status {self._code}"
-        return f"its process died ({how}): run it alone by ribbonopt solve to see why"
-
-    def _send(self, chunk: Chunk, skip: list[int], known: set[int]) -> None:
-        text = json.dumps(message(chunk, skip, sorted(known), self.save, self.folder))
-        for _ in range(2):
-            process = self._process or self._begin()
-            if process is None or process.stdin is None:
-                return
+        Return the number of the ribbon that it was at when it was lost, status and reason.
+        """
+        child, at = self._child, None
+        if child is None:
+            return None, "", ""
+        known = [ribbon.number for ribbon in ribbons if ribbon.number not in wanted]
+        child.tell(message(ribbons, skip, known, self.save, self.folder))
+        asked = {ribbon.number for ribbon in ribbons}.difference(skip)
+        while wanted:
             try:
-                process.stdin.write(text + "\n")
-                process.stdin.flush()
-                return
-            except (OSError, ValueError):  # it died while it had nothing to do, or was ended
+                answer = child.answer(self.time_limit)
+            except TimeoutError:
                 self._lose()
+                limit = f"{self.time_limit:g} s"
+                why = f"took more than {limit}: raise time_limit, or start from an easier ribbon"
+                return at, "timed_out", why
+            match answer:
+                case {"at": int(number)} if number in asked and at not in wanted:
+                    at = number
+                    asked.discard(at)
+                case {"row": {"number": number, "status": str(), "verified": bool()} as row} if (
+                    number == at and at in wanted
+                ):
+                    del wanted[at]
+                    at = None
+                    yield row
+                case None:
+                    why = f"its process died ({_how(self._lose())}){_quoted(child.said)}"
+                    return at, "crashed", f"{why}: run it alone by ribbonopt solve to see why"
+                case _:
+                    self._lose()
+                    return at, "crashed", f"its process answered what was not asked{_shown(answer)}"
+        return None, "", ""
 
-    def _begin(self) -> subprocess.Popen[str] | None:
+    def _begun(self) -> Child | None:
         """Begin a process; None once the worker has ended."""
-        command = [sys.executable, "-m", "ribbonopt.studies.batch.worker"]
         with self._lock:
             if self._ended:
                 return None
-            process = subprocess.Popen(
-                command,
-                stdin=subprocess.PIPE,
-                stdout=subprocess.PIPE,
-                text=True,
-                env=os.environ | ONE_THREAD,
-                start_new_session=True,  # what interrupts the batch is told to it alone
-            )
-            self._process, self._answers = process, queue.Queue()
-        threading.Thread(target=_read, args=(process, self._answers), daemon=True).start()
-        return process
+            try:
+                self._child = Child(self._path)
+            except (OSError, RuntimeError) as error:
+                reason = getattr(error, "strerror", None) or error
+                raise WorkerError(
+                    f"a worker process could not be started ({sys.executable}: {reason}); {FEWER}"
+                ) from None
+            return self._child
 
-    def _answer(self, seconds: float) -> dict[str, Any] | str:
-        """Return the next answer, or how the process was lost."""
-        if self._process is None:  # ended, or it could not be told anything twice
-            return "crashed"
-        try:
-            line = self._answers.get(timeout=seconds)
-        except queue.Empty:
-            self._lose()
-            return "timed_out"
-        if not line:
-            self._lose()
-            return "crashed"
-        answer: dict[str, Any] = json.loads(line)
-        return answer
+    def _lose(self) -> int:
+        """End the process and return its exit status; the next chunk begins another."""
+        with self._lock:
+            child, self._child = self._child, None
+        return child.end() if child is not None else 0
 
 
 def message(
-    chunk: Chunk, skip: list[int], known: Sequence[int], save: str, folder: str
-) -> dict[str, Any]:
-    """Return what a worker is told of a chunk, as plain data."""
-    ribbons = [
+    ribbons: Sequence[StudyRibbon],
+    skip: Collection[int],
+    known: Collection[int],
+    save: str,
+    folder: str,
+) -> Answer:
+    """Return what a worker is told of ribbons that follow one another, as plain data."""
+    told = [
         {
             "number": ribbon.number,
             "source": ribbon.source.name,
@@ -148,9 +187,15 @@ def message(
             "set": ribbon.overrides,
             "inputs": ribbon.inputs,
         }
-        for ribbon in chunk.ribbons
+        for ribbon in ribbons
     ]
-    return {"ribbons": ribbons, "skip": skip, "known": known, "save": save, "folder": folder}
+    return {
+        "ribbons": told,
+        "skip": list(skip),
+        "known": list(known),
+        "save": save,
+        "folder": folder,
+    }
 
 
 def lost_row(ribbon: StudyRibbon, status: str, message: str) -> Row:
@@ -159,9 +204,22 @@ def lost_row(ribbon: StudyRibbon, status: str, message: str) -> Row:
     return row | {"status": status, "verified": False, "message": message}
 
 
-def _read(process: subprocess.Popen[str], answers: queue.Queue[str]) -> None:
-    assert process.stdout is not None
-    with suppress(OSError, ValueError):  # closed meanwhile
-        for line in process.stdout:
-            answers.put(line)
-    answers.put("")
+def _needed(chunk: Chunk, wanted: Collection[int]) -> list[StudyRibbon]:
+    """Return the ribbons up to the last one wanted: what follows leads nowhere."""
+    last = max(i for i, ribbon in enumerate(chunk.ribbons) if ribbon.number in wanted)
+    return list(chunk.ribbons[: last + 1])
+
+
+def _how(code: int) -> str:
+    if code == -getattr(signal, "SIGKILL", 9):
+        return f"signal {-code}, as systems kill where memory is short"
+    return f"signal {-code}" if code < 0 else f"exit status {code}"
+
+
+def _quoted(said: str) -> str:
+    return f"; it said: {said}" if said else ""
+
+
+def _shown(answer: Any) -> str:
+    text = repr(answer)
+    return f" ({text[:80]}{'...' if len(text) > 80 else ''})"

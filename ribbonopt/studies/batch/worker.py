@@ -1,7 +1,7 @@
 """A worker of a batch: reads chunks as lines of JSON, writes a line for each ribbon.
 
-A process of its own (`python -m ribbonopt.studies.batch.worker`), so that a ribbon that hangs or
-crashes takes nothing with it. What is built for a structure is kept for the ribbons to come.
+A process of its own (`begin.py`), so that a ribbon that hangs or crashes takes nothing with it.
+What is built for a structure is kept for the ribbons to come.
 """
 
 from __future__ import annotations
@@ -16,10 +16,6 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
-from ribbonopt.signals import ignore_endings
-
-if __name__ == "__main__":
-    ignore_endings()  # before all that takes time to import
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
 from ribbonopt.errors import ModelError, RibbonoptError
@@ -134,18 +130,25 @@ def _save(chunk: dict[str, Any], ribbon: dict[str, Any], row: Row, found: Soluti
         stage.commit()
 
 
-def main() -> None:
+def serve() -> None:
     """Serve until stdin ends, or the batch does."""
     threading.Thread(target=_watch, args=(os.getppid(),), daemon=True).start()
-    answers = os.fdopen(os.dup(1), "w", encoding="utf-8")
+    answers = os.fdopen(os.dup(1), "wb")
     os.dup2(2, 1)  # what libraries print must not stand among the answers
     worker = Worker()
-    for line in sys.stdin:
-        for answer in worker.answers(json.loads(line)):
-            answers.write(json.dumps(answer) + "\n")
-            answers.flush()
-        answers.write('{"done": true}\n')
+
+    def say(answer: dict[str, Any]) -> None:
+        # On a line of its own, whatever else may have been written there.
+        answers.write(b"\n" + json.dumps(answer).encode() + b"\n")
         answers.flush()
+
+    try:
+        say({"ready": True})
+        for line in sys.stdin.buffer:
+            for answer in worker.answers(json.loads(line)):
+                say(answer)
+    except BrokenPipeError:  # nobody wants the rest
+        os._exit(0)
 
 
 def _watch(batch: int) -> None:
@@ -153,10 +156,3 @@ def _watch(batch: int) -> None:
     while os.getppid() == batch:
         time.sleep(WATCH)
     os._exit(1)
-
-
-if __name__ == "__main__":
-    try:
-        main()
-    except BrokenPipeError:  # nobody wants the rest
-        os._exit(0)

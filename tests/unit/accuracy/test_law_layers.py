@@ -1,6 +1,8 @@
 """Layers of a law: where its strains are singular near the ribbon, and what elements see."""
 
 from collections.abc import Callable
+from types import SimpleNamespace
+from typing import Any
 
 import numpy as np
 import pytest
@@ -27,6 +29,43 @@ def test_an_element_over_a_layer_is_overlooked_until_it_is_as_narrow() -> None:
 def test_only_elements_near_a_layer_overlook_it() -> None:
     missed = one(0.5 + 1e-3j).overlooked(np.linspace(0, 1, 12), DEGREE, ORDER)
     np.testing.assert_array_equal(np.flatnonzero(missed), [5])
+
+
+@pytest.mark.parametrize("depth", [1e-3, 1e-5, 1e-7])
+def test_stepping_over_a_layer_costs_what_a_step_costs_however_thin(depth: float) -> None:
+    """Strains that change at once by one: the error of Gauss quadrature is about its weight."""
+    nodes, places = np.linspace(0, 1, 11), np.linspace(0.501, 0.599, 29)
+    t, weights = np.polynomial.legendre.leggauss(DEGREE)
+    t, weights = 0.5 + 0.1 * (1 + t) / 2, 0.1 * weights / 2
+    true = [abs(weights @ (t > at) - (0.6 - at)) for at in places]
+    told = [one(at + 1j * depth).overlooked(nodes, DEGREE, ORDER)[5] for at in places]
+    assert max(true) / 5 < min(told) and max(told) < 5 * max(true)
+
+
+@pytest.mark.parametrize("size", [1e-2, 3e-2])
+def test_layers_beyond_either_end_are_seen_alike(size: float) -> None:
+    """A ribbon read from its other end is the same, and so is what lies beyond its ends."""
+    stages = (np.arange(40) + 0.5) / 40
+    seen = []
+    for beyond in (-size / 4, 1 + size / 4):
+        values = stages - beyond
+        rows = np.stack([values, np.full(40, 1e-4), np.ones(40)], axis=1)[:, None]
+        phases = np.zeros(40, int)
+        trajectory: Any = SimpleNamespace(
+            dense=SimpleNamespace(
+                blocks=SimpleNamespace(layout=SimpleNamespace(stages=4)),
+                nodes=lambda _: np.linspace(0, 1, 11),
+            ),
+            singular_at_stages=lambda _, rows=rows: rows,
+            ends=np.array([0.0, 1.0]),
+            stages=(None, stages, None, phases),
+        )
+        found = layers(trajectory, 0)
+        assert len(found)
+        np.testing.assert_allclose(found.places.real, beyond, atol=1e-12)
+        np.testing.assert_allclose(np.abs(found.places.imag), 1e-4, atol=1e-12)
+        seen.append(len(found))
+    assert seen[0] == seen[1]
 
 
 def test_what_does_not_change_strains_is_not_missed() -> None:

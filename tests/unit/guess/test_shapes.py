@@ -11,6 +11,7 @@ from hypothesis import strategies as st
 from scipy.integrate import solve_ivp
 from scipy.spatial.transform import Rotation
 
+from ribbonopt.attempt.structure import Structure
 from ribbonopt.guess import FollowerLoads, IntegratedLoads, ShapeGuess, guess_of, words
 from ribbonopt.guess.named import loop_shape, shape_of
 from ribbonopt.guess.placing import place_ends
@@ -39,6 +40,7 @@ from ribbonopt.scene import (
     Turn,
     Turns,
     Variational,
+    loads_scene,
     validate_scene,
 )
 from ribbonopt.solution.solution import Solution
@@ -526,3 +528,23 @@ def test_a_part_of_an_unfolded_band_is_its_beginning(piece: Solution) -> None:
     whole = Unfolded(piece, loop.half_twists, 2 * k, PLACE, FRAME).fields(f9 / 2)
     np.testing.assert_allclose(half.r, whole.r, atol=1e-12)
     np.testing.assert_allclose(half.m, whole.m, atol=1e-9)
+
+
+@pytest.mark.parametrize("length", [0.4, 1.0, 3.0])
+def test_phases_of_a_guess_are_as_long_as_their_shares_of_the_ribbon(length: float) -> None:
+    text = f"""
+name: shares
+law: {{type: sadowsky}}
+interval: [-0.1, {length - 0.1}]
+boundary:
+  start: {{position: [0, 0, 0], directors: identity}}
+  end: {{position: [{0.1 * length}, 0, {0.8 * length}], directors: identity}}
+"""
+    posed = Posed.of(loads_scene(text))
+    structure, ends = Structure.of(posed).in_phases((1, -1, 1)), np.array([0.2, 0.7])
+    attempt = structure.attempt(posed, switches=ends)
+    shape = Helical(*posed.start, np.array([0.0, 1.0, 0.5]), length)
+    _, _, constants = attempt.nlp.layout.unpack(attempt.unknowns(ShapeGuess(shape)))
+    names = structure.problem.constant_names
+    lengths = [constants[names.index(f"length of phase {i}")] for i in (1, 2)]
+    np.testing.assert_allclose(lengths, [0.2 * length, 0.5 * length])

@@ -18,6 +18,7 @@ from ribbonopt.mechanics.ends.conditions import (
     Direction,
     Frame,
 )
+from ribbonopt.mechanics.ends.conditions import _across as across
 from ribbonopt.mechanics.model import full_model, least_model
 from ribbonopt.mechanics.section import RodFields
 from ribbonopt.pipeline.prepared import prepare, solve
@@ -172,3 +173,14 @@ def test_the_guess_need_not_be_near(configs: Path, solved: Callable[..., Solutio
     far = "guess={force: [0, 30, 30], moment: [0, 3, -7]}"
     found = solved("moebius_half", far, "solver={type: ipopt}")
     np.testing.assert_allclose(found.n0, HALF_MOEBIUS["n0"], rtol=1e-8, atol=1e-8)
+
+
+@pytest.mark.parametrize("seed", range(6))
+def test_directions_across_another_are_right_handed_wherever_it_points(seed: int) -> None:
+    """So that equations have one sign all along a branch that turns the direction about."""
+    rng = np.random.default_rng(seed)
+    for target in (*rng.normal(size=(20, 3)), *np.eye(3), *-np.eye(3)):
+        target = target / np.linalg.norm(target)
+        frame = np.vstack([across(target), target])
+        np.testing.assert_allclose(frame @ frame.T, np.eye(3), atol=1e-12)
+        assert np.linalg.det(frame) == pytest.approx(1)

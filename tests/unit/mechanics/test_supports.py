@@ -29,6 +29,7 @@ from ribbonopt.scene import (
     LabVector,
     Law,
     LoadGuess,
+    Loads,
     Regularized,
     Sadowsky,
     Scene,
@@ -427,6 +428,15 @@ def test_a_string_holds_the_pinned_elastica(distance: float) -> None:
     np.testing.assert_allclose(found.m0, 0, atol=1e-9)
     # The tangent at the clamp makes the end angle 2 arcsin k with the chord.
     assert chord[2] / distance == pytest.approx(1 - 2 * k * k, abs=1e-8)
+
+
+def test_a_string_pulls_at_its_own_end_however_heavy_the_ribbon_is() -> None:
+    """The weight is taken by the clamp: there the force is along no string."""
+    found = equilibrium(CLAMP, End("held", distance=0.8), loads=Loads(force=(3.0, 1.0, 0.0)))
+    chord, at_end = tip(found), found.sample(1.0, "n")
+    np.testing.assert_allclose(np.cross(at_end, chord), 0, atol=1e-8)
+    np.testing.assert_allclose(found.n0 - at_end, (3.0, 1.0, 0.0), atol=1e-10)
+    assert np.linalg.norm(np.cross(found.n0, chord)) > 0.5
 
 
 @pytest.mark.parametrize("start", [False, True])

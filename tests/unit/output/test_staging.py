@@ -210,6 +210,9 @@ def test_the_working_folder_is_not_replaced(
     for place in (".", "", "../a", tmp_path / "a", "..", "b/../../a"):
         refused(place, "the working folder is in it|holds files")
     refused("/", "root of the file system|holds files")
+    (tmp_path / "a" / "equilibria").mkdir()
+    monkeypatch.chdir(tmp_path / "a" / "equilibria")
+    refused("..", "the working folder is in it")
     assert names(tmp_path) == ["a"]
 
 

@@ -5,9 +5,10 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from ribbonopt.errors import ModelError
 from ribbonopt.pipeline.prepared import prepare, solve
 from ribbonopt.problem import Posed, posed
-from ribbonopt.scene import Variational, load_scene
+from ribbonopt.scene import Variational, load_scene, loads_scene
 
 
 def counted(monkeypatch: pytest.MonkeyPatch) -> list[object]:
@@ -50,3 +51,48 @@ def test_numbers_alone_make_no_other_structure(configs: Path) -> None:
     one, two = (Posed.of(load_scene(path, [f"law.epsilon={e}"])) for e in (0.1, 0.2))
     assert one.structure == two.structure
     assert (one.values != two.values).sum() == 1
+
+
+STRIP = """
+name: strip
+law: {type: kirchhoff, B2: 1, B3: 2}
+boundary:
+  start: {position: [0, 0, 0], directors: identity}
+  end: {position: {x: 0.1, y: 0.0}, directors: identity}
+  also: ["n3(end) = 2"]
+"""
+OTHERS = [
+    "law={type: variational, delta: 0.5}",
+    "formulation=differentiated",
+    "states=full",
+    "solver={type: newton, max_iterations: 3}",
+    "transcription={type: collocation, intervals: 12}",
+    "transcription={type: collocation, degree: 5}",
+    "boundary.also=['n1(end) = 2']",
+    "boundary.end={position: {x: 0.1, z: 0.9}, directors: identity}",
+    "loads={force: [0, 1, 0]}",
+]
+
+
+@pytest.mark.parametrize("other", OTHERS)
+def test_what_is_built_serves_no_scene_that_is_more_than_other_numbers(other: str) -> None:
+    first, second = (loads_scene(STRIP, overrides=more) for more in ([], [other]))
+    assert Posed.of(first).structure != Posed.of(second).structure
+    with pytest.raises(ModelError, match="more than its numbers"):
+        prepare(first).solve(second)
+
+
+def test_each_plane_has_a_structure_of_its_own() -> None:
+    """Of position and force different components are unknown."""
+    text = STRIP.replace('  also: ["n3(end) = 2"]\n', "").replace(", y: 0.0}", ", y: 0, z: 0.9}")
+    across = "{turns: [{d3: 90*deg}]}"
+    turned = text.replace("identity", across).replace("x: 0.1, y: 0", "x: 0, y: 0.1")
+    first, second = (loads_scene(each, overrides=["states=planar"]) for each in (text, turned))
+    for scene, moved, still in ((first, 0, 1), (second, 1, 0)):
+        found = solve(scene)
+        assert found.verified, found.message
+        assert found.sample(1.0, "r")[moved] == pytest.approx(0.1)
+        assert abs(found.sample(1.0, "r")[still]) < 1e-12
+    assert Posed.of(first).structure != Posed.of(second).structure
+    with pytest.raises(ModelError, match="more than its numbers"):
+        prepare(first).solve(second)

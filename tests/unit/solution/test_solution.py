@@ -9,8 +9,8 @@ import numpy as np
 import pytest
 
 from ribbonopt.output.summary import summarize
-from ribbonopt.pipeline.prepared import solve
-from ribbonopt.scene import load_scene
+from ribbonopt.pipeline.prepared import prepare, solve
+from ribbonopt.scene import load_scene, loads_scene
 from ribbonopt.solution.solution import Solution
 
 Solved = Callable[..., Solution]
@@ -140,3 +140,46 @@ def test_summary_of_a_failed_solve_says_what_is_not_known(configs: Path) -> None
     assert set(summary["error_estimate"].values()) == {None}
     assert set(summary["invariant_drift"].values()) == {None}
     json.dumps(summary, allow_nan=False)
+
+
+def test_moments_about_another_point_are_not_taken_as_they_are(configs: Path) -> None:
+    """The same ribbon elsewhere: its constants are those about where it starts now."""
+    found, elsewhere = (
+        prepare(load_scene(configs / "helix_clamped.yaml", overrides))
+        for overrides in ([], ["boundary.start.position=[0.5, -0.3, 0.2]"])
+    )
+    solution, fractions = found.solve(), np.linspace(0, 1, 3)
+    for prepared, same in ((found, True), (elsewhere, False)):
+        theta = prepared.posed().values
+        taken = solution.unknowns_for(prepared.problem, theta, fractions)
+        assert (taken is not None) == same
+        # Either way the guess bears what the solution bears.
+        w, p = prepared.start(solution)
+        nodes, _, c = prepared.nlp.layout.unpack(w)
+        x = prepared.ribbon.section_function(nodes[0], c, prepared.nlp.layout.theta(p), 0.0)
+        np.testing.assert_allclose(np.array(x[5]).ravel(), solution.m0, atol=1e-9)
+
+
+def test_between_nodes_a_stiff_ribbon_is_as_exact_as_at_them() -> None:
+    """Where neighbouring solutions part fast, no step from one node may follow another of them."""
+    text = """
+name: stiff
+law: {type: regularized, epsilon: 0.001}
+boundary:
+  start: {position: [0, 0, 0], directors: identity}
+  end:
+    position: [0.49401684003735824, -0.7017324343895466, -0.3801103859430068]
+    directors:
+      quaternion: [0.24885222924377245, -0.532018838269922, -0.411097203666083, -0.69715680651074]
+switching: "off"
+"""
+    exact = solve(loads_scene(text + "tolerance: 1e-6\n"))
+    mesh = "transcription: {type: collocation, degree: 6, intervals: 20}\n"
+    found = prepare(loads_scene(text + mesh)).solve(guess=exact, fallback=False)
+    assert found.status.converged and exact.verified, (found.message, exact.message)
+    assert found.dense.growth.max() > 30
+    off = []
+    for s in (found.nodes, np.linspace(0, 1, 3001)):
+        ours, true = found.outputs(s), exact.outputs(s)
+        off.append(max(float(np.abs(ours[k] - true[k]).max()) for k in ("r", "d1", "d2", "d3")))
+    assert 1e-4 < off[1] < 10 * off[0]

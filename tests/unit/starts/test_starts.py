@@ -25,21 +25,26 @@ from ribbonopt.scene import (
     Boundary,
     Collocation,
     End,
+    Kirchhoff,
     LabVector,
     LoadGuess,
+    Loads,
     Loop,
     Sadowsky,
     Scene,
+    Turn,
+    Turns,
     Variational,
     load_scene,
 )
 from ribbonopt.solution.solution import Solution
 from ribbonopt.solvers import NewtonSolver, Status
-from ribbonopt.starts import homotopy
+from ribbonopt.starts import automatic, homotopy
 from ribbonopt.starts.automatic import Automatic
 from ribbonopt.starts.equilibria import _variants as variants
 from ribbonopt.starts.equilibria import equilibria, potential
-from ribbonopt.starts.first_shape import shapes_for
+from ribbonopt.starts.first_shape import compresses, shapes_for
+from ribbonopt.starts.grading import is_coarse
 from ribbonopt.starts.homotopy import HomotopyPath, smooth_of
 from ribbonopt.starts.loops import closed_posed, fundamental_scene, loop_of
 
@@ -179,6 +184,76 @@ def test_delta_goes_down_as_far_as_it_can(monkeypatch: pytest.MonkeyPatch, limit
     path = followed(scene(CLAMP, End("free", force=(1, 0, 0))), STRAIGHT, 0.01)
     assert not path.complete
     assert limit <= path.points[-1].scene.law.delta < 1.2 * limit
+
+
+@pytest.mark.parametrize("losses", [1, 2])
+def test_where_a_path_is_lost_the_energy_is_minimised_further_down(
+    monkeypatch: pytest.MonkeyPatch, losses: int
+) -> None:
+    """Above the place the branch was there all along: the minimum would lead onto it again."""
+    whole, least = automatic.follow, Automatic._least
+    lost: list[float] = []
+    minimised: list[float] = []
+
+    def follow(*parts: Any) -> HomotopyPath:
+        found = whole(*parts)
+        if len(lost) == losses:
+            return found
+        points = [point for point in found.points if point.scene.law.delta > 0.1 / 3 ** len(lost)]
+        lost.append(points[-1].scene.law.delta)
+        return replace(found, points=tuple(points), complete=False)
+
+    def minimum(self: Automatic, posed: Posed, law: Any, *rest: Any) -> Solution:
+        minimised.append(law.delta)
+        return least(self, posed, law, *rest)
+
+    monkeypatch.setattr(automatic, "follow", follow)
+    monkeypatch.setattr(Automatic, "_least", minimum)
+    end = End("clamped", (0, 0.05, 0.8), directors="identity")
+    posed = Posed.of(scene(CLAMP, end, law=Variational(delta=0.005)))
+    found = next(iter(Automatic(posed).guesses(posed, Ledger())))
+    assert isinstance(found, Solution) and found.scene.law == posed.scene.law
+    assert len(minimised) == 1 + losses
+    assert all(there > further for there, further in zip(lost, minimised[1:], strict=True))
+
+
+def test_uneven_rods_are_followed_along_the_secant() -> None:
+    """From where the path branches off to a ratio twenty times smaller: a few iterations a step.
+
+    From the point before, instead of the secant, it takes three times as many, and more steps.
+    """
+    end = End("clamped", (0.1, 0.05, 0.8), directors=Turns((Turn(y=0.5), Turn(z=0.8))))
+    posed, ledger = Posed.of(scene(CLAMP, end, law=Kirchhoff(B2=1.0, B3=0.003))), Ledger()
+    (found,) = islice(Automatic(posed).guesses(posed, ledger), 1)
+    assert isinstance(found, Solution)
+    last = [step for step in ledger.steps if "newton" in step["step"]][-1]
+    assert last["step"].endswith("B3 / B2 = 0.003")
+    assert last["iterations"] < 130
+
+
+def test_a_smooth_law_is_started_under_itself() -> None:
+    """Blunter laws are on the way to it: what led nowhere from their end does so from before."""
+    end = End("clamped", (0, 0.05, 0.8), directors="identity")
+    posed = Posed.of(scene(CLAMP, end, law=Variational(delta=0.02)))
+    for guess in islice(Automatic(posed).guesses(posed, Ledger()), 2):
+        assert isinstance(guess, Solution) and guess.scene.law == posed.scene.law
+
+
+@pytest.mark.parametrize(
+    ("force", "pushed"),
+    [
+        ((0, 0, -1.0), True),
+        ((0, 0, 1.0), False),
+        ((3.0, -2.0, 0), False),
+        ((3.0, -2.0, -1e-16), False),  # across, to rounding
+        ((3.0, -2.0, -1e-6), True),
+        ((0, 0, 0), False),
+    ],
+)
+def test_a_strip_is_compressed_by_what_pushes_its_ends_together(force: Any, pushed: bool) -> None:
+    posed = Posed.of(scene(CLAMP, End("free", force=force)))
+    chord = Chord((np.zeros(3), np.eye(3)), (np.array([0, 0, 1.0]), np.eye(3)), 1.0)
+    assert compresses(posed, chord) == pushed
 
 
 # Loops that scenes make without saying so.
@@ -334,6 +409,31 @@ def test_the_work_of_dead_forces_counts() -> None:
     assert potential(found) == pytest.approx(found.energy - tip[0], abs=1e-12)
     start = solve(scene(End("free", force=(-1, 0, 0)), CLAMP))
     assert potential(start) == pytest.approx(potential(found), abs=1e-9)
+
+
+def test_the_work_of_a_weight_counts() -> None:
+    """Potential: strain energy less the force per length times the position, along the ribbon."""
+    f = np.array([2.0, 0.5, -1.0])
+    found = solve(scene(CLAMP, End("free"), loads=Loads(force=tuple(f))))
+    s = np.linspace(0, 1, 2001)
+    work = np.trapezoid(found.sample(s, "r") @ f, s)
+    assert abs(work) > 0.1
+    assert potential(found) == pytest.approx(found.energy - work, abs=1e-6)
+
+
+@pytest.mark.parametrize("length", [0.3, 1.0, 4.0])
+@pytest.mark.parametrize(("intervals", "coarse"), [(4, True), (8, False)])
+def test_an_interval_is_coarse_by_the_angle_it_turns(
+    length: float, intervals: int, coarse: bool
+) -> None:
+    """Six radians of a circle, however long: a radian is too much for an interval."""
+    mesh = Collocation(degree=3, intervals=intervals)
+    end = End("free", force=(0, 0, 0), moment=(0, 6.0 / length, 0))
+    guess = LoadGuess((0, 0, 0), (0, 6 / length, 0))
+    law, interval = Kirchhoff(B2=1.0, B3=1.0), (0.0, length)
+    found = solve(scene(CLAMP, end, law=law, interval=interval, transcription=mesh, guess=guess))
+    assert found.verified
+    assert is_coarse(found) == coarse
 
 
 def test_equal_seeds_perturb_alike_and_others_do_not() -> None:

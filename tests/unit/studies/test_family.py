@@ -9,7 +9,6 @@ import pytest
 from ribbonopt.pipeline.prepared import Prepared, solve
 from ribbonopt.scene import Scene, loads_scene
 from ribbonopt.studies.batch import family
-from ribbonopt.studies.batch.chunks import Chunk
 from ribbonopt.studies.batch.neighbour import Neighbour
 from ribbonopt.studies.batch.processes import message
 from ribbonopt.studies.batch.study import Source, StudyRibbon
@@ -32,7 +31,7 @@ def rows_of(inputs: list[dict[str, Any]]) -> list[dict[str, Any]]:
     ribbons = [
         StudyRibbon(i, Source("arch", ARCH), {}, row) for i, row in enumerate(inputs, start=1)
     ]
-    work = message(Chunk(tuple(ribbons)), [], (), "none", "")
+    work = message(ribbons, [], (), "none", "")
     return [
         answer["row"]
         for answer in Worker().answers(json.loads(json.dumps(work)))
@@ -100,3 +99,19 @@ def test_settings_of_starts_may_differ_in_a_chunk() -> None:
     one, many, other = rows_of([{"starts": 1}, {"starts": 3}, {"starts": 1}])
     assert many["energy"] <= one["energy"] * (1 + 1e-6)
     assert other["energy"] == pytest.approx(many["energy"], rel=1e-6)  # goes on from the lowest
+
+
+def test_neighbours_are_started_in_every_way_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """What one way of starting misses another may find: each has its turn within as many rows."""
+    whole, tried = family._started, []
+
+    def started(prepared: Prepared, scene: Scene, numbers: range) -> list[Neighbour]:
+        tried.append(list(numbers))
+        return whole(prepared, scene, numbers)
+
+    monkeypatch.setattr(family, "_started", started)
+    rows_of([{"parameters.turn": 0.2 + 0.01 * i, "starts": 3} for i in range(7)])
+    first, *others = tried
+    assert first == [0, 1, 2]
+    for i in range(4):
+        assert sorted(others[i : i + 3]) == [[0], [1], [2]]

@@ -14,6 +14,7 @@ from ribbonopt.pipeline.prepared import solve
 from ribbonopt.scene import load_scene
 from ribbonopt.solution.solution import Solution
 from ribbonopt.views import plot_plane, plot_ribbon, plot_strains, save_figures
+from ribbonopt.views.pieces import Piece
 from ribbonopt.views.subject import Subject, subject_of
 from ribbonopt.views.surface import ETA_BOUND, sweep
 
@@ -134,6 +135,16 @@ def test_a_band_may_begin_where_its_bending_changes_sign():
     for side in (-1, 1):
         a, b = surface.sheets[0].points(side), shifted.sheets[1].points(-side)
         np.testing.assert_allclose(a, b, atol=1e-12)
+
+
+@pytest.mark.parametrize(("gap", "closed"), [(0.0, True), (5e-5, True), (2e-4, False)])
+def test_a_gap_that_can_be_seen_is_drawn(gap, closed):
+    """A ring as wide as a page of 1600 points is 5000 of them long: the last gap is one of them."""
+    angle = np.linspace(0, 2 * np.pi * (1 - gap), 400)
+    sin, cos, zero = np.sin(angle), np.cos(angle), 0 * angle
+    d1, d3 = np.stack([cos, sin, zero], axis=1), np.stack([-sin, cos, zero], axis=1)
+    surface = sweep((Piece(angle, *4 * [zero], d1, -d1, np.cross(d3, -d1), d3),))
+    assert (surface.closed, surface.one_sided) == (closed, False)
 
 
 @pytest.mark.parametrize("plot", [plot_strains, plot_plane, plot_ribbon])

@@ -1,0 +1,74 @@
+"""What the count of half twists costs, and when it is none."""
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import pytest
+
+from ribbonopt.checks import topology
+from ribbonopt.checks.flip import find_flip
+from ribbonopt.checks.topology import ClosedBand, count_half_twists
+from ribbonopt.solution.solution import Solution
+
+Array = np.ndarray
+Solved = Callable[..., Solution]
+
+
+def pairs_for(band: Solution, monkeypatch: pytest.MonkeyPatch) -> int:
+    """Count the pairs of points that the half twists of a band are found from."""
+    looked_at: list[int] = []
+    writhe = topology.writhe
+
+    def counted(r: Array) -> float:
+        looked_at.append(len(r) ** 2)
+        return writhe(r)
+
+    with monkeypatch.context() as patch:
+        patch.setattr(topology, "writhe", counted)
+        assert count_half_twists(band) is not None
+    return sum(looked_at)
+
+
+def test_a_simple_band_is_counted_from_few_points(
+    solved: Solved, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Every solve of a loop pays for it: what all pairs of 100 points tell takes no more."""
+    assert pairs_for(solved("moebius_half"), monkeypatch) <= 100**2 + 50**2
+
+
+def test_points_are_added_until_the_writhe_is_stable(
+    solved: Solved, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    simple = pairs_for(solved("moebius_half"), monkeypatch)
+    monkeypatch.setattr(topology, "STABLE", 1e-5)
+    assert 10 * simple < pairs_for(solved("moebius_half"), monkeypatch) < 100 * simple
+
+
+def test_what_is_far_from_a_whole_number_is_no_count(
+    solved: Solved, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    band, twist = solved("moebius_half"), ClosedBand.twist
+    for off, count in ((0.02, 1), (0.2, None)):
+        more = property(lambda self, off=off: twist.__get__(self) + off / 2)
+        with monkeypatch.context() as patch:
+            patch.setattr(ClosedBand, "twist", more)
+            assert count_half_twists(band) == count
+
+
+@pytest.mark.parametrize("load", ["n", "m"])
+def test_a_half_that_is_loaded_along_its_axis_is_none(solved: Solved, load: str) -> None:
+    """A flip reverses what is along its axis: neither force nor moment would go on."""
+    half = solved("moebius_half")
+    flip = find_flip(half)
+    assert flip is not None
+
+    class Loaded:
+        scene = half.scene
+
+        def outputs(self, s: Array) -> dict[str, Array]:
+            values = half.outputs(s)
+            return values | {load: values[load] + 1e-3 * np.abs(values[load]).max() * flip.axis}
+
+    loaded: Any = Loaded()
+    assert find_flip(loaded) is None

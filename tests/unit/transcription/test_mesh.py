@@ -1,0 +1,34 @@
+"""Meshes with other numbers of elements, graded alike."""
+
+import numpy as np
+import pytest
+
+from ribbonopt.transcription import Mesh
+
+NONE = np.empty(0)
+GRADED = Mesh((np.geomspace(1, 30, 12) / np.geomspace(1, 30, 12).sum(),))
+
+
+@pytest.mark.parametrize("mesh", [Mesh.uniform(12), GRADED], ids=["uniform", "graded"])
+@pytest.mark.parametrize("count", [6, 12, 24, 31])
+def test_a_mesh_is_resampled_to_the_elements_asked_for(mesh: Mesh, count: int) -> None:
+    found = mesh.resampled(count, NONE)
+    assert found.elements == (count,)
+    if count == 12:
+        np.testing.assert_allclose(found.widths, mesh.widths, rtol=1e-12)
+    # As wide where they are as before, in proportion to the numbers.
+    middles, before = (np.cumsum(m.widths) - m.widths / 2 for m in (found, mesh))
+    expected = np.interp(middles, before, mesh.widths) * 12 / count
+    inside = (middles > before[0]) & (middles < before[-1])
+    np.testing.assert_allclose(found.widths[inside], expected[inside], rtol=0.15)
+
+
+@pytest.mark.parametrize("switches", [[0.5], [0.1, 0.6], [0.02]])
+def test_phases_share_the_elements_as_the_mesh_has_them(switches: list[float]) -> None:
+    found = GRADED.resampled(40, np.array(switches), least=2)
+    assert len(found.phases) == len(switches) + 1
+    assert abs(sum(found.elements) - 40) <= len(switches) + 1
+    nodes = np.append(0.0, np.cumsum(GRADED.widths))
+    for count, a, b in zip(found.elements, [0, *switches], [*switches, 1], strict=True):
+        share = np.interp([a, b], nodes, np.arange(13) * 40 / 12)
+        assert count == max(2, round(float(np.ptp(share))))
