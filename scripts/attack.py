@@ -1,6 +1,6 @@
 """Attack ribbonopt: hostile scenes, studies, names, saved files and environments, and kills.
 
-    python scripts/attack.py                        # all of it: about an hour on two cores
+    python scripts/attack.py                        # all of it: some forty minutes on two cores
     python scripts/attack.py --share 0.01           # a hundredth of everything
     python scripts/attack.py --part scenes --count 2000 --seed 7
 
@@ -18,6 +18,7 @@ import multiprocessing
 import os
 import resource
 import shutil
+import signal
 import sys
 import tempfile
 import time
@@ -37,7 +38,7 @@ from attack_runs import GOOD, MEMORY, warm
 
 
 class Answer(NamedTuple):
-    """What an attack came to; `ended` is an exit status or a word, `fault` "" where all is right."""
+    """What an attack came to: `ended` is an exit status or a word, `fault` "" if all is right."""
 
     part: str
     kind: str
@@ -118,18 +119,20 @@ def _kills(task: Task) -> Iterator[Answer]:
         yield Answer("kills", "lost or left", "", "fault", fault)
 
 
+VERBS = len(attack_environments.VERBS)
 PARTS: dict[str, tuple[int, Callable[[Task], Iterator[Answer]]]] = {
     "scenes": (20_000, _commands),
     "solves": (2_000, _commands),
     "studies": (300, _commands),
     "names": (600, _commands),
     "files": (5_000, _files),
-    "environments": (10_000, _environments),  # all that there are
+    "environments": (len(list(attack_environments.environments())) * VERBS, _environments),
     "kills": (100, _kills),
 }
 
 
 def _share(task: Task) -> list[Answer]:
+    signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))  # so that what it has begun ends with it
     return list(PARTS[task.part][1](task))
 
 

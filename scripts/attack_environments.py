@@ -13,6 +13,7 @@ import subprocess
 import sys
 import time
 from collections.abc import Callable, Iterator, Mapping
+from contextlib import suppress
 from dataclasses import dataclass, field
 from pathlib import Path
 from random import Random
@@ -141,7 +142,7 @@ def environments() -> Iterator[Environment]:
     yield Environment("30 files", before=_limit(resource.RLIMIT_NOFILE, 30))
     yield Environment("no file over 2 kB", before=_limit(resource.RLIMIT_FSIZE, 2_000))
     yield Environment("no file over 0 B", before=_limit(resource.RLIMIT_FSIZE, 0))
-    for megabytes in (150, 300, 500, 700):
+    for megabytes in (250, 300, 400, 700):  # with less, no numpy can be imported
         limit = _limit(resource.RLIMIT_AS, megabytes << 20)
         yield Environment(f"{megabytes} MB", before=limit)
     if os.geteuid():  # root may have as many as it likes
@@ -183,12 +184,14 @@ def run_in(environment: Environment, verb: str, folder: Path, launcher: Path) ->
             preexec_fn=environment.before,
             start_new_session=True,
         )
-        try:
-            status: int | None = child.wait(SECONDS)
-        except subprocess.TimeoutExpired:
-            status = None
-            os.killpg(child.pid, signal.SIGKILL)
-            child.wait()
+        status: int | None = None
+        with suppress(subprocess.TimeoutExpired):
+            try:
+                status = child.wait(SECONDS)
+            finally:
+                if status is None:
+                    os.killpg(child.pid, signal.SIGKILL)
+                    child.wait()
     encoding = "utf-16" if environment.label == "utf-16" else "utf-8"
     said = [path.read_bytes().decode(encoding, errors="replace") for path in words]
     return Run(status, *said, time.perf_counter() - started)

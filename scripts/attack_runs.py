@@ -61,7 +61,13 @@ def command(arguments: Sequence[str], folder: Path, seconds: float = 60.0) -> Ru
     child = os.fork()
     if child == 0:
         _be(arguments, folder, words)
-    status = _awaited(child, started + seconds)
+    status: int | None = None
+    try:
+        status = _awaited(child, started + seconds)
+    finally:
+        if status is None:
+            os.killpg(child, signal.SIGKILL)
+            os.waitpid(child, 0)
     out, err = (path.read_text(encoding="utf-8", errors="replace") for path in words)
     for path in words:
         path.unlink()
@@ -98,7 +104,7 @@ def _be(arguments: Sequence[str], folder: Path, words: tuple[Path, Path]) -> Non
 
 
 def _awaited(child: int, until: float) -> int | None:
-    """Return the status of a child; None if it had to be killed."""
+    """Return the status of a child; None if it takes too long."""
     pause = 0.001
     while time.perf_counter() < until:
         pid, status = os.waitpid(child, os.WNOHANG)
@@ -106,8 +112,6 @@ def _awaited(child: int, until: float) -> int | None:
             return os.waitstatus_to_exitcode(status)
         time.sleep(pause)
         pause = min(2 * pause, 0.05)
-    os.killpg(child, signal.SIGKILL)
-    os.waitpid(child, 0)
     return None
 
 
