@@ -15,6 +15,8 @@ from ribbonopt.transcription import NLP
 BLOCKS, SPARSE_BLOCKS = 5, 36
 SMALL = 1 << 28  # bytes that any program may take without a look at what there is
 GIGA = 1e9
+#: bytes that IPOPT's own linear algebra takes at once; where they are refused it tries for ever
+LIBRARIES = 200_000_000
 
 
 class TooLargeError(ModelError):
@@ -26,6 +28,12 @@ def refuse_unaffordable(nlp: NLP, *, sparse: bool) -> None:
 
     `sparse` says whether it is solved by its sparse functions, as IPOPT does.
     """
+    room = _of_process() if sparse else None
+    if room is not None and room < LIBRARIES:
+        raise TooLargeError(
+            f"IPOPT needs {LIBRARIES / 1e6:.0f} MB of memory to begin, and the limit of this "
+            f"process (ulimit -v) leaves {room / 1e6:.0f} MB; raise it"
+        )
     needed = bytes_needed(nlp, sparse=sparse)
     if needed < SMALL:
         return

@@ -96,6 +96,9 @@ def _try(path: Path, make: bool = True) -> Lock | None:
                 os.write(descriptor, f"{os.getpid()} {socket.gethostname()}\n".encode())
                 return Lock(path, descriptor)
         except BaseException:
+            if made:
+                with suppress(OSError):
+                    path.unlink()
             os.close(descriptor)
             raise
         os.close(descriptor)

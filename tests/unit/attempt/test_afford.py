@@ -46,6 +46,17 @@ def test_what_there_is_no_memory_for_is_refused_before_it_is_built(
     Structure.of(posed(20_000)).on((20_000,))
 
 
+def test_ipopt_is_not_begun_where_its_libraries_would_wait_for_memory(
+    monkeypatch: pytest.MonkeyPatch,
+) -> None:
+    monkeypatch.setattr(afford, "_of_process", lambda: 150_000_000)
+    Structure.of(posed(10)).on((10,))  # Newton's method needs none of it
+    with pytest.raises(afford.TooLargeError, match=r"IPOPT needs 200 MB .* leaves 150 MB; raise"):
+        Structure.of(posed(10, "solver={type: ipopt}")).on((10,))
+    monkeypatch.setattr(afford, "_of_process", lambda: None)
+    Structure.of(posed(10, "solver={type: ipopt}")).on((10,))
+
+
 def test_a_finer_mesh_that_is_too_large_leaves_the_coarse_solution(
     monkeypatch: pytest.MonkeyPatch,
 ) -> None:
