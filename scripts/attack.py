@@ -131,9 +131,23 @@ PARTS: dict[str, tuple[int, Callable[[Task], Iterator[Answer]]]] = {
 }
 
 
-def _share(task: Task) -> list[Answer]:
+def _share(task: Task) -> None:
     signal.signal(signal.SIGTERM, lambda *_: sys.exit(1))  # so that what it has begun ends with it
-    return list(PARTS[task.part][1](task))
+    with open(_answers(task), "w", encoding="utf-8") as file:
+        for answer in PARTS[task.part][1](task):
+            file.write(json.dumps(answer) + "\n")
+
+
+def _answers(task: Task) -> Path:
+    return task.scratch / f"{task.part}-{task.first}.jsonl"
+
+
+def _told(task: Task, status: int | None) -> Iterator[Answer]:
+    """Yield what a process has found; that it did not come to its end is a fault too."""
+    for line in _answers(task).read_text(encoding="utf-8").splitlines():
+        yield Answer(*json.loads(line))
+    if status:
+        yield Answer(task.part, "the attack itself", "", str(status), "has died")
 
 
 def attack(counts: dict[str, int], seed: int, jobs: int, keep: Path) -> list[Answer]:
@@ -143,8 +157,14 @@ def attack(counts: dict[str, int], seed: int, jobs: int, keep: Path) -> list[Ans
         for part, count in counts.items():
             started = time.perf_counter()
             tasks = [Task(part, seed, count, i, jobs, Path(scratch), keep) for i in range(jobs)]
-            with multiprocessing.get_context("fork").Pool(jobs) as pool:
-                answers = [one for some in pool.map(_share, tasks, 1) for one in some]
+            fork = multiprocessing.get_context("fork")
+            shares = [fork.Process(target=_share, args=(task,)) for task in tasks]
+            for share in shares:
+                share.start()
+            for share in shares:
+                share.join()
+            codes = zip(tasks, (share.exitcode for share in shares), strict=True)
+            answers = [answer for task, code in codes for answer in _told(task, code)]
             found += answers
             print(f"{part}: {len(answers)} in {time.perf_counter() - started:.0f} s", flush=True)
     return found
