@@ -60,7 +60,8 @@ def dress(axes: Axes, plane: Plane) -> None:
         if plane.flat(k):
             low, high = plane.points(plane.rows)[k].min(), plane.points(plane.rows)[k].max()
             room = abs(low + high) / 4 if abs(low + high) > NOISE * LEAST else 1.0
-            axis.set_view_interval(low - room, high + room, ignore=True)
+            # Before the scale, of whose change older matplotlib would make no room, but a warning.
+            axes.set(**{f"{'xy'[k]}lim": (low - room, high + room)})
         else:
             (axes.set_xmargin, axes.set_ymargin)[k](MARGIN)
         if plane.log[k]:

@@ -24,7 +24,7 @@ class Valley(IpoptSolver):
         x = ca.MX.sym("x", SIZE)
         cost = ca.sum1(100 * (x[1:] - x[:-1] ** 2) ** 2 + (1 - x[:-1]) ** 2)
         options = {"print_time": False, "error_on_fail": False}
-        ipopt = {"print_level": 0, "sb": "yes", "max_iter": 10**7}
+        ipopt = {"print_level": 0, "sb": "yes", "max_iter": 10**7, "max_cpu_time": 60.0}
         return ca.nlpsol("valley", "ipopt", {"x": x, "f": cost}, options | {"ipopt": ipopt})
 
 
