@@ -26,7 +26,7 @@ RATIO, SMOOTHING = 1e12, 1e6
 
 HALF_TWISTS = 1_000  # of a closed band, whose writhe is a sum over all pairs of its pieces
 INTERVALS = 20_000  # a million unknowns at degree 6: minutes a solve, 2 GB
-STEPS = 1_000  # of Runge-Kutta in one interval, each of which is written out: seconds to build
+STEPS = 100  # of Runge-Kutta in one interval, each of which is written out; intervals are not
 ITERATIONS = 100_000  # of a solver; those that lead somewhere take less than a hundred
 STARTS = 10_000  # each is a solve: some hours
 SEED = 2**128 - 1  # as many bits as numpy's seeds have
