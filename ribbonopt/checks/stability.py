@@ -94,7 +94,7 @@ def variation_of(solution: Solution) -> Variation | str:
     """Return the second variation as a quadratic form or, in words, why there is none."""
     if not solution.status.converged:
         return NO_EQUILIBRIUM
-    name, law = solution.scene.law.type, capabilities(solution.scene.law)
+    name, law = solution.scene.law.type, capabilities(solution.scene)
     if not law.variational:
         return f"the law {name} has no energy"
     if law.states:

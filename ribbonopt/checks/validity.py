@@ -71,7 +71,7 @@ def _width_of_loop(solution: Solution, ribbon: RibbonSizes) -> list[str]:
 
 def _generatrices(solution: Solution, width: float) -> list[str]:
     """Compare with Wunderlich's energy where the generatrices turn fastest."""
-    if not is_developable(solution.scene.law):
+    if not is_developable(solution.scene):
         return []
     s = np.linspace(*solution.scene.interval, ROWS)
     slopes = np.abs(generatrix_slopes(solution, s))

@@ -81,12 +81,12 @@ def _share(solution: Solution, zero: NDArray[np.bool_]) -> float:
 
 def lacks_linearisation(solution: Solution) -> bool:
     """Whether nothing can be said of a solution that rests on its linearised equations."""
-    return unbent_share(solution, capabilities(solution.scene.law)) > 0
+    return unbent_share(solution, capabilities(solution.scene)) > 0
 
 
 def unknown_of(solution: Solution) -> list[str]:
     """Say what is not known of such a state; nothing of all others."""
-    law = capabilities(solution.scene.law)
+    law = capabilities(solution.scene)
     share = unbent_share(solution, law)
     if not share:
         return [FADED] if unseen(solution, law) else []

@@ -14,7 +14,7 @@ from typing import Any, TypeVar
 import casadi as ca
 
 from ribbonopt.mechanics.ends.conditions import Condition, Context, CrossSection, EndName
-from ribbonopt.mechanics.laws.catalogue import law_of, numbers_of
+from ribbonopt.mechanics.laws.catalogue import relation_of
 from ribbonopt.mechanics.laws.law import ConstitutiveLaw, Stress
 from ribbonopt.mechanics.loads.load import Load
 from ribbonopt.mechanics.model import RodModel, full_model, least_model
@@ -56,8 +56,7 @@ class Ribbon:
     def of(cls, posed: Posed) -> Ribbon:
         """Return the mechanics of a posed scene, its numbers as symbols."""
         theta, position = {name: ca.SX.sym(name) for name in posed.theta}, ca.SX.sym("s")
-        numbers = {name: theta[f"law.{name}"] for name in numbers_of(posed.scene.law)}
-        law = law_of(posed.scene.law, numbers, position)
+        law = relation_of(posed.scene, theta.__getitem__, position)
         model = _model_of(posed, theta)
         return cls(model, law, posed.conditions, posed.loads, theta, position)
 

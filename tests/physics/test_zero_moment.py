@@ -114,7 +114,7 @@ def test_a_part_of_the_ribbon_is_enough(law: str) -> None:
     scene = replace(tip(law), loads=Loads(own=(FirstHalf(0.3),)), parameters={"P": 0.0})
     found = solve(replace(scene, tolerance=None))
     assert found.verified
-    assert unbent_share(found, capabilities(found.scene.law)) == pytest.approx(0.5, abs=0.06)
+    assert unbent_share(found, capabilities(found.scene)) == pytest.approx(0.5, abs=0.06)
     assert set(summarize(found)["error_estimate"].values()) == {None}
     assert any("% of the ribbon" in text for text in warnings_of(found))
 

@@ -8,7 +8,7 @@ M > 1e-51; at m = 0 strains and derivatives are finite.
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import fields
 from importlib import import_module
 from numbers import Real
@@ -16,7 +16,7 @@ from numbers import Real
 import casadi as ca
 
 from ribbonopt.errors import ModelError
-from ribbonopt.scene import Law, OwnLaw
+from ribbonopt.scene import Law, OwnLaw, Scene
 
 from .law import ConstitutiveLaw
 
@@ -73,11 +73,26 @@ def law_of(law: Law, numbers: Mapping[str, ca.SX], position: ca.SX) -> Constitut
     return found
 
 
-def capabilities(law: Law) -> ConstitutiveLaw:
-    """Return the relation of a scene's law with symbols of its own, to be asked what it has."""
-    return law_of(law, {name: ca.SX.sym(name) for name in numbers_of(law)}, ca.SX.sym("s"))
+def relation_of(scene: Scene, theta: Callable[[str], ca.SX], position: ca.SX) -> ConstitutiveLaw:
+    """Return the relation of a scene: its law, and what the scene says of the ribbon beside.
+
+    `theta` gives the symbols of its numbers by name, `position` is the symbol of the arclength s.
+    """
+    numbers = {name: theta(f"law.{name}") for name in numbers_of(scene.law)}
+    return law_of(scene.law, numbers, position)
 
 
-def is_developable(law: Law) -> bool:
-    """Whether the ribbon of a law is a developable surface; a blend of rod and ribbon is none."""
-    return capabilities(law).developable and numbers_of(law).get("rho", 1.0) == 1.0
+def capabilities(scene: Scene) -> ConstitutiveLaw:
+    """Return the relation of a scene with symbols of its own, to be asked what it has."""
+    return relation_of(scene, ca.SX.sym, ca.SX.sym("s"))
+
+
+def is_linear(law: Law) -> bool:
+    """Whether a law by itself has an energy that is smooth at m = 0: a start may begin with it."""
+    found = law_of(law, {name: ca.SX.sym(name) for name in numbers_of(law)}, ca.SX.sym("s"))
+    return found.linear_at_zero and found.variational
+
+
+def is_developable(scene: Scene) -> bool:
+    """Whether the ribbon of a scene is a developable surface; a blend of rod and ribbon is none."""
+    return capabilities(scene).developable and numbers_of(scene.law).get("rho", 1.0) == 1.0

@@ -11,7 +11,7 @@ from dataclasses import replace
 
 from ribbonopt.scene import Kirchhoff, Law, Variational
 
-from .catalogue import capabilities
+from .catalogue import is_linear
 
 ROD = 1.0  # delta at which the law is linear
 UNEVEN = 0.3  # ratio of a rod's stiffnesses below which it is approached from a more even one
@@ -26,8 +26,7 @@ def first_law(law: Law, delta: float) -> Law:
     """
     if isinstance(law, Kirchhoff):
         return sharpened(law, EVEN) if _ratio(law) < UNEVEN else law
-    found = capabilities(law)
-    if found.linear_at_zero and found.variational:
+    if is_linear(law):
         return law
     return Variational(delta=max(delta, sharpness(law, 0.0)))
 

@@ -77,7 +77,7 @@ class LawResidual:
     def __call__(self, s: Array, outputs: dict[str, Array], units: Units) -> float:
         """Return the largest departure on outputs sampled at arclengths s (k,)."""
         known = [outputs[f"{v}{i}"] / units.of(v) for v in "nm" for i in (1, 2, 3)]
-        own = [outputs[own_name(state)] for state in capabilities(self.posed.scene.law).states]
+        own = [outputs[own_name(state)] for state in capabilities(self.posed.scene).states]
         expected = np.array(self._strain(np.stack([*known, *own, s / units.length])))
         found = outputs["u"].T / units.strain
         return relative(found - expected, found)
