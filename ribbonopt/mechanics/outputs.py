@@ -11,6 +11,8 @@ from .ends.conditions import CrossSection
 from .laws.law import ConstitutiveLaw, Stress
 from .section import Section
 
+SLOPE = "slope"  # at most 1 where one sheet allows the strains; in its absence |eta| tells
+
 
 def outputs(section: CrossSection, law: ConstitutiveLaw, u: ca.SX) -> dict[str, ca.SX]:
     """Expressions to sample on a solution, by name; vectors in the lab frame but u (directors).
@@ -31,6 +33,9 @@ def outputs(section: CrossSection, law: ConstitutiveLaw, u: ca.SX) -> dict[str, 
     result["H"] = stress.n[2] + complementary
     result["n_dot_m"] = ca.dot(rod.n, rod.m)
     result |= {"switching": switch.value, "leap": switch.leap}
+    slope = law.slope(stress, u)
+    if slope is not None:
+        result[SLOPE] = slope
     result["law_residual"] = ca.norm_2(u - section.u)
     result["orthonormality"] = _gram_error(rod)
     result |= dict(zip(map(own_name, law.states), ca.vertsplit(rod.own), strict=True))

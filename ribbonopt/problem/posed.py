@@ -16,7 +16,7 @@ import numpy as np
 from ribbonopt.arrays import Array
 from ribbonopt.mechanics.ends.boundary import conditions_of, start_frame, start_position
 from ribbonopt.mechanics.ends.conditions import Condition
-from ribbonopt.mechanics.laws.catalogue import numbers_of
+from ribbonopt.mechanics.laws.catalogue import natural_numbers, numbers_of
 from ribbonopt.mechanics.loads.load import Load
 from ribbonopt.scene import Loads, Scene
 from ribbonopt.scene.units import Units, in_special_units, units_of
@@ -82,6 +82,7 @@ class Posed:
         """Every number of the scene, in units Dw = L = 1, by name and in order."""
         scene, (position, _) = self.scene, self.start
         values = {f"law.{name}": value for name, value in numbers_of(scene.law).items()}
+        values |= natural_numbers(scene)
         values |= {"interval.start": scene.interval[0], "interval.end": scene.interval[1]}
         values |= {f"reference.{axis}": float(position[i]) for i, axis in enumerate("xyz")}
         values |= {f"parameters.{name}": value for name, value in scene.parameters.items()}

@@ -48,6 +48,7 @@ from .model import (
     SolutionGuess,
     StrainGuess,
 )
+from .natural import Natural
 from .supports import Support, SupportName
 from .yamlio import (
     dump_scene,
@@ -82,6 +83,7 @@ __all__ = [
     "Loads",
     "Loop",
     "MoebiusGuess",
+    "Natural",
     "Newton",
     "OwnLaw",
     "OwnLoad",

@@ -30,6 +30,7 @@ _ROOTS: tuple[KeyPath, ...] = (
     ("boundary", "end"),
     ("loads",),
     ("ribbon",),
+    ("natural",),
 )
 _ITEMS = {2: ("start", "end"), 3: ("x", "y", "z")}
 _MOST_LISTED = 8

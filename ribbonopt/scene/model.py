@@ -15,6 +15,7 @@ from .continuation import ContinuationStage
 from .ends import Boundary, HalfTwists, Loop, Value
 from .laws import Law
 from .loads import Loads
+from .natural import Natural
 from .schema.bounds import Bounds
 
 Numbers3 = tuple[float, float, float]
@@ -205,3 +206,4 @@ class Scene:
     record: dict[str, str] = field(default_factory=dict)
     continuation: ContinuationStage | tuple[ContinuationStage, ...] | None = None
     loads: Loads = field(default_factory=Loads)
+    natural: Natural | None = None

@@ -19,7 +19,8 @@ from typing import Any
 from .ends import Boundary, End
 from .laws import Kirchhoff, Law, OwnLaw
 from .loads import Loads
-from .model import Guess, LoadGuess, Reference, Scene, StrainGuess
+from .model import Guess, LoadGuess, Reference, RibbonSizes, Scene, StrainGuess
+from .natural import Natural
 from .quantities import dimension
 
 UNIT_LENGTH, UNIT_FORCE = "units.length", "units.force"
@@ -108,6 +109,7 @@ def in_special_units(scene: Scene, units: Units | None = None) -> Scene:
         loads=_loads(scene.loads, units, parameters),
         guess=_guess(scene.guess, units),
         reference=_reference(scene.reference, units),
+        natural=_natural(scene.natural, units, scene.ribbon),
         switching=switches if isinstance(switches, str) else _over(switches, units.length),
         ribbon=None,
         record={},
@@ -129,6 +131,17 @@ def _boundary(boundary: Boundary, units: Units, parameters: Mapping[str, float])
 
 def _loads(loads: Loads, units: Units, parameters: Mapping[str, float]) -> Loads:
     return replace(loads, force=_over(loads.force, units.force / units.length, parameters))
+
+
+def _natural(natural: Natural | None, units: Units, ribbon: RibbonSizes | None) -> Natural | None:
+    """Return natural strains; a Poisson's ratio that is not said is the ribbon's."""
+    if natural is None:
+        return None
+    curvatures = (natural.curvature, natural.twist, natural.across)
+    along, twist, across = _over(curvatures, units.strain)
+    said = natural.poisson_ratio
+    ratio = ribbon.poisson_ratio if said is None and ribbon is not None else said
+    return Natural(along, twist, across, ratio)
 
 
 def _end(end: End, units: Units, parameters: Mapping[str, float]) -> End:

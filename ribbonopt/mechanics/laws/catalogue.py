@@ -79,7 +79,21 @@ def relation_of(scene: Scene, theta: Callable[[str], ca.SX], position: ca.SX) ->
     `theta` gives the symbols of its numbers by name, `position` is the symbol of the arclength s.
     """
     numbers = {name: theta(f"law.{name}") for name in numbers_of(scene.law)}
-    return law_of(scene.law, numbers, position)
+    law = law_of(scene.law, numbers, position)
+    if scene.natural is None:
+        return law
+    from .natural_of import natural_law  # few scenes have natural strains
+
+    return natural_law(scene, law, theta, position)
+
+
+def natural_numbers(scene: Scene) -> dict[str, float]:
+    """Return the numbers of the natural strains of a scene by name; none if it has none."""
+    natural = scene.natural
+    if natural is None:
+        return {}
+    members = (field.name for field in fields(natural))
+    return {f"natural.{name}": float(getattr(natural, name) or 0.0) for name in members}
 
 
 def capabilities(scene: Scene) -> ConstitutiveLaw:

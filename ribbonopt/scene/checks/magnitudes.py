@@ -60,6 +60,9 @@ _KINDS: dict[KeyPath, _Kind] = {
         }.items()
     },
     ("loads", "force"): _PER_LENGTH,
+    ("natural", "curvature"): _STRAIN,
+    ("natural", "twist"): _STRAIN,
+    ("natural", "across"): _STRAIN,
     ("guess", "force"): _FORCE,
     ("guess", "moment"): _MOMENT,
     ("guess", "strains"): _STRAIN,

@@ -49,6 +49,10 @@ def check(scene: Scene) -> list[Problem]:
         problems += check_loop(boundary.loop, boundary, scene.guess)
     else:
         problems += check_supports(boundary, values)
+    if scene.natural is not None:
+        from .natural import check_natural  # few scenes have natural strains
+
+        problems += check_natural(scene)
     if isinstance(scene.switching, tuple):
         problems += _switching(scene.switching, scene.interval)
     if scene.ribbon is not None:
