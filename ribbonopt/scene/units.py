@@ -16,6 +16,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, fields, is_dataclass, replace
 from typing import Any
 
+from .along import scaled
 from .ends import Boundary, End
 from .laws import Kirchhoff, Law, OwnLaw
 from .loads import Loads
@@ -107,6 +108,7 @@ def in_special_units(scene: Scene, units: Units | None = None) -> Scene:
         parameters=parameters | own,
         boundary=_boundary(boundary, units, parameters),
         loads=_loads(scene.loads, units, parameters),
+        width=scaled(scene.width, 1.0, units.length),
         guess=_guess(scene.guess, units),
         reference=_reference(scene.reference, units),
         natural=_natural(scene.natural, units, scene.ribbon),
@@ -137,8 +139,8 @@ def _natural(natural: Natural | None, units: Units, ribbon: RibbonSizes | None) 
     """Return natural strains; a Poisson's ratio that is not said is the ribbon's."""
     if natural is None:
         return None
-    curvatures = (natural.curvature, natural.twist, natural.across)
-    along, twist, across = _over(curvatures, units.strain)
+    curvatures = natural.curvature, natural.twist, natural.across
+    along, twist, across = (scaled(some, units.strain, units.length) for some in curvatures)
     said = natural.poisson_ratio
     ratio = ribbon.poisson_ratio if said is None and ribbon is not None else said
     return Natural(along, twist, across, ratio)

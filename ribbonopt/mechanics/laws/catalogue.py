@@ -12,6 +12,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import fields
 from importlib import import_module
 from numbers import Real
+from typing import TYPE_CHECKING
 
 import casadi as ca
 
@@ -19,6 +20,10 @@ from ribbonopt.errors import ModelError
 from ribbonopt.scene import Law, OwnLaw, Scene
 
 from .law import ConstitutiveLaw
+
+if TYPE_CHECKING:
+    from ribbonopt.mechanics.along import Field
+    from ribbonopt.scene.along import Along
 
 #: laws by the name a scene gives them: module and class, which is imported when a scene asks for
 #: it; the fields of the class are those of the scene's
@@ -80,20 +85,29 @@ def relation_of(scene: Scene, theta: Callable[[str], ca.SX], position: ca.SX) ->
     """
     numbers = {name: theta(f"law.{name}") for name in numbers_of(scene.law)}
     law = law_of(scene.law, numbers, position)
-    if scene.natural is None:
-        return law
-    from .natural_of import natural_law  # few scenes have natural strains
+    along = {field.name: field.at(position, theta) for field in fields_of(scene)}
+    if scene.natural is not None:
+        from .natural_of import natural_law  # few scenes have natural strains
 
-    return natural_law(scene, law, theta, position)
+        law = natural_law(scene, law, along, position)
+    if scene.width is not None:
+        from .tapered import tapered  # few scenes have a width of their own
+
+        law = tapered(law, along["width"], position)
+    return law
 
 
-def natural_numbers(scene: Scene) -> dict[str, float]:
-    """Return the numbers of the natural strains of a scene by name; none if it has none."""
-    natural = scene.natural
-    if natural is None:
-        return {}
-    members = (field.name for field in fields(natural))
-    return {f"natural.{name}": float(getattr(natural, name) or 0.0) for name in members}
+def fields_of(scene: Scene) -> tuple[Field, ...]:
+    """Return the numbers along the ribbon that its relation depends on beside its law."""
+    if scene.width is None and scene.natural is None:
+        return ()
+    from ribbonopt.mechanics.along import Field  # as above
+
+    named: dict[str, Along | None] = {"width": scene.width}
+    if scene.natural is not None:
+        members = vars(scene.natural).items()
+        named |= {f"natural.{name}": 0.0 if value is None else value for name, value in members}
+    return tuple(Field(name, value) for name, value in named.items() if value is not None)
 
 
 def capabilities(scene: Scene) -> ConstitutiveLaw:

@@ -54,6 +54,8 @@ class ConstitutiveLaw(ABC):
     natural: bool = False
     #: strains have a kink or a jump where `switching` changes sign; `branch` continues either side
     kinked: bool = False
+    #: its sides are two sheets that may mix, as Sadowsky's
+    sheeted: bool = False
     #: what `switching` is called in words
     switch_name: str = "m2"
     #: `moment` is exact and a closed form, cheap to differentiate; else it serves guesses only
@@ -108,15 +110,16 @@ class ConstitutiveLaw(ABC):
         """Return the program of the convexified energy where the law is not smooth, or None."""
         return None
 
-    def slope(self, stress: Stress, u: ca.SX) -> ca.SX | None:
+    def sheet_slope(self, stress: Stress, u: ca.SX) -> ca.SX | None:
         """Return what is at most 1 where one sheet allows strains u (3,); None where |eta| is."""
         return None
 
-    def naturally(self, natural: NaturalStrains) -> ConstitutiveLaw:
-        """Return the law of the same ribbon with natural strains: moments shifted, K22 being 0."""
-        from .shifted import ShiftedLaw  # few scenes have natural strains
+    def naturally(self, natural: NaturalStrains) -> ConstitutiveLaw | None:
+        """Return the law of the same ribbon with any natural strains.
 
-        return ShiftedLaw(self, natural)
+        None where these can only shift the moments, so that K22 must be zero: `shifted`.
+        """
+        return None
 
     # Own states: none but for laws that declare them.
 

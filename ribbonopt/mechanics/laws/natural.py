@@ -14,19 +14,15 @@ and R = sqrt(D^2 + c^2): (T +- R) / 2 are the eigenvalues of [[m2 + K11, c / 2],
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
 
 import casadi as ca
 
-from .law import Stress
-from .parts import Switch
-from .relations import GUARD, norm, nonzero
+from .relations import GUARD, nonzero, norm
 
 NAMES = ("curvature", "twist", "across", "poisson_ratio")
-WORDS = "T = m2 + K11 + K22"  # what switches, in messages
 TINY = 1e-30  # of strains: what vanishes has no slope
 
 
@@ -43,7 +39,8 @@ class Combined(NamedTuple):
 class NaturalStrains:
     """Natural curvatures along, twist and across and Poisson's ratio, in units L = 1.
 
-    Symbols, expressions of them and of the arclength `position`, or numbers.
+    Symbols, expressions of them and of the arclength `position`, or numbers. All here is of the
+    unit width; `width` is asked where a ribbon has another, that varies.
     """
 
     k11: ca.SX
@@ -51,6 +48,7 @@ class NaturalStrains:
     k22: ca.SX
     nu: ca.SX
     position: ca.SX
+    width: ca.SX | float = 1.0
 
     @cached_property
     def K11(self) -> ca.SX:
@@ -70,9 +68,15 @@ class NaturalStrains:
         squares = self.k11**2 + 2 * self.k12**2 + self.k22**2
         return ((1 - self.nu) * squares + self.nu * (self.k11 + self.k22) ** 2) / 2
 
-    def rate(self, value: ca.SX) -> ca.SX:
-        """Return the derivative along s of an expression of these; zero where none varies."""
-        return ca.jacobian(ca.SX(value), self.position)
+    def rate(self, value: ca.SX, order: int = 1) -> ca.SX:
+        """Return a derivative along s of the width times an expression of these, over the width.
+
+        Zero where nothing varies.
+        """
+        found = ca.SX(self.width * value)
+        for _ in range(order):
+            found = ca.jacobian(found, self.position)
+        return found / self.width
 
     def combined(self, m2: ca.SX, m3: ca.SX) -> Combined:
         """Return T, D, c and R at the moments."""
@@ -103,60 +107,6 @@ class NaturalStrains:
         # What is zero has no slope: u2 = u3 = 0 is a strip that is curved across alone.
         some = norm(u2, u3) > TINY
         return ca.if_else(some, ca.fmax(past, inside), 0)
-
-
-@dataclass(frozen=True, eq=False)
-class NaturalSides:
-    """Where a law with natural strains switches, and what holds in phases: T in the place of m2."""
-
-    k: NaturalStrains
-
-    @property
-    def name(self) -> str:
-        """What switches, in words."""
-        return WORDS
-
-    def switching(self, stress: Stress) -> Switch:
-        """T, and twice the leap of u2 there: planar strips leap too where K22 is not zero."""
-        T, _, c, _ = self.k.combined(stress.m[1], stress.m[2])
-        return Switch(T, norm(2 * self.k.K22, c))
-
-    def entering(self, kinds: tuple[int, ...], i: int, stress: Stress) -> Mapping[str, ca.SX]:
-        """Return what holds where phase i begins; see `SwitchedLaw.entering`."""
-        zero = {"T = 0": self.switching(stress).value}
-        if kinds[i] == 0 and i < len(kinds) - 1:
-            return zero | {"n1 + m1 u3 = K'": self.drift(stress)}
-        return {} if kinds[i - 1] == 0 and i > 1 else zero
-
-    def margins(self, kind: int, stress: Stress, u: ca.SX) -> Mapping[str, ca.SX]:
-        """Return what must not be negative along a phase, by what is wrong where it is."""
-        T, D, _, R = self.k.combined(stress.m[1], stress.m[2])
-        if kind:
-            wrong = f"{WORDS} has the wrong sign {{where}}: no equilibrium of this ribbon"
-            return {wrong: kind * T}
-        return {
-            "the mixture {where} is unstable: K < 0": self.stiffness(stress),
-            "u2 is not between both sheets {where}: not a mixture": R / 4 - ca.fabs(u[1] - D / 4),
-        }
-
-    def zeros(self, kind: int, stress: Stress) -> Mapping[str, ca.SX]:
-        """Return what must be zero along a phase, by what is wrong where it is not."""
-        if kind:
-            return {}
-        return {
-            f"{WORDS} is not zero {{where}}: not a mixture": self.switching(stress).value,
-            "n1 + m1 u3 - K' is not zero {where}: not a mixture": self.drift(stress),
-        }
-
-    def drift(self, stress: Stress) -> ca.SX:
-        """Minus the rate of T along a mixture, K being K11 + K22: n1 + m1 u3 - K'."""
-        n, m, k = stress.n, stress.m, self.k
-        return n[0] + m[0] * (m[2] + 2 * k.K12) / 4 - k.rate(k.K11 + k.K22)
-
-    def stiffness(self, stress: Stress) -> ca.SX:
-        """n3 + m3 u3 - m1^2 / 4 of a mixture, which must not be negative."""
-        n, m = stress.n, stress.m
-        return n[2] + m[2] * (m[2] + 2 * self.k.K12) / 4 - m[0] ** 2 / 4
 
 
 def stable_sum(sigma: ca.SX, D: ca.SX, c: ca.SX, R: ca.SX) -> ca.SX:

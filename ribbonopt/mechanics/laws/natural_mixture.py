@@ -2,6 +2,7 @@
 
 From T = 0 along the arc, K being K11 + K22: n1 + m1 u3 = K' and, that differentiated,
 u2 (n3 + m3 u3 - m1^2 / 4) = 2 n2 u3 + m2 u3^2 + m1 K12' / 2 - K''. Off the arc T is linear in s.
+With a width w forces and moments are those over w, and K' is (w K)' / w.
 """
 
 from __future__ import annotations
@@ -11,7 +12,8 @@ from dataclasses import dataclass
 import casadi as ca
 
 from .law import ConstitutiveLaw, Stress
-from .natural import NaturalSides, mixed_energy
+from .natural import mixed_energy
+from .natural_sides import NaturalSides
 from .parts import Singular
 
 
@@ -25,8 +27,8 @@ class NaturalMixtureLaw(ConstitutiveLaw):
     def strain(self, stress: Stress) -> ca.SX:
         n, m, k = stress.n, stress.m, self.sides.k
         u3 = (m[2] + 2 * k.K12) / 4
-        rate = k.rate(k.K11 + k.K22)
-        turning = (2 * n[1] + u3 * m[1]) * u3 + m[0] * k.rate(k.K12) / 2 - k.rate(rate)
+        turning = (2 * n[1] + u3 * m[1]) * u3 + m[0] * k.rate(k.K12) / 2
+        turning -= k.rate(k.K11 + k.K22, 2)
         return ca.vertcat(0, turning / self.sides.stiffness(stress), u3)
 
     def moment(self, u: ca.SX) -> ca.SX:

@@ -18,8 +18,6 @@ import casadi as ca
 from .implicit import ImplicitLaw
 from .law import ConstitutiveLaw, RibbonLaw, Stress
 from .natural import (
-    WORDS,
-    NaturalSides,
     NaturalStrains,
     affine_energy,
     mixed_energy,
@@ -28,6 +26,7 @@ from .natural import (
     stable_sum,
 )
 from .natural_mixture import NaturalMixtureLaw
+from .natural_sides import WORDS, NaturalSides
 from .parts import Relaxed, Singular, Switch
 from .relations import Components
 
@@ -79,7 +78,7 @@ class NaturalSadowskyLaw(RibbonLaw):
         estimate = ca.vertcat(strain[1:], across, (ca.fabs(T) + R) / 2)
         return Relaxed(z, ca.vertcat(0, u2, u3), cost, path, estimate)
 
-    def slope(self, stress: Stress, u: ca.SX) -> ca.SX:
+    def sheet_slope(self, stress: Stress, u: ca.SX) -> ca.SX:
         return self.k.slope(u[1], u[2])
 
     def layers(self, m2: ca.SX, m3: ca.SX) -> tuple[Components, ...]:
@@ -141,7 +140,7 @@ class NaturalSheetLaw(RibbonLaw):
     def implicit(self, stress: Stress) -> ImplicitLaw:
         return on_sheets(self.k, self.strain(stress), stress.m)
 
-    def slope(self, stress: Stress, u: ca.SX) -> ca.SX:
+    def sheet_slope(self, stress: Stress, u: ca.SX) -> ca.SX:
         return self.k.slope(u[1], u[2])
 
     def singular(self, stress: Stress) -> tuple[Singular, ...]:

@@ -12,8 +12,9 @@ import casadi as ca
 
 from .implicit import ImplicitLaw
 from .law import RibbonLaw, Stress
-from .natural import WORDS, NaturalSides, NaturalStrains
+from .natural import NaturalStrains
 from .natural_sadowsky import NaturalSadowskyLaw, where_equal
+from .natural_sides import WORDS, NaturalSides
 from .parts import Singular, Switch
 from .relations import Components, norm
 
@@ -47,7 +48,7 @@ class NaturalVariationalLaw(RibbonLaw):
         return (norm(T, self.delta * c) + R) ** 2 / 8 - self.k.constant
 
     def implicit(self, stress: Stress) -> ImplicitLaw:
-        """The equations for the strains and both norms, q and R from their squares."""
+        """Return the equations for the strains and both norms, q and R from their squares."""
         z, (T, D, c, size) = ca.SX.sym("u", 4), self.k.combined(stress.m[1], stress.m[2])
         u2, u3, q, R = ca.vertsplit(z)
         size = size + ca.fabs(T)  # brings all equations to the size of the strains
@@ -60,7 +61,7 @@ class NaturalVariationalLaw(RibbonLaw):
         estimate = ca.vertcat(self.strain(stress)[1:], norm(T, self.delta * c), norm(D, c))
         return ImplicitLaw(z, equations, ca.vertcat(-q, -R), estimate)
 
-    def slope(self, stress: Stress, u: ca.SX) -> ca.SX:
+    def sheet_slope(self, stress: Stress, u: ca.SX) -> ca.SX:
         return self.k.slope(u[1], u[2])
 
     def singular(self, stress: Stress) -> tuple[Singular, ...]:

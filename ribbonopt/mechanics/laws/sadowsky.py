@@ -34,12 +34,7 @@ class SwitchedLaw(RibbonLaw):
     """A law whose strains have a jump or a kink at m2 = 0, in phases of one sheet or a mixture."""
 
     kinked = True
-
-    def naturally(self, natural: NaturalStrains) -> ConstitutiveLaw:
-        from .natural import NaturalSides
-        from .shifted import ShiftedLaw
-
-        return ShiftedLaw(self, natural, NaturalSides(natural))
+    sheeted = True
 
     def branch(self, kind: int) -> ConstitutiveLaw:
         return self.sheet(kind) if kind else MixtureLaw()

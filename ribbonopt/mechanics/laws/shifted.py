@@ -13,8 +13,9 @@ import casadi as ca
 
 from .implicit import ImplicitLaw
 from .law import ConstitutiveLaw, Stress
-from .natural import NaturalSides, NaturalStrains
+from .natural import NaturalStrains
 from .natural_mixture import NaturalMixtureLaw
+from .natural_sides import NaturalSides
 from .parts import Relaxed, Singular, Switch
 
 #: what a shift of the moments leaves as it is

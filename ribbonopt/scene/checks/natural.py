@@ -21,7 +21,7 @@ def check_natural(scene: Scene) -> Iterator[Problem]:
     others = "or use law sadowsky, variational or single_sheet"
     if natural.across != 0:
         message = f"{which}; remove it, {others}"
-        yield Problem(("natural", "across"), message, f"{natural.across:g}")
+        yield Problem(("natural", "across"), message, f"{natural.across}")
     if natural.poisson_ratio:
         message = f'{which}; write "poisson_ratio: 0", {others}'
         yield Problem(("natural", "poisson_ratio"), message, f"{natural.poisson_ratio:g}")
