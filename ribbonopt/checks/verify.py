@@ -64,6 +64,10 @@ def verify(solution: Solution, ribbon: Ribbon) -> Verification:
                 f"{switch} changes sign at s = {where}, where the law's strains jump, without "
                 "phases that end there"
             )
+    if ribbon.law.natural and not ribbon.law.smooth and not solution.problem.recovered:
+        from .equal_curvatures import unseen_leaps
+
+        problems += unseen_leaps(solution)
     if ribbon.law.bounds_eta and not solution.problem.recovered:
         eta = sheet_slopes(nodes)
         if 0 in solution.sheets:

@@ -20,7 +20,7 @@ from typing import NamedTuple
 
 import casadi as ca
 
-from .relations import GUARD, nonzero, norm
+from .relations import nonzero, norm
 
 NAMES = ("curvature", "twist", "across", "poisson_ratio")
 TINY = 1e-30  # of strains: what vanishes has no slope
@@ -111,7 +111,7 @@ class NaturalStrains:
 
 def stable_sum(sigma: ca.SX, D: ca.SX, c: ca.SX, R: ca.SX) -> ca.SX:
     """Sigma R + D, without cancellation; sigma is a sign or zero."""
-    beyond = sigma * (c**2 + GUARD**2) / (R + ca.fabs(D))
+    beyond = sigma * c**2 / (R + ca.fabs(D))
     return ca.if_else(sigma * D >= 0, sigma * R + D, beyond)
 
 
