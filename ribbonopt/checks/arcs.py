@@ -45,11 +45,17 @@ def phase_words(kinds: tuple[int, ...], switch: str = "m2") -> str:
     return ", ".join(words[kind] for kind in kinds) or "one, without a sign change"
 
 
-def changed_phases(before: tuple[int, ...], after: tuple[int, ...]) -> str:
+def switch_of(scene: Scene) -> str:
+    """Return what changes sign where phases of a scene meet: T = m2 + K11 + K22, or m2 alone."""
+    return "m2" if scene.natural is None else "T"
+
+
+def changed_phases(before: Solution, after: Solution) -> str:
     """Say which phases there are instead of those before; "" if the same."""
-    if before == after:
+    if before.sheets == after.sheets:
         return ""
-    return f"phases: {phase_words(after)}; at the point before: {phase_words(before)}"
+    old, new = (phase_words(one.sheets, switch_of(one.scene)) for one in (before, after))
+    return f"phases: {new}; at the point before: {old}"
 
 
 MIXTURE = Arcs((0,), np.empty(0))  # from end to end

@@ -61,7 +61,8 @@ def _phases(s: Mapping[str, Any]) -> list[str]:
     if s["phases"]:
         at = ", ".join(f"{point:.6g}" for point in s["switch_points"])
         where = f"; switches at s = {at}" if at else " all along"
-        lines.append(f"  phases                   {phase_words(s['phases'])}{where}")
+        words = phase_words(s["phases"], s.get("switch", "m2"))
+        lines.append(f"  phases                   {words}{where}")
     return lines
 
 

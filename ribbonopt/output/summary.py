@@ -10,6 +10,7 @@ import casadi as ca
 import numpy as np
 
 from ribbonopt.accuracy.estimate import estimate_error
+from ribbonopt.checks.arcs import switch_of
 from ribbonopt.checks.topology import count_half_twists
 from ribbonopt.checks.validity import warnings_of
 from ribbonopt.checks.zero_moment import lacks_linearisation
@@ -52,6 +53,7 @@ def summarize(solution: Solution) -> dict[str, Any]:
         **_recorded(solution),
         "switch_points": solution.switch_points.tolist(),
         "phases": list(solution.sheets),
+        "switch": switch_of(scene),
         "half_twists": count_half_twists(solution),
         "unknowns": dense.blocks.layout.unknowns,
         "intervals": dense.blocks.layout.element_count,

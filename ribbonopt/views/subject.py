@@ -7,6 +7,7 @@ from functools import cached_property
 
 from ribbonopt.checks.topology import closure
 from ribbonopt.errors import ViewError
+from ribbonopt.mechanics.laws.catalogue import curvature_across
 from ribbonopt.scene.units import Units
 from ribbonopt.solution.solution import Solution
 
@@ -35,6 +36,8 @@ class Subject:
         Of all of it.
     half_width : float or None
         Of the ribbon, where the scene says it.
+    across : float or None
+        K22 of natural strains, on which the strains that a sheet allows depend; None if it varies.
     """
 
     name: str
@@ -44,6 +47,7 @@ class Subject:
     units: Units = field(default_factory=Units)
     half_width: float | None = None
     count: int = 1
+    across: float | None = 0.0
 
     @property
     def pieces(self) -> tuple[Piece, ...]:
@@ -101,4 +105,5 @@ def subject_of(solution: Solution, complete: bool) -> Subject:
         units=solution.units,
         half_width=None if ribbon is None else ribbon.width / 2,
         count=count,
+        across=curvature_across(solution.scene),
     )

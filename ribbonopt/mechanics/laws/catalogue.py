@@ -110,6 +110,22 @@ def fields_of(scene: Scene) -> tuple[Field, ...]:
     return tuple(Field(name, value) for name, value in named.items() if value is not None)
 
 
+def curvature_across(scene: Scene) -> float | None:
+    """Return K22 = k22 + nu k11 of natural strains, 0 without; None where it is not a number.
+
+    In the units of the scene.
+    """
+    natural = scene.natural
+    if natural is None:
+        return 0.0
+    k11, k22 = natural.curvature, natural.across
+    ribbon = 0.0 if scene.ribbon is None else scene.ribbon.poisson_ratio
+    ratio = ribbon if natural.poisson_ratio is None else natural.poisson_ratio
+    if not isinstance(k22, float) or not (ratio == 0 or isinstance(k11, float)):
+        return None
+    return k22 + (ratio * k11 if isinstance(k11, float) else 0.0)
+
+
 def capabilities(scene: Scene) -> ConstitutiveLaw:
     """Return the relation of a scene with symbols of its own, to be asked what it has."""
     return relation_of(scene, ca.SX.sym, ca.SX.sym("s"))

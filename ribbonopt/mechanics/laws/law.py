@@ -111,7 +111,10 @@ class ConstitutiveLaw(ABC):
         return None
 
     def sheet_slope(self, stress: Stress, u: ca.SX) -> ca.SX | None:
-        """Return what is at most 1 where one sheet allows strains u (3,); None where |eta| is."""
+        """Return what is at most 1 in size where a sheet allows strains u (3,); None where eta is.
+
+        Its sign is that of the sheet.
+        """
         return None
 
     def naturally(self, natural: NaturalStrains) -> ConstitutiveLaw | None:

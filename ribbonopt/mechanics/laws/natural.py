@@ -96,17 +96,18 @@ class NaturalStrains:
         return self.K11 * u2 + 2 * self.K12 * u3
 
     def slope(self, u2: ca.SX, u3: ca.SX) -> ca.SX:
-        """Return a number that is at most 1 where u3^2 <= u2^2 + K22 u2 and u2^2 + u3^2 >= K22 u2.
+        """Return what is at most 1 in size where u3^2 <= u2^2 + K22 u2 and u2^2 + u3^2 >= K22 u2.
 
-        |eta| where K22 = 0. The first says that T has the sign of its sheet, the second keeps out
-        of the disc on which the convexified energy is affine.
+        |eta| where K22 = 0, with the sign of u2. The first says that T has the sign of its sheet,
+        the second keeps out of the disc on which the convexified energy is affine.
         """
         half = self.K22 / 2
         past = norm(half, u3) / (ca.fabs(u2 + half) + TINY)
         inside = ca.fabs(half) / (norm(u2 - half, u3) + TINY)
         # What is zero has no slope: u2 = u3 = 0 is a strip that is curved across alone.
         some = norm(u2, u3) > TINY
-        return ca.if_else(some, ca.fmax(past, inside), 0)
+        side = ca.if_else(u2 + half < 0, -1, 1)
+        return ca.if_else(some, side * ca.fmax(past, inside), 0)
 
 
 def stable_sum(sigma: ca.SX, D: ca.SX, c: ca.SX, R: ca.SX) -> ca.SX:

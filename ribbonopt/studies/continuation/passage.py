@@ -136,7 +136,7 @@ def _lost(solution: Solution, expected: Array) -> list[Change]:
 
 def _told(solution: Solution, changes: list[Change]) -> str:
     """Say that no equilibrium was found behind changes of phases, and what to do."""
-    what = "; ".join(dict.fromkeys(change.told(solution.sheets) for change in changes))
+    what = "; ".join(dict.fromkeys(change.told(solution) for change in changes))
     return (
         f"{what}, and no equilibrium was found in other phases: a smooth law needs none "
         "(law: {type: variational, delta: 0.01}, or regularized)"
