@@ -38,7 +38,10 @@ def passage(
     """
     if not point.solution.sheets:
         kind = one_sign(point.solution)
-        if not kind or not trial.converged or one_sign(trial.solution) == kind:
+        if not kind or (trial.converged and one_sign(trial.solution) == kind):
+            return None
+        # A trial that did not converge may have stumbled over the leap of a law without phases.
+        if not (trial.converged or equations.prepared.search(point.solution.posed).needs_phases):
             return None
         point, trial = _on_sheet(equations, point, trial, kind)
     if not trial.converged:
