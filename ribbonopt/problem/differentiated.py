@@ -28,7 +28,7 @@ def differentiated(ribbon: Ribbon, posed: Posed) -> BoundaryValueProblem:
         g = ca.substitute(moment.equations, moment.unknowns, u)
     else:
         g = u - unknowns.section.u[free]
-    rates = ribbon.rates(unknowns.section, law.whole(u))
+    rates = unknowns.rates(law.whole(u))
     change = ca.jtimes(g, unknowns.x, rates) + ca.jacobian(g, ribbon.position)
     slope = _solved(ca.jacobian(g, u), -change)
 

@@ -6,10 +6,10 @@ the same structure is another theta, not another problem.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from functools import cached_property
-from typing import Any, TypeVar
+from typing import TYPE_CHECKING, Any, TypeVar
 
 import casadi as ca
 
@@ -19,8 +19,10 @@ from ribbonopt.mechanics.laws.law import ConstitutiveLaw, Stress
 from ribbonopt.mechanics.loads.load import Load
 from ribbonopt.mechanics.model import RodModel, full_model, least_model
 from ribbonopt.mechanics.section import Section
-
 from .posed import Posed
+
+if TYPE_CHECKING:
+    from ribbonopt.mechanics.stations import Station
 
 T = TypeVar("T")
 
@@ -41,6 +43,8 @@ class Ribbon:
         Arclength s, on which laws and loads may depend.
     idle : set of str
         Conditions that hold by themselves, since the model cannot do otherwise.
+    stations : tuple of Station
+        What acts, and holds, at single places between the ends.
     """
 
     model: RodModel
@@ -50,6 +54,8 @@ class Ribbon:
     theta: Mapping[str, ca.SX]
     position: ca.SX
     idle: frozenset[str] = frozenset()
+    stations: tuple[Station, ...] = ()
+    _passed: ca.SX | None = None
     _kept: dict[Callable[..., Any], Any] = field(default_factory=dict, repr=False)
 
     @classmethod
@@ -58,14 +64,32 @@ class Ribbon:
         theta, position = {name: ca.SX.sym(name) for name in posed.theta}, ca.SX.sym("s")
         law = relation_of(posed.scene, theta.__getitem__, position)
         model = _model_of(posed, theta)
-        return cls(model, law, posed.conditions, posed.loads, theta, position)
+        parts = posed.conditions, posed.loads, theta, position
+        return cls(model, law, *parts, stations=posed.stations)
 
     @property
     def least(self) -> Ribbon:
         """The same with the fewest unknowns."""
         if not self.model.redundant:
             return self
-        return replace(self, model=least_model(self.loads, self.theta.__getitem__), _kept={})
+        model = least_model(self.loads, self.theta.__getitem__, self.stations)
+        return replace(self, model=model, _kept={})
+
+    @property
+    def marked(self) -> Ribbon:
+        """The same with symbols for which stations are passed, to write equations of phases with.
+
+        Itself if it has no stations.
+        """
+        if not self.stations:
+            return self
+        passed = ca.SX.sym("passed", len(self.stations))
+        return replace(self, model=self.model.with_passed(passed), _passed=passed, _kept={})
+
+    @property
+    def passed(self) -> ca.SX:
+        """The symbols of `marked`, one for each station: 1 behind it, 0 before."""
+        return ca.SX(0, 1) if self._passed is None else self._passed
 
     def kept(self, make: Callable[[Ribbon], T]) -> T:
         """Return what is made of these mechanics, such as functions: made once, kept with them."""
@@ -99,7 +123,8 @@ class Ribbon:
     @property
     def conserved(self) -> tuple[str, ...]:
         """Outputs that stay constant: H of a uniform law with an energy, without loads."""
-        return ("H",) if self.law.variational and self.uniform and not self.loads else ()
+        loaded = self.loads or self.stations
+        return ("H",) if self.law.variational and self.uniform and not loaded else ()
 
     @property
     def states(self) -> tuple[str, ...]:
@@ -118,22 +143,29 @@ class Ribbon:
         """
         s = self.position if s is None else s
         count = len(self.model.states)
-        r, d1, d2, d3, n, m, own, u = self.section_function(x, c, self.parameters, s)
-        return CrossSection(self.model, x[:count], Section(r, d1, d2, d3, n, m, s, own), u)
+        more = (self._passed,) if self._passed is not None else ()
+        r, d1, d2, d3, n, m, own, u, *stepped = self.section_function(
+            x, c, self.parameters, s, *more
+        )
+        rod = Section(r, d1, d2, d3, n, m, s, own, *stepped)
+        return CrossSection(self.model, x[:count], rod, u)
 
     @cached_property
     def section_function(self) -> ca.Function:
         """Function (x, c, theta, s) of r, d1, d2, d3, n, m, own states and strains u (3,).
 
-        Calling it beats rebuilding it.
+        With stations also of the force (3,) of what acts up to s. Calling it beats rebuilding it.
         """
         x, c = ca.SX.sym("x", len(self.states)), ca.SX.sym("c", len(self.constants))
         count = len(self.model.states)
         rod = self.model.section(x[:count], c, self.position, self.reference, x[count:])
         u = self.law.strain(rod.stress)
         vectors = [rod.r, rod.d1, rod.d2, rod.d3, rod.n, rod.m, rod.own, u]
+        vectors += [] if rod.stepped is None else [rod.stepped]
         outputs = [ca.densify(vector) for vector in vectors]
-        return ca.Function("section", [x, c, self.parameters, self.position], outputs)
+        more = [] if self._passed is None else [self._passed]
+        inputs = [x, c, self.parameters, self.position, *more]
+        return ca.Function("section", inputs, outputs)
 
     def rates(self, section: CrossSection, u: ca.SX) -> ca.SX:
         """Return dx/ds of the states of model and law for strains u (3,)."""
@@ -141,10 +173,17 @@ class Ribbon:
         return ca.vertcat(model, self.law.rates(section.rod.stress, u))
 
     def residuals(
-        self, start: ca.SX, end: ca.SX, c: ca.SX, *, kinematic_only: bool = False
+        self,
+        start: ca.SX,
+        end: ca.SX,
+        c: ca.SX,
+        inner: Sequence[ca.SX] = (),
+        *,
+        kinematic_only: bool = False,
     ) -> dict[str, ca.SX]:
         """All conditions by name, those that give states of model and law their meaning included.
 
+        `inner` are the states at the stations, if what acts and holds there is to be imposed;
         `kinematic_only` leaves out what is prescribed of loads.
         """
         context = self.context(start, end, c)
@@ -153,7 +192,9 @@ class Ribbon:
         meaning = {f"start: {name}": value for name, value in own.items()}
         laws = [self._of_law(name, section) for name, section in sections.items()]
         chosen = [c for c in self.conditions if c.kinematic or not kinematic_only]
-        found = _merge(meaning, *laws, *(condition.residuals(context) for condition in chosen))
+        at_stations = self._at_stations(inner, c)
+        ends = (condition.residuals(context) for condition in chosen)
+        found = _merge(meaning, *laws, *at_stations, *ends)
         return {name: value for name, value in found.items() if name not in self.idle}
 
     def _of_law(self, end: EndName, section: CrossSection) -> dict[str, ca.SX]:
@@ -162,18 +203,36 @@ class Ribbon:
         found = self.law.end_conditions(end, rod.stress).items()
         return {f"{end}: {name}": ca.substitute(v, self.position, rod.s) for name, v in found}
 
-    def verdicts(self, start: ca.SX, end: ca.SX, c: ca.SX) -> dict[str, ca.SX]:
-        """Return what to verify on a solution, by name."""
+    def _at_stations(self, inner: Sequence[ca.SX], c: ca.SX) -> list[dict[str, ca.SX]]:
+        """Return the conditions at the stations, whose states are given."""
+        theta, found = self.theta.__getitem__, []
+        unknown = dict(zip(self.constants, ca.vertsplit(c), strict=True)) if inner else {}
+
+        def symbol(name: str) -> ca.SX:
+            return unknown.get(name, ca.SX(0))  # in a plane some of it is not there
+
+        for x, station in zip(inner, self.stations if inner else (), strict=True):
+            rod = self.section(x, c, station.place(theta)).rod
+            found += [action.residuals(rod, theta, symbol) for action in station.actions]
+        return found
+
+    def verdicts(
+        self, start: ca.SX, end: ca.SX, c: ca.SX, inner: Sequence[ca.SX] = ()
+    ) -> dict[str, ca.SX]:
+        """Return what to verify on a solution, by name; `inner` as in `residuals`."""
         context = self.context(start, end, c)
-        return _merge(*(cond.verdicts(context) for cond in self.conditions))
+        ends = (condition.verdicts(context) for condition in self.conditions)
+        return _merge(*ends, *self._at_stations(inner, c))
 
     @cached_property
     def verdicts_function(self) -> tuple[tuple[str, ...], ca.Function]:
-        """Names, and function (start, end, c, theta) of what to verify, built once."""
+        """Names, and function (start, end, c, theta, states at stations) of what to verify."""
         start, end = (ca.SX.sym(name, len(self.states)) for name in ("start", "end"))
+        inner = ca.SX.sym("inner", len(self.states), len(self.stations))
         c = ca.SX.sym("c", len(self.constants))
-        verdicts = self.verdicts(start, end, c)
+        verdicts = self.verdicts(start, end, c, ca.horzsplit(inner) if self.stations else ())
         inputs = [start, end, c, self.parameters]
+        inputs += [ca.vec(inner)] if self.stations else []
         return tuple(verdicts), ca.Function("verdicts", inputs, [ca.vertcat(*verdicts.values())])
 
     def margins_function(self, kind: int) -> tuple[tuple[str, ...], int, ca.Function]:
@@ -201,11 +260,12 @@ class Ribbon:
 def _model_of(posed: Posed, theta: Mapping[str, ca.SX]) -> RodModel:
     """Return the model that a scene names by `states`."""
     states, parts = posed.scene.states, (posed.loads, theta.__getitem__)
+    stations = posed.stations
     if states == "planar":
         from ribbonopt.mechanics.planar import Plane, planar_model  # few scenes are in a plane
 
-        return planar_model(*parts, Plane.of(posed.start[1]))
-    return full_model(*parts) if states == "full" else least_model(*parts)
+        return planar_model(*parts, Plane.of(posed.start[1]), stations)
+    return full_model(*parts, stations) if states == "full" else least_model(*parts, stations)
 
 
 def _merge(*parts: Mapping[str, ca.SX]) -> dict[str, ca.SX]:

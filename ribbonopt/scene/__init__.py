@@ -48,6 +48,7 @@ from .model import (
     SolutionGuess,
     StrainGuess,
 )
+from .stations import InteriorSupport, PointLoad
 from .supports import Support, SupportName
 from .yamlio import (
     dump_scene,
@@ -74,6 +75,7 @@ __all__ = [
     "Helix",
     "HelixGuess",
     "Homotopy",
+    "InteriorSupport",
     "Ipopt",
     "Kirchhoff",
     "LabVector",
@@ -85,6 +87,7 @@ __all__ = [
     "Newton",
     "OwnLaw",
     "OwnLoad",
+    "PointLoad",
     "Quaternion",
     "Reference",
     "Regularized",

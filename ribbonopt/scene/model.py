@@ -16,6 +16,7 @@ from .ends import Boundary, HalfTwists, Loop, Value
 from .laws import Law
 from .loads import Loads
 from .schema.bounds import Bounds
+from .stations import InteriorSupport
 
 Numbers3 = tuple[float, float, float]
 Intervals = Annotated[int, Bounds(ge=1, most=limits.INTERVALS)]
@@ -205,3 +206,4 @@ class Scene:
     record: dict[str, str] = field(default_factory=dict)
     continuation: ContinuationStage | tuple[ContinuationStage, ...] | None = None
     loads: Loads = field(default_factory=Loads)
+    supports: tuple[InteriorSupport, ...] = ()

@@ -198,7 +198,7 @@ class Solution:
         ]
         if not same or points[0] != points[1]:
             return None
-        rod = len(own.constants) - (len(mine.phases) - 1) - mine.slack
+        rod = len(own.constants) - mine.lengths - mine.slack
         return self.trajectory.approximate(fraction), own.constants[:rod]
 
     def fields(self, fraction: Array) -> RodFields:

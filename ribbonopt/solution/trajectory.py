@@ -74,12 +74,22 @@ class Trajectory:
         phase, local = self._local(fraction)
         v = np.empty((len(fraction), self.dense.blocks.layout.nv))
         nx = self.dense.blocks.layout.nx
+        v[:, :nx] = self.states(fraction)
         for i in range(len(self.problem.phases)):
             rows = phase == i
             if rows.any():
-                v[rows, :nx] = self.dense.states(i, local[rows])
                 v[rows, nx:] = self.dense.algebraic(i, local[rows])
         return self._named(v, fraction, phase)
+
+    def states(self, fraction: Array) -> Array:
+        """States (k, nx) at fractions."""
+        phase, local = self._local(fraction)
+        x = np.empty((len(fraction), self.dense.blocks.layout.nx))
+        for i in range(len(self.problem.phases)):
+            rows = phase == i
+            if rows.any():
+                x[rows] = self.dense.states(i, local[rows])
+        return x
 
     @cached_property
     def stages(self) -> tuple[Array, Array, Array, Phases]:
