@@ -41,7 +41,9 @@ class Arcs:
 def phase_words(kinds: tuple[int, ...]) -> str:
     """Return the kinds of phases in words."""
     words = {1: "m2 > 0", -1: "m2 < 0", 0: "m2 = 0 (mixture)"}
-    return ", ".join(words[kind] for kind in kinds) or "one, without a sign change"
+    # At a single place where something acts or holds two of one kind meet.
+    turns = (kind for i, kind in enumerate(kinds) if not i or kind != kinds[i - 1])
+    return ", ".join(words[kind] for kind in turns) or "one, without a sign change"
 
 
 def changed_phases(before: tuple[int, ...], after: tuple[int, ...]) -> str:
@@ -52,6 +54,21 @@ def changed_phases(before: tuple[int, ...], after: tuple[int, ...]) -> str:
 
 
 MIXTURE = Arcs((0,), np.empty(0))  # from end to end
+
+
+def arcs_of(solution: Solution) -> Arcs:
+    """Return the arcs of a solution in phases; those that meet at a single place count as one."""
+    turns = solution.trajectory.turns
+    kinds = (solution.sheets[0], *(solution.sheets[i] for i in turns))
+    return Arcs(kinds, solution.trajectory.ends[list(turns)])
+
+
+def cut_at(arcs: Arcs, places: Array) -> Arcs:
+    """Return arcs that also end at fractions (k,) of the length, where something acts or holds."""
+    ends = np.sort(np.concatenate([arcs.switches, places]))
+    middles = (np.append(0.0, ends) + np.append(ends, 1.0)) / 2
+    kinds = np.array(arcs.kinds)[np.searchsorted(arcs.switches, middles)]
+    return Arcs(tuple(kinds.tolist()), ends)
 
 
 def is_mixture(guess: Guess) -> bool:

@@ -85,7 +85,8 @@ def gauss_stages(solution: Solution, ribbon: Ribbon) -> GaussStages:
         places = _places(widths, degree)
         along = trajectory.outputs(places)
     lengths = np.array(trajectory.dense.blocks.layout.elements)
-    firsts = parts * np.cumsum(lengths)[:-1]
+    turns = np.array(trajectory.turns, dtype=int)
+    firsts = parts * np.cumsum(lengths)[turns - 1]
     points = {k: v[[0, *(firsts // parts), -1]] for k, v in trajectory.at_nodes.items()}
     # Packed together, in order, for quaternions that do not change their sign.
     at = np.concatenate([[0], degree * firsts, [len(places)]])

@@ -52,6 +52,11 @@ class Action(ABC):
         """All its numbers by parameter name."""
         return {f"{self.path}.at": self.at, **self.loads}
 
+    @property
+    def leaps(self) -> bool:
+        """Whether the moment leaps there, and with it the strains."""
+        return False
+
     @abstractmethod
     def force(self, theta: Theta, unknown: Unknown) -> ca.SX:
         """Force (3,) on the ribbon."""
@@ -86,6 +91,10 @@ class DeadPoint(Action):
     def without_potential(self) -> str:  # type: ignore[override]
         """A couple that does not turn with the ribbon has no potential in space."""
         return "a moment that keeps its direction has no potential" if self.couples else ""
+
+    @property
+    def leaps(self) -> bool:
+        return bool(self.couples)
 
     @property
     def loads(self) -> dict[str, float]:
@@ -134,6 +143,10 @@ class FollowingPoint(Action):
         return tuple(f"{kind}{axis} of {self.path}" for kind in kinds for axis in AXES)
 
     @property
+    def leaps(self) -> bool:
+        return bool(self.couples)
+
+    @property
     def loads(self) -> dict[str, float]:
         found = {f"{self.path}.force.{d}": value for d, value in self.forces.items()}
         return found | {f"{self.path}.moment.{d}": v for d, v in self.couples.items()}
@@ -145,7 +158,7 @@ class FollowingPoint(Action):
         return self._vector("m", unknown) if self.couples else ca.SX.zeros(3)
 
     def residuals(self, rod: Section, theta: Theta, unknown: Unknown) -> dict[str, ca.SX]:
-        result = {}
+        result: dict[str, ca.SX] = {}
         for kind, name, given in (("n", "force", self.forces), ("m", "moment", self.couples)):
             if given:
                 parts = [theta(f"{self.path}.{name}.{d}") * getattr(rod, d) for d in given]

@@ -92,7 +92,7 @@ class Stepped(Balance):
         return np.vstack([states, rest]), np.vstack([constants, self._turned(c[count:])])
 
     def _turned(self, c: Array) -> Array:
-        """Changes (nc, 6) of the unknown constants by unit translations and turns."""
+        """Return the changes (nc, 6) of the unknown constants by unit translations and turns."""
         result = np.zeros((len(c), 6))
         whose = {name: i for i, name in enumerate(self.unknown)}
         for name, row in whose.items():

@@ -77,9 +77,13 @@ def minimum(ribbon: Ribbon) -> BoundaryValueProblem:
     points = ca.SX.sym("start", x.numel()), ca.SX.sym("end", x.numel())
     costate = ca.SX.sym("costate", x.numel())
     at_start = ca.substitute(beyond, ribbon.position, start)
-    conditions = ribbon.residuals(*(p[:count] for p in points), loads, kinematic_only=True)
+    first, last = (point[:count] for point in points)
+    conditions = ribbon.residuals(first, last, loads, kinematic_only=True)
     conditions |= held.conditions(*points)
-    found = *_loads(points[0], costate, at_start + held.force(costate), ribbon), *held.reactions(costate)
+    found = (
+        *_loads(points[0], costate, at_start + held.force(costate), ribbon),
+        *held.reactions(costate),
+    )
     return BoundaryValueProblem(
         position=ribbon.position,
         state=x,

@@ -109,7 +109,8 @@ def equilibrium(
     first, *between, last = (point[:count] for point in points)
     conditions = ribbon.residuals(first, last, unknowns.c, between)
     for name, expression in (start_conditions or {}).items():
-        here = [x, ribbon.position], [points[0], start]
+        passed = unknowns.marked.passed
+        here = [x, ribbon.position, passed], [points[0], start, ca.SX.zeros(passed.shape)]
         (conditions[name],) = ca.substitute([expression], *here)
     local, stress = local_stress(ribbon.law)
     estimated = ca.vertcat(stress.own, empty if estimate is None else estimate(stress))

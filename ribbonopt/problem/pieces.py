@@ -7,6 +7,7 @@ Equations are written once, with a symbol for each station that says whether it 
 from __future__ import annotations
 
 from dataclasses import fields, replace
+from itertools import pairwise
 
 import casadi as ca
 
@@ -24,7 +25,7 @@ def between_stations(phase: Phase, marked: Ribbon) -> tuple[Phase, ...]:
         return (phase,)
     start, end = marked.interval
     places = [start, *(st.place(marked.theta.__getitem__) for st in marked.stations), end]
-    lengths = [b - a for a, b in zip(places[:-1], places[1:], strict=True)]
+    lengths = [b - a for a, b in pairwise(places)]
     return tuple(
         replace(passing(phase, marked, count), length=length)
         for count, length in enumerate(lengths)

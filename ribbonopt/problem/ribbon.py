@@ -19,6 +19,7 @@ from ribbonopt.mechanics.laws.law import ConstitutiveLaw, Stress
 from ribbonopt.mechanics.loads.load import Load
 from ribbonopt.mechanics.model import RodModel, full_model, least_model
 from ribbonopt.mechanics.section import Section
+
 from .posed import Posed
 
 if TYPE_CHECKING:

@@ -40,7 +40,9 @@ def switched(ribbon: Ribbon, kinds: Kinds, *, free: bool = False) -> BoundaryVal
     lengths = ca.SX.sym("length", len(kinds) - 1)
     each = [*ca.vertsplit(lengths), end - start - ca.sum1(lengths)]
     phases = tuple(
-        passing(_phase(ribbon, unknowns, kind, length), unknowns.marked, sum(j <= i for j in stations))
+        passing(
+            _phase(ribbon, unknowns, kind, length), unknowns.marked, sum(j <= i for j in stations)
+        )
         for i, (kind, length) in enumerate(zip(kinds, each, strict=True))
     )
     points = tuple(ca.SX.sym(f"point{i}", unknowns.x.numel()) for i in range(len(kinds) + 1))
@@ -56,13 +58,10 @@ def switched(ribbon: Ribbon, kinds: Kinds, *, free: bool = False) -> BoundaryVal
             place = ribbon.stations[stations.index(i)].place(ribbon.theta.__getitem__)
             conditions[f"station {i}: its place"] = at - place
             continue
-        here = [unknowns.x, ribbon.position], [points[i], at]
         marks = ca.SX(ca.DM([float(j <= i) for j in stations]))
+        here = [unknowns.x, ribbon.position, unknowns.marked.passed], [points[i], at, marks]
         for name, value in ribbon.law.entering(merged, met, unknowns.stress).items():
-            (found,) = ca.substitute([value], *here)
-            if stations:
-                (found,) = ca.substitute([found], [unknowns.marked.passed], [marks])
-            conditions[f"switch {i}: {name}"] = found
+            (conditions[f"switch {i}: {name}"],) = ca.substitute([value], *here)
     slack = ca.SX(0, 1)
     if len(kinds) == 1 and not free:
         zeros = ribbon.law.zeros(kinds[0], unknowns.stress)

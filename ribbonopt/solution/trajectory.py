@@ -45,6 +45,12 @@ class Trajectory:
         ends[-1] = 1.0
         return ends
 
+    @property
+    def turns(self) -> tuple[int, ...]:
+        """Which of `ends` are inside and no single places where something acts or holds."""
+        stations = self.problem.stations
+        return tuple(i for i in range(1, len(self.problem.phases)) if i not in stations)
+
     @cached_property
     def nodes(self) -> Array:
         """Fractions (N + 1,) of all nodes."""
