@@ -13,6 +13,7 @@ from dataclasses import dataclass
 import casadi as ca
 import numpy as np
 
+from ribbonopt.arrays import Array
 from ribbonopt.mechanics.section import Section
 from ribbonopt.mechanics.stations import AXES, Held
 
@@ -74,6 +75,16 @@ class HeldBetween:
         """Return the reactions, from the costates of all states at the start."""
         first = len(self.ribbon.states)
         return [costate[first + i] for i in range(len(self.held))]
+
+    def packed(self, fraction: Array, r: Array, places: Array, held: Array) -> Array:
+        """Return the states (k, ...) of positions r (k, 3) at fractions (k,) of the length.
+
+        `held` (h, 3) are the positions at the fractions `places` (h,), one for each component.
+        """
+        behind = fraction[:, None] >= places
+        own = np.where(behind, held[range(len(self.axes)), self.axes], r[:, self.axes])
+        arms = np.where(behind[..., None], r[:, None] - held, 0.0)
+        return np.hstack([own, arms.reshape(len(r), -1)])
 
     def completed(self, x: ca.SX, reactions: ca.SX) -> ca.SX | None:
         """Return the states with the moments of all reactions; None if there are none."""
