@@ -12,6 +12,8 @@ import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 from scipy.interpolate import CubicSpline
+from scipy.optimize import brentq
+from scipy.special import jv, yv
 from test_mixture import clamp, draw, ends, state
 
 from ribbonopt.accuracy.estimate import estimate_error
@@ -197,3 +199,20 @@ def test_the_law_declares_what_it_does_without_a_width(strip: Scene) -> None:
         without = capabilities(replace(strip, law=law, width=None))
         for name in ("kinked", "smooth", "linear_at_zero", "bounds_eta", "developable"):
             assert getattr(with_width, name) == getattr(without, name), name
+
+
+def test_a_tapered_column_buckles_at_the_zero_of_bessel_functions(configs: Path) -> None:
+    # w y'' + P y = 0 between hinges: y = sqrt(w) times J1 and Y1 of 2 sqrt(P w) / 0.7.
+    def determinant(P: float) -> float:
+        a, b = (2 * np.sqrt(P * w) / 0.7 for w in (1.0, 0.3))
+        return float(jv(1, a) * yv(1, b) - jv(1, b) * yv(1, a))
+
+    critical = brentq(determinant, 4, 8, xtol=1e-13)
+    column = load_scene(configs / "column_pinned.yaml")
+    stage = ContinuationStage("parameters.P", from_=5.5, to=6.5, largest=0.5)
+    scene = replace(column, width="1 - 0.7*s", parameters={"P": 5.5}, continuation=stage)
+    points = list(Continuation(scene))
+    counts = {p.row["parameters.P"]: p.row["negative"] for p in points if p.kind == "point"}
+    assert counts[5.5] == 0 and counts[6.5] == 1
+    (found,) = (p for p in points if p.kind == "branch point")
+    assert found.row["parameters.P"] == pytest.approx(critical, abs=1e-10)
