@@ -28,7 +28,8 @@ WRONG = [
     ("supports: [{at: 2, position: {x: 0}}]", r"supports\.0\.at.*outside the ribbon"),
     ("supports: [{at: 0.5, position: {d1: 0}}]", r"supports\.0\.position\.d1.*unknown key"),
     (
-        "supports: [{at: 0.5, position: {x: 0}}]\nloads: {points: [{at: 0.5000001, force: {x: 1}}]}",
+        "supports: [{at: 0.5, position: {x: 0}}]\n"
+        "loads: {points: [{at: 0.5000001, force: {x: 1}}]}",
         "all but the place of",
     ),
 ]
