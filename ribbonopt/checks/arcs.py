@@ -18,6 +18,7 @@ from ribbonopt.guess.balanced import Balanced
 from ribbonopt.guess.named import ShapeGuess
 from ribbonopt.mechanics.outputs import sheet_slopes
 from ribbonopt.problem import Ribbon
+from ribbonopt.problem.imposed import margins_function
 from ribbonopt.scene import Scene
 from ribbonopt.solution.solution import Solution
 from ribbonopt.transcription.buffered import Mapped
@@ -39,26 +40,22 @@ class Arcs:
     switches: Array
 
 
-def phase_words(kinds: tuple[int, ...], switch: str = "m2") -> str:
-    """Return the kinds of phases in words; `switch` is what changes sign from one to the next."""
-    words = {1: f"{switch} > 0", -1: f"{switch} < 0", 0: f"{switch} = 0 (mixture)"}
-    return ", ".join(words[kind] for kind in kinds) or "one, without a sign change"
-
-
-def switch_of(scene: Scene) -> str:
-    """Return what changes sign where phases of a scene meet: T = m2 + K11 + K22, or m2 alone."""
-    return "m2" if scene.natural is None else "T"
-
-
-def changed_phases(before: Solution, after: Solution) -> str:
-    """Say which phases there are instead of those before; "" if the same."""
-    if before.sheets == after.sheets:
-        return ""
-    old, new = (phase_words(one.sheets, switch_of(one.scene)) for one in (before, after))
-    return f"phases: {new}; at the point before: {old}"
-
-
 MIXTURE = Arcs((0,), np.empty(0))  # from end to end
+
+
+def arcs_of(solution: Solution) -> Arcs:
+    """Return the arcs of a solution in phases; those that meet at a single place count as one."""
+    turns = solution.trajectory.turns
+    kinds = (solution.sheets[0], *(solution.sheets[i] for i in turns))
+    return Arcs(kinds, solution.trajectory.ends[list(turns)])
+
+
+def cut_at(arcs: Arcs, places: Array) -> Arcs:
+    """Return arcs that also end at fractions (k,) of the length, where something acts or holds."""
+    ends = np.sort(np.concatenate([arcs.switches, places]))
+    middles = (np.append(0.0, ends) + np.append(ends, 1.0)) / 2
+    kinds = np.array(arcs.kinds)[np.searchsorted(arcs.switches, middles)]
+    return Arcs(tuple(kinds.tolist()), ends)
 
 
 def is_mixture(guess: Guess) -> bool:
@@ -237,7 +234,7 @@ def phase_problems(
 
 def _margins(ribbon: Ribbon) -> dict[int, tuple[tuple[str, ...], int, Mapped]]:
     """Names of the margins of every kind of phase, how many are none of zeros, and all values."""
-    found = {kind: ribbon.margins_function(kind) for kind in (-1, 0, 1)}
+    found = {kind: margins_function(ribbon, kind) for kind in (-1, 0, 1)}
     return {
         kind: (names, count, Mapped(function)) for kind, (names, count, function) in found.items()
     }

@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from ribbonopt.checks.arcs import phase_words
+from ribbonopt.checks.phase_words import phase_words
 
 NOTHING = 1e-50  # what guards the laws where m = 0 leaves of zero
 SMALL = 1e-3  # largest component of what is written with powers of ten

@@ -10,7 +10,7 @@ import casadi as ca
 import numpy as np
 
 from ribbonopt.accuracy.estimate import estimate_error
-from ribbonopt.checks.arcs import switch_of
+from ribbonopt.checks.phase_words import switch_of
 from ribbonopt.checks.topology import count_half_twists
 from ribbonopt.checks.validity import warnings_of
 from ribbonopt.checks.zero_moment import lacks_linearisation

@@ -18,6 +18,7 @@ from .laws import Law
 from .loads import Loads
 from .natural import Natural
 from .schema.bounds import Bounds
+from .stations import InteriorSupport
 
 Numbers3 = tuple[float, float, float]
 Intervals = Annotated[int, Bounds(ge=1, most=limits.INTERVALS)]
@@ -208,5 +209,6 @@ class Scene:
     record: dict[str, str] = field(default_factory=dict)
     continuation: ContinuationStage | tuple[ContinuationStage, ...] | None = None
     loads: Loads = field(default_factory=Loads)
+    supports: tuple[InteriorSupport, ...] = ()
     width: Along | None = None
     natural: Natural | None = None

@@ -9,7 +9,7 @@ import numpy as np
 
 from ribbonopt.accuracy.estimate import relative_error
 from ribbonopt.attempt.attempt import verified
-from ribbonopt.checks.arcs import changed_phases
+from ribbonopt.checks.phase_words import changed_phases
 from ribbonopt.solution.solution import Solution
 from ribbonopt.solvers import Status
 from ribbonopt.studies.spare import SPARE

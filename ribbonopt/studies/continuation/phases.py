@@ -16,7 +16,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ribbonopt.arrays import Array
-from ribbonopt.checks.arcs import NEGLIGIBLE, phase_words, switch_of
+from ribbonopt.checks.arcs import NEGLIGIBLE
+from ribbonopt.checks.phase_words import phase_words, switch_of
 from ribbonopt.mechanics.outputs import SLOPE, sheet_slopes
 from ribbonopt.solution.solution import Solution
 
