@@ -102,8 +102,8 @@ def test_fold_of_a_tape_spring_ends_at_the_known_moment() -> None:
     assert found.sheets == (1, -1, 1)
     ribbon = found.scene.ribbon
     assert ribbon is not None
-    rigidity = ribbon.youngs_modulus * ribbon.thickness**3 / (12 * (1 - ribbon.poisson_ratio**2))
-    moment = -(1 + ribbon.poisson_ratio) * rigidity * ribbon.width * 65
+    rigidity = rigidity_of(found)
+    moment = -(1 + ribbon.poisson_ratio) * rigidity * 65
     np.testing.assert_allclose(found.sample(found.switch_points, "m2"), moment, rtol=1e-9)
     first, last = found.switch_points
     for s in (0.5 * first, first - 1e-9, last + 1e-9):
@@ -113,7 +113,7 @@ def test_fold_of_a_tape_spring_ends_at_the_known_moment() -> None:
     # In the fold the ribbon is a planar elastica of the stiffness D w, about its natural curvature.
     m2, u2 = (found.sample(0.1, name) for name in ("m2", "u2"))
     K11 = ribbon.poisson_ratio * 65
-    assert m2 == pytest.approx(rigidity * ribbon.width * (u2 - K11), rel=1e-9)
+    assert m2 == pytest.approx(rigidity * (u2 - K11), rel=1e-9)
 
 
 @pytest.mark.parametrize("pull", [1e-3, 1e-2])
@@ -140,6 +140,32 @@ def test_mixture_with_curvature_across(pull: float) -> None:
     energies = [prepare(one).solve(guess=found).energy for one in smooth]
     gaps = [abs(value - found.energy) / found.energy for value in energies]
     assert gaps[1] < 0.35 * gaps[0] < 7e-4
+
+
+def test_mixture_where_curvatures_and_width_vary() -> None:
+    """T = 0 with K', K'', K12' and w' in it: along it, and as the limit of laws without phases."""
+    natural = "natural={curvature: '60 + 400*s*s', twist: '15 + 20*s'}"
+    changes = ["parameters.pull=0.005", 'width="1 - 1.5*s"', natural]
+    scene = load_scene(CONFIGS / "curled_strip.yaml", changes)
+    found = solve(scene)
+    assert found.verified, found.message
+    assert found.sheets == (1, 0, 1)
+    s = np.linspace(*found.switch_points, 11)[1:-1]
+    k11, nu, width = 60 + 400 * s**2, 0.38, 1 - 1.5 * s
+    strains = found.sample(s, "m2") / (width * rigidity_of(found))
+    np.testing.assert_allclose(strains, -(1 + nu) * k11, rtol=1e-7)
+    smooth = [replace(scene, law=Variational(delta=d), tolerance=1e-6) for d in (1e-2, 1e-3)]
+    energies = [prepare(one).solve(guess=found).energy for one in smooth]
+    gaps = [abs(value / found.energy - 1) for value in energies]
+    assert gaps[1] < 0.12 * gaps[0] < 2e-4
+
+
+def rigidity_of(found: Solution) -> float:
+    """Return D w of a scene in SI."""
+    ribbon = found.scene.ribbon
+    assert ribbon is not None
+    bending = ribbon.youngs_modulus * ribbon.thickness**3 / (12 * (1 - ribbon.poisson_ratio**2))
+    return bending * ribbon.width
 
 
 def test_free_curl_has_the_strains_of_no_moment() -> None:
