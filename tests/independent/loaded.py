@@ -1,0 +1,242 @@
+"""Integration along a loaded ribbon or rod, for several starts (columns) at a time.
+
+r' = d3, d_i' = u x d_i, n' = -f - p d1, m' = n x d3 - c, by DOP853 in pieces that end at stations
+(point loads, supports), where the law changes its sheet, and wherever the caller wants to know.
+Vectors are lab-frame columns (3, k), a frame (3, 3, k) holds d1, d2, d3 in its rows.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from scipy.integrate import solve_ivp
+
+from .curved import Along, Material, value
+from .path import rotation, turned
+from .rod import Array, along, cross, dot
+
+ROWS = 20  # r, d1, d2, d3, n, m, energy, work of the dead loads
+STEP = 1e-4  # of differences of coefficients along the ribbon, in mixtures only
+DIFFERENCE = 1e-7
+MOST = 40
+
+Vector = tuple[Along, Along, Along]
+
+
+@dataclass(frozen=True)
+class Point:
+    """What acts at one station: dead in the lab frame, or along the directors there.
+
+    Numbers, or arrays (k,) that differ from column to column (reactions).
+    """
+
+    at: float
+    force: Sequence[float | Array] = (0.0, 0.0, 0.0)
+    moment: Sequence[float | Array] = (0.0, 0.0, 0.0)
+    follows: bool = False
+
+
+@dataclass(frozen=True)
+class Strip:
+    """A ribbon and its loads: force and couple per length (dead), pressure along d1."""
+
+    material: Material
+    force: Vector = (0.0, 0.0, 0.0)
+    couple: Vector = (0.0, 0.0, 0.0)
+    pressure: Along = 0.0
+    points: tuple[Point, ...] = ()
+
+    def rates(self, kind: Array, s: Array, y: Array) -> Array:
+        """Rates (20, k) at arclengths s (k,)."""
+        n, m = y[12:15], y[15:18]
+        frame = y[3:12].reshape(3, 3, -1)
+        d1, d2, d3 = frame
+        own = along(frame, m)
+        f = np.stack([value(c, s) for c in self.force])
+        c = np.stack([value(c, s) for c in self.couple])
+        if kind:
+            u, energy = self.material.strains(kind, own, s)
+        else:
+            u, energy = self._mixture(s, own, along(frame, n), along(frame, f), along(frame, c))
+        out = np.empty_like(y)
+        out[:3] = d3
+        out[3:6] = u[2] * d2 - u[1] * d3
+        out[6:9] = u[0] * d3 - u[2] * d1
+        out[9:12] = u[1] * d1 - u[0] * d2
+        out[12:15] = -f - value(self.pressure, s) * d1
+        out[15:18] = cross(n, d3) - c
+        out[18], out[19] = energy, dot(f, y[:3])
+        return out
+
+    def _mixture(self, s: Array, m: Array, n: Array, f: Array, c: Array) -> tuple[Array, Array]:
+        """Strains where both sheets mix: T = 0, T' = 0 and T'' = 0 along the arc."""
+        law = self.material
+        if np.any(law.natural.moments(s)[1]):
+            raise ValueError("mixtures with natural twist are not known here")
+        w = value(law.width, s)
+
+        def shift(s: Array) -> Array:
+            K11, _, K22, _ = law.natural.moments(s)
+            return value(law.width, s) * (K11 + K22)
+
+        ahead, behind = s + STEP, s - STEP
+        curved = (shift(ahead) - 2 * shift(s) + shift(behind)) / STEP**2
+        slope = (value(law.width, ahead) - value(law.width, behind)) / (2 * STEP)
+        if any(callable(x) for x in self.couple):
+            raise ValueError("mixtures under couples that vary are not known here")
+        u3 = m[2] / (4 * w)
+        stiff = n[2] + m[2] * u3 - m[0] ** 2 / (4 * w)
+        # c2' is that of the director alone: -u3 c1.
+        known = 2 * n[1] * u3 + m[1] * u3**2 - f[0] - value(self.pressure, s) - curved
+        known -= 2 * u3 * c[0] + m[0] * (c[2] / (4 * w) + u3 * slope / w)
+        u2 = known / stiff
+        K11, _, K22, constant = law.natural.moments(s)
+        # The relaxed energy is m . u - W_Leg with T = 0: W_Leg = R^2 / 8 - C.
+        legendre = ((m[1] / w + K11 - K22) ** 2 + (m[2] / w) ** 2) / 8 - constant
+        return np.stack([0 * u2, u2, u3]), m[1] * u2 + m[2] * u3 - w * legendre
+
+    def jump(self, y: Array, at: float | Array) -> Array:
+        """Return the state behind a station, if there is one at that arclength."""
+        y = y.copy()
+        for point in self.points:
+            if np.ndim(at) == 0 and abs(point.at - at) < 1e-14:
+                force, moment = (
+                    np.stack([np.broadcast_to(x, y.shape[1:]) for x in v])
+                    for v in (point.force, point.moment)
+                )
+                if point.follows:
+                    frame = y[3:12].reshape(3, 3, -1)
+                    force, moment = (
+                        sum(v[i] * frame[i] for i in range(3)) for v in (force, moment)
+                    )
+                else:
+                    y[19] += dot(force, y[:3])
+                y[12:15] -= force
+                y[15:18] -= moment
+        return y
+
+    def along(
+        self,
+        y: Array,
+        stops: Sequence[float | Array],
+        kinds: Sequence[int],
+        rtol: float = 3e-14,
+    ) -> list[Array]:
+        """States (20, k) in front of each stop but the first, where y holds.
+
+        Parameters
+        ----------
+        y
+            State (20, k) at the first stop, in front of what acts there.
+        stops
+            Ascending arclengths, or arrays (k,) of them; stations must be among them.
+        kinds
+            Sheet of the law between each two of them.
+        """
+        found = []
+        for a, b, kind in zip(stops[:-1], stops[1:], kinds, strict=True):
+            y = self.piece(self.jump(y, a), a, b, kind, rtol)
+            found.append(y)
+        return found
+
+    def piece(
+        self, y: Array, a: float | Array, b: float | Array, kind: int, rtol: float = 3e-14
+    ) -> Array:
+        """State (20, k) at b from that at a, with nothing between."""
+        shape, length = y.shape, np.asarray(b) - a
+
+        def rate(x: float, y: Array) -> Array:
+            s = np.broadcast_to(a + x * length, shape[1:])
+            return (self.rates(kind, s, y.reshape(shape)) * length).ravel()
+
+        path = solve_ivp(rate, (0, 1), y.ravel(), "DOP853", rtol=rtol, atol=rtol)
+        if not path.success:
+            raise ArithmeticError(path.message)
+        end: Array = path.y[:, -1].reshape(shape)
+        return end
+
+    def turn(self, y: Array, s: float | Array) -> Array:
+        """T of the law (k,), whose sign is its sheet."""
+        return self.material.switch(along(y[3:12].reshape(3, 3, -1), y[15:18]), s)
+
+    def energy(self, y: Array, kind: int, s: Array) -> Array:
+        """Energy per length and H = m . u - W + n3 (2, k)."""
+        frame = y[3:12].reshape(3, 3, -1)
+        own = along(frame, y[15:18])
+        u, energy = self.material.strains(kind, own, s)
+        return np.stack([energy, dot(own, u) - energy + dot(frame[2], y[12:15])])
+
+
+def state(r: Array, frame: Array, n: Array, m: Array) -> Array:
+    """State (20, k) of places (3, k), a frame (3, 3) or frames, forces and moments."""
+    columns = np.broadcast_shapes(*(np.shape(np.reshape(v, (3, -1))) for v in (r, n, m)))[1]
+    y = np.zeros((ROWS, columns))
+    y[:3], y[12:15], y[15:18] = (np.reshape(v, (3, -1)) for v in (r, n, m))
+    y[3:12] = np.reshape(frame, (9, -1))
+    return y
+
+
+def rotated(vector: Sequence[float]) -> Array:
+    """Frame (3, 3), directors in its rows, that a rotation vector makes of the lab's."""
+    v = np.asarray(vector, float)
+    angle = np.linalg.norm(v)
+    if angle == 0:
+        return np.eye(3)
+    axis = v / angle
+    cayley = turned(np.eye(3)[:, :, None], 2 * np.tan(angle / 4) * axis[:, None])
+    return turned(cayley, 2 * np.tan(angle / 4) * axis[:, None])[:, :, 0]
+
+
+@dataclass
+class Shooting:
+    """Newton's method for what is unknown at the start of a ribbon.
+
+    `equations` takes unknowns (n, k) and returns residuals (n, k).
+    """
+
+    equations: Callable[[Array], Array]
+    steps: list[float] = field(default_factory=list)
+    slopes: Array = field(default_factory=lambda: np.empty((0, 0)))
+
+    def solve(self, y: Sequence[float] | Array, tolerance: float = 1e-13) -> Array:
+        """Return the unknowns (n,); ArithmeticError if there are none near."""
+        y = np.asarray(y, float)
+        residual = self._linearised(y)
+        for _ in range(MOST):
+            change = np.linalg.solve(self.slopes, -residual)
+            size = float(np.abs(change / (1 + np.abs(y).max())).max())
+            if self.steps and size < 1e-9 and size >= self.steps[-1] / 4:
+                return y  # rounding
+            self.steps.append(size)
+            share = 1.0
+            while True:
+                try:
+                    after = self._linearised(y + share * change)
+                    if size < 1e-6 or np.linalg.norm(after) < np.linalg.norm(residual):
+                        break
+                except (ArithmeticError, ValueError, np.linalg.LinAlgError):
+                    pass
+                share /= 2
+                if share < 1e-3:
+                    raise ArithmeticError(f"Newton's method is stuck, residual {residual}")
+            y, residual = y + share * change, after
+            if size < tolerance:
+                return y
+        raise ArithmeticError(f"Newton's method did not converge: last steps {self.steps[-3:]}")
+
+    def _linearised(self, y: Array) -> Array:
+        eta = DIFFERENCE * (1 + np.abs(y))
+        found = self.equations(np.column_stack([y, y[:, None] + np.diag(eta)]))
+        if not np.isfinite(found).all():
+            raise ArithmeticError("numbers that are not finite")
+        self.slopes = (found[:, 1:] - found[:, :1]) / eta
+        return found[:, 0]
+
+
+def held(y: Array, place: Array, frame: Array) -> Array:
+    """Residuals (6, k) of a clamp at a place (3,) with a frame (3, 3)."""
+    here = y[3:12].reshape(3, 3, -1)
+    there = np.broadcast_to(np.asarray(frame)[:, :, None], here.shape)
+    return np.concatenate([y[:3] - np.reshape(place, (3, 1)), rotation(here, there)])
