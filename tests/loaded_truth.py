@@ -64,15 +64,23 @@ def _sideways(power: int) -> float:
         while True:
             series = _series(k, tau, t)
             step = mpf(1) / 4
-            after = mp.polyval(series[::-1], step)
+            after = _sum(series, step)
             if after > 1:
                 return tau + _reached(series, step)
             tau, t = tau + step, after
 
 
+def _sum(series: list[float], h: float) -> float:
+    """Return the value of a power series."""
+    total = mpf(0)
+    for coefficient in reversed(series):
+        total = total * h + coefficient
+    return total
+
+
 def _reached(series: list[float], step: float) -> float:
     """Return where a power series is 1."""
-    return mp.findroot(lambda h: mp.polyval(series[::-1], h) - 1, (0, step / 2))
+    return mp.findroot(lambda h: _sum(series, h) - 1, (0, step / 2))
 
 
 def _series(k: float, tau: float, t: float) -> list[float]:
