@@ -17,6 +17,7 @@ from .rod import Array
 Along = float | Callable[[Array], Array]
 TINY = 1e-120  # squares of it are still numbers
 IMAGINARY = 1e-30
+EITHER = 2  # kind of an arc in the plane: whichever sheet
 
 
 def value(of: Along, s: Array) -> Array:
@@ -48,7 +49,7 @@ class Material:
     """A law: sadowsky, variational (delta), kirchhoff or rod (B1, B2, B3 and natural strains).
 
     Sadowsky's law is taken by sheets as in `Law`: the kind is the sign of T = m2 + K11 + K22 (in
-    units of the width).
+    units of the width); EITHER is the larger one, in the plane.
     """
 
     name: str
@@ -63,7 +64,7 @@ class Material:
         """Whether it has two sheets."""
         return self.name == "sadowsky"
 
-    def strains(self, kind: Array, m: Array, s: Array) -> tuple[Array, Array]:
+    def strains(self, kind: int, m: Array, s: Array) -> tuple[Array, Array]:
         """Strains (3, k) and energy per length (k,) at moments m (3, k) along the directors."""
         w = value(self.width, s)
         m = m / w
@@ -82,6 +83,8 @@ class Material:
             N = np.array([[a, b / 2], [b / 2, K22]]).transpose(2, 0, 1)
             values, vectors = np.linalg.eigh(N)
             which = np.where(np.broadcast_to(kind, len(N)) > 0, 1, 0)  # they ascend
+            if kind == EITHER:
+                which = np.abs(values).argmax(axis=1)
             columns = np.arange(len(N))
             largest, (t1, t2) = values[columns, which], vectors[columns, :, which].T
             u2, u3, legendre = largest * t1 * t1, largest * t1 * t2, largest**2 / 2

@@ -48,7 +48,7 @@ class Strip:
     pressure: Along = 0.0
     points: tuple[Point, ...] = ()
 
-    def rates(self, kind: Array, s: Array, y: Array) -> Array:
+    def rates(self, kind: int, s: Array, y: Array) -> Array:
         """Rates (20, k) at arclengths s (k,)."""
         n, m = y[12:15], y[15:18]
         frame = y[3:12].reshape(3, 3, -1)
