@@ -97,9 +97,10 @@ class Material:
         return np.stack([0 * u2, u2, u3]), w * (m[1] * u2 + m[2] * u3 - legendre + constant)
 
     def _smooth(self, a: Array, b: Array, K22: Array) -> Array:
-        """(q + R)^2 / 8."""
-        q = np.sqrt((a + K22) ** 2 + (self.delta * b) ** 2 + TINY)
-        R = np.sqrt((a - K22) ** 2 + b**2 + TINY)
+        """(|T| + R)^2 / 8, both blunted by delta: by c, and by K22, at which planar strips leap."""
+        dull = (2 * self.delta * K22) ** 2 + TINY
+        q = np.sqrt((a + K22) ** 2 + (self.delta * b) ** 2 + dull)
+        R = np.sqrt((a - K22) ** 2 + b**2 + dull)
         return (q + R) ** 2 / 8
 
     def switch(self, m: Array, s: Array) -> Array:
