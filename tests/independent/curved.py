@@ -107,3 +107,16 @@ class Material:
         """T times the width (k,) at moments m (3, k) along the directors."""
         K11, _, K22, _ = self.natural.moments(s)
         return m[1] + value(self.width, s) * (K11 + K22)
+
+    def mixing(self, s: Array) -> Array:
+        """Width w, G of w T = m2 + G, and K12 (3, k)."""
+        K11, K12, K22, _ = self.natural.moments(s)
+        w = value(self.width, s)
+        return np.stack([w, w * (K11 + K22), K12])
+
+    def mixed(self, m: Array, u2: Array, u3: Array, s: Array) -> Array:
+        """Energy per length (k,) of a mixture of both sheets, in which T = 0: W_Leg = R^2 / 8."""
+        K11, K12, K22, constant = self.natural.moments(s)
+        w = value(self.width, s)
+        squares = (m[1] / w + K11 - K22) ** 2 + (m[2] / w + 2 * K12) ** 2
+        return m[1] * u2 + m[2] * u3 - w * (squares / 8 - constant)

@@ -18,7 +18,7 @@ from .path import rotation, turned
 from .rod import Array, along, cross, dot
 
 ROWS = 20  # r, d1, d2, d3, n, m, energy, work of the dead loads
-STEP = 1e-4  # of differences of coefficients along the ribbon, in mixtures only
+STEP = 1e-2  # of differences of coefficients along the ribbon, in mixtures only
 DIFFERENCE = 1e-7
 MOST = 40
 
@@ -60,6 +60,7 @@ class Strip:
             u, energy = self.material.strains(kind, own, s)
         else:
             u, energy = self._mixture(s, own, along(frame, n), along(frame, f), along(frame, c))
+            self._steady()
         out = np.empty_like(y)
         out[:3] = d3
         out[3:6] = u[2] * d2 - u[1] * d3
@@ -71,31 +72,23 @@ class Strip:
         return out
 
     def _mixture(self, s: Array, m: Array, n: Array, f: Array, c: Array) -> tuple[Array, Array]:
-        """Strains where both sheets mix: T = 0, T' = 0 and T'' = 0 along the arc."""
+        """Strains where both sheets mix: T = 0, T' = 0 and T'' = 0 along the arc.
+
+        With m2 + G the width w times T, T' = 0 is n1 + c2 + m1 u3 = G', and T'' = 0 gives u2; of
+        c2' that of the director is -u3 c1. Coefficients that vary are differenced.
+        """
         law = self.material
-        if np.any(law.natural.moments(s)[1]):
-            raise ValueError("mixtures with natural twist are not known here")
-        w = value(law.width, s)
-
-        def shift(s: Array) -> Array:
-            K11, _, K22, _ = law.natural.moments(s)
-            return value(law.width, s) * (K11 + K22)
-
-        ahead, behind = s + STEP, s - STEP
-        curved = (shift(ahead) - 2 * shift(s) + shift(behind)) / STEP**2
-        slope = (value(law.width, ahead) - value(law.width, behind)) / (2 * STEP)
-        if any(callable(x) for x in self.couple):
-            raise ValueError("mixtures under couples that vary are not known here")
-        u3 = m[2] / (4 * w)
-        stiff = n[2] + m[2] * u3 - m[0] ** 2 / (4 * w)
-        # c2' is that of the director alone: -u3 c1.
-        known = 2 * n[1] * u3 + m[1] * u3**2 - f[0] - value(self.pressure, s) - curved
-        known -= 2 * u3 * c[0] + m[0] * (c[2] / (4 * w) + u3 * slope / w)
+        (w, _, K12), (slope, _, twist), (_, bend, _) = differenced(law.mixing, s)
+        u3 = (m[2] / w + 2 * K12) / 4
+        stiff = n[2] - m[0] ** 2 / (4 * w) + u3 * m[2]
+        known = 2 * n[1] * u3 + m[1] * u3**2 - f[0] - value(self.pressure, s) - bend
+        known += m[0] * (twist / 2 - c[2] / (4 * w) - m[2] * slope / (4 * w**2)) - 2 * u3 * c[0]
         u2 = known / stiff
-        K11, _, K22, constant = law.natural.moments(s)
-        # The relaxed energy is m . u - W_Leg with T = 0: W_Leg = R^2 / 8 - C.
-        legendre = ((m[1] / w + K11 - K22) ** 2 + (m[2] / w) ** 2) / 8 - constant
-        return np.stack([0 * u2, u2, u3]), m[1] * u2 + m[2] * u3 - w * legendre
+        return np.stack([0 * u2, u2, u3]), law.mixed(m, u2, u3, s)
+
+    def _steady(self) -> None:
+        if any(callable(c) for c in self.couple):
+            raise ValueError("mixtures under couples that vary are not known here")
 
     def jump(self, y: Array, at: float | Array) -> Array:
         """Return the state behind a station, if there is one at that arclength."""
@@ -187,6 +180,16 @@ def rotated(vector: Sequence[float]) -> Array:
     axis = v / angle
     cayley = turned(np.eye(3)[:, :, None], 2 * np.tan(angle / 4) * axis[:, None])
     return turned(cayley, 2 * np.tan(angle / 4) * axis[:, None])[:, :, 0]
+
+
+def differenced(of: Callable[[Array], Array], s: Array) -> tuple[Array, Array, Array]:
+    """Return values, first and second derivatives along s, by differences of order six."""
+    at = [of(s + i * STEP) for i in range(-3, 4)]
+    odd = [at[3 + i] - at[3 - i] for i in (1, 2, 3)]
+    even = [at[3 + i] - 2 * at[3] + at[3 - i] for i in (1, 2, 3)]
+    first = sum(a * x for a, x in zip((3 / 4, -3 / 20, 1 / 60), odd, strict=True)) / STEP
+    second = sum(a * x for a, x in zip((3 / 2, -3 / 20, 1 / 90), even, strict=True)) / STEP**2
+    return at[3], first, second
 
 
 @dataclass
