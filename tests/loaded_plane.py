@@ -8,8 +8,9 @@ from __future__ import annotations
 
 import numpy as np
 from independent.curved import Material
-from independent.loaded import Point, Shooting, Strip, state
+from independent.loaded import Point, Strip, state
 from independent.rod import dot
+from independent.shooting import Shooting
 from loaded_rows import Array, Row, tapering
 
 HALVES = (0.0, 0.5, 1.0)

@@ -11,7 +11,8 @@ from dataclasses import dataclass
 
 import numpy as np
 from independent.curved import Along, Material, Natural
-from independent.loaded import Shooting, Strip, held, rotated, state
+from independent.loaded import Strip, rotated, state
+from independent.shooting import Shooting, held
 
 Array = np.ndarray
 

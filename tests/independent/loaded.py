@@ -8,19 +8,17 @@ Vectors are lab-frame columns (3, k), a frame (3, 3, k) holds d1, d2, d3 in its 
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 from scipy.integrate import solve_ivp
 
 from .curved import Along, Material, value
-from .path import rotation, turned
+from .path import turned
 from .rod import Array, along, cross, dot
 
 ROWS = 20  # r, d1, d2, d3, n, m, energy, work of the dead loads
 STEP = 1e-2  # of differences of coefficients along the ribbon, in mixtures only
-DIFFERENCE = 1e-7
-MOST = 40
 
 Vector = tuple[Along, Along, Along]
 
@@ -190,56 +188,3 @@ def differenced(of: Callable[[Array], Array], s: Array) -> tuple[Array, Array, A
     first = sum(a * x for a, x in zip((3 / 4, -3 / 20, 1 / 60), odd, strict=True)) / STEP
     second = sum(a * x for a, x in zip((3 / 2, -3 / 20, 1 / 90), even, strict=True)) / STEP**2
     return at[3], first, second
-
-
-@dataclass
-class Shooting:
-    """Newton's method for what is unknown at the start of a ribbon.
-
-    `equations` takes unknowns (n, k) and returns residuals (n, k).
-    """
-
-    equations: Callable[[Array], Array]
-    steps: list[float] = field(default_factory=list)
-    slopes: Array = field(default_factory=lambda: np.empty((0, 0)))
-
-    def solve(self, y: Sequence[float] | Array, tolerance: float = 1e-13) -> Array:
-        """Return the unknowns (n,); ArithmeticError if there are none near."""
-        y = np.asarray(y, float)
-        residual = self._linearised(y)
-        for _ in range(MOST):
-            change = np.linalg.solve(self.slopes, -residual)
-            size = float(np.abs(change / (1 + np.abs(y).max())).max())
-            if self.steps and size < 1e-9 and size >= self.steps[-1] / 4:
-                return y  # rounding
-            self.steps.append(size)
-            share = 1.0
-            while True:
-                try:
-                    after = self._linearised(y + share * change)
-                    if size < 1e-6 or np.linalg.norm(after) < np.linalg.norm(residual):
-                        break
-                except (ArithmeticError, ValueError, np.linalg.LinAlgError):
-                    pass
-                share /= 2
-                if share < 1e-3:
-                    raise ArithmeticError(f"Newton's method is stuck, residual {residual}")
-            y, residual = y + share * change, after
-            if size < tolerance:
-                return y
-        raise ArithmeticError(f"Newton's method did not converge: last steps {self.steps[-3:]}")
-
-    def _linearised(self, y: Array) -> Array:
-        eta = DIFFERENCE * (1 + np.abs(y))
-        found = self.equations(np.column_stack([y, y[:, None] + np.diag(eta)]))
-        if not np.isfinite(found).all():
-            raise ArithmeticError("numbers that are not finite")
-        self.slopes = (found[:, 1:] - found[:, :1]) / eta
-        return found[:, 0]
-
-
-def held(y: Array, place: Array, frame: Array) -> Array:
-    """Residuals (6, k) of a clamp at a place (3,) with a frame (3, 3)."""
-    here = y[3:12].reshape(3, 3, -1)
-    there = np.broadcast_to(np.asarray(frame)[:, :, None], here.shape)
-    return np.concatenate([y[:3] - np.reshape(place, (3, 1)), rotation(here, there)])

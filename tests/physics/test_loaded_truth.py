@@ -10,7 +10,8 @@ import loaded_truth as truth
 import numpy as np
 import pytest
 from independent.curved import Material, Natural
-from independent.loaded import Strip, held, state
+from independent.loaded import Strip, state
+from independent.shooting import held
 
 Array = np.ndarray
 Case = tuple[Strip, tuple[float, ...], float]  # strip, force and moment at the start, length
