@@ -17,11 +17,10 @@ POINTS = 200  # of periodic integrals: far more than their digits need
 
 
 @cache
-def bessel_zero(order: float, near: float) -> float:
-    """Zero of J_order, the order times 12 a whole number."""
+def bessel_zero(twelfths: int, near: float) -> float:
+    """Zero of J of an order given in twelfths."""
     with mp.workdps(DIGITS):
-        exact = mpf(round(12 * order)) / 12
-        return mp.findroot(lambda x: mp.besselj(exact, x), near)
+        return mp.findroot(lambda x: mp.besselj(mpf(twelfths) / 12, x), near)
 
 
 def heavy_column() -> float:
@@ -30,7 +29,8 @@ def heavy_column() -> float:
     With x from the tip theta'' + q x theta = 0, theta'(0) = theta(1) = 0, hence theta is
     sqrt(x) J_{-1/3}(2 sqrt(q) x^{3/2} / 3).
     """
-    return float(9 * bessel_zero(-1 / 3, 1.87) ** 2 / 4)
+    with mp.workdps(DIGITS):
+        return float(9 * bessel_zero(-4, 1.87) ** 2 / 4)
 
 
 def heavy_rod_sideways(B2: float = 1.0, B3: float = 1.0) -> float:
@@ -40,12 +40,12 @@ def heavy_rod_sideways(B2: float = 1.0, B3: float = 1.0) -> float:
     (as m turns less than the directors) and dm3/ds = M u2, so that phi'' + M^2 phi / (B2 B3) = 0,
     phi'(0) = phi(1) = 0: phi = sqrt(x) J_{-1/6}(q x^3 / 6 / sqrt(B2 B3)).
     """
-    return float(6 * bessel_zero(-1 / 6, 2.14)) * (B2 * B3) ** 0.5
+    return 6 * float(bessel_zero(-2, 2.14)) * (B2 * B3) ** 0.5
 
 
 def loaded_rod_sideways(B2: float = 1.0, B3: float = 1.0) -> float:
     """Dead load along d2 at the tip at which it does; M = P x, J_{-1/4}(P x^2 / 2 / ...)."""
-    return float(2 * bessel_zero(-1 / 4, 2.0)) * (B2 * B3) ** 0.5
+    return 2 * float(bessel_zero(-3, 2.0)) * (B2 * B3) ** 0.5
 
 
 @cache
@@ -117,12 +117,12 @@ def _regular(
 
 def heavy_ribbon_sideways() -> float:
     """q at which a ribbon of Sadowsky's law that carries its weight q along d2 buckles sideways."""
-    return float(6 * _sideways(2))  # tau = q x^3 / 6
+    return 6 * float(_sideways(2))  # tau = q x^3 / 6
 
 
 def loaded_ribbon_sideways() -> float:
     """Dead load along d2 at its tip at which it does."""
-    return float(2 * _sideways(1))  # tau = P x^2 / 2
+    return 2 * float(_sideways(1))  # tau = P x^2 / 2
 
 
 def pressed_ring(mode: int = 2) -> float:
