@@ -142,10 +142,11 @@ def test_mixture_with_curvature_across(pull: float) -> None:
     assert gaps[1] < 0.35 * gaps[0] < 7e-4
 
 
-def test_mixture_where_curvatures_and_width_vary() -> None:
+@pytest.mark.parametrize("weight", ["loads={}", "loads={force: [0.002, 0.001, 0.003]}"])
+def test_mixture_where_curvatures_and_width_vary(weight: str) -> None:
     """T = 0 with K', K'', K12' and w' in it: along it, and as the limit of laws without phases."""
     natural = "natural={curvature: '60 + 400*s*s', twist: '15 + 20*s'}"
-    changes = ["parameters.pull=0.005", 'width="1 - 1.5*s"', natural]
+    changes = ["parameters.pull=0.005", 'width="1 - 1.5*s"', natural, weight]
     scene = load_scene(CONFIGS / "curled_strip.yaml", changes)
     found = solve(scene)
     assert found.verified, found.message

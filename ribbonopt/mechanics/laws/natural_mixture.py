@@ -2,7 +2,8 @@
 
 From T = 0 along the arc, K being K11 + K22: n1 + m1 u3 = K' and, that differentiated,
 u2 (n3 + m3 u3 - m1^2 / 4) = 2 n2 u3 + m2 u3^2 + m1 K12' / 2 - K''. Off the arc T is linear in s.
-With a width w forces and moments are those over w, and K' is (w K)' / w.
+With a width w forces and moments are those over w, and K' is (w K)' / w. Loads along the ribbon
+act as in `sadowsky.MixtureLaw`.
 """
 
 from __future__ import annotations
@@ -29,6 +30,10 @@ class NaturalMixtureLaw(ConstitutiveLaw):
         u3 = (m[2] + 2 * k.K12) / 4
         turning = (2 * n[1] + u3 * m[1]) * u3 + m[0] * k.rate(k.K12) / 2
         turning -= k.rate(k.K11 + k.K22, 2)
+        if stress.load is not None:
+            turning -= stress.load[0]
+        if stress.couple is not None:
+            turning -= 2 * u3 * stress.couple[0] + m[0] * stress.couple[2] / 4
         return ca.vertcat(0, turning / self.sides.stiffness(stress), u3)
 
     def moment(self, u: ca.SX) -> ca.SX:

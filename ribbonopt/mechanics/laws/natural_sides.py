@@ -61,6 +61,8 @@ class NaturalSides:
     def drift(self, stress: Stress) -> ca.SX:
         """Minus the rate of T along a mixture, K being K11 + K22: n1 + m1 u3 - K'."""
         n, m, k = stress.n, stress.m, self.k
+        if stress.couple is not None:
+            return self.drift(stress._replace(couple=None)) + stress.couple[1]
         return n[0] + m[0] * (m[2] + 2 * k.K12) / 4 - k.rate(k.K11 + k.K22)
 
     def stiffness(self, stress: Stress) -> ca.SX:
