@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
+from dataclasses import fields
 
 from ribbonopt.scene.faults import Problem
 from ribbonopt.scene.laws import Sadowsky, SingleSheet, Variational
@@ -13,9 +14,16 @@ PLATES = (Sadowsky, SingleSheet, Variational)
 
 
 def check_natural(scene: Scene) -> Iterator[Problem]:
-    """Yield what a law that is no plate cannot have: curvature across, and Poisson's ratio."""
+    """Yield what a law that is no plate cannot have: curvature across, and Poisson's ratio.
+
+    Nor does one that has natural strains of its own take others.
+    """
     natural, ribbon = scene.natural, scene.ribbon
     if natural is None or isinstance(scene.law, PLATES):
+        return
+    if any(member.name == "natural" for member in fields(scene.law)):
+        message = f"stands beside law.natural, which law {scene.law.type} has of its own"
+        yield Problem(("natural",), f"{message}; say it there, and remove this")
         return
     which = f"which law {scene.law.type} cannot have: it knows natural curvature and twist only"
     others = "or use law sadowsky, variational or single_sheet"
