@@ -12,6 +12,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import fields
 from importlib import import_module
 from numbers import Real
+from typing import Any
 
 import casadi as ca
 
@@ -24,6 +25,7 @@ from .law import ConstitutiveLaw
 #: it; the fields of the class are those of the scene's
 LAWS: Mapping[str, tuple[str, str]] = {
     "kirchhoff": ("kirchhoff", "KirchhoffLaw"),
+    "rod": ("rod", "RodLaw"),
     "sadowsky": ("sadowsky", "SadowskyLaw"),
     "single_sheet": ("sadowsky", "SingleSheetLaw"),
     "regularized": ("blended", "RegularizedLaw"),
@@ -40,8 +42,14 @@ def law_class(name: str) -> type[ConstitutiveLaw]:
 
 
 def numbers_of(law: Law) -> dict[str, float]:
-    """Return the numbers of a scene's law by name."""
-    named = {f.name: getattr(law, f.name) for f in fields(law) if f.name != "type"}
+    """Return the numbers of a scene's law by name; of triples, along directors, as B.d1."""
+    named: dict[str, Any] = {}
+    for f in fields(law):
+        value = getattr(law, f.name)
+        if isinstance(value, tuple):
+            named |= {f"{f.name}.d{i}": item for i, item in enumerate(value, start=1)}
+        elif f.name != "type":
+            named[f.name] = value
     for name, value in named.items():
         if not (isinstance(value, Real) and math.isfinite(value)):
             raise ModelError(f"law.{name}: found {value!r}, expected a number", f"law.{name}")
@@ -62,7 +70,7 @@ def law_of(law: Law, numbers: Mapping[str, ca.SX], position: ca.SX) -> Constitut
         Symbol of the arclength s, on which numbers may depend.
     """
     if not isinstance(law, OwnLaw):
-        return law_class(law.type)(**numbers)
+        return law_class(law.type).of(numbers)
     found = law.constitutive(numbers, position)
     if not isinstance(found, ConstitutiveLaw):
         raise ModelError(
@@ -83,8 +91,9 @@ def relation_of(scene: Scene, theta: Callable[[str], ca.SX], position: ca.SX) ->
 
 
 def capabilities(scene: Scene) -> ConstitutiveLaw:
-    """Return the relation of a scene with symbols of its own, to be asked what it has."""
-    return relation_of(scene, ca.SX.sym, ca.SX.sym("s"))
+    """Return the relation of a scene, its law in numbers, to be asked what it has."""
+    known = {f"law.{name}": ca.SX(value) for name, value in numbers_of(scene.law).items()}
+    return relation_of(scene, lambda name: known.get(name, ca.SX.sym(name)), ca.SX.sym("s"))
 
 
 def is_linear(law: Law) -> bool:

@@ -86,12 +86,19 @@ class ConstitutiveLaw(ABC):
     linear_at_zero: bool = False
     #: strains without stress are not zero, so that no straight ribbon is without stress
     natural: bool = False
+    #: turning the section about d3, the same all along, changes nothing: a rod that spins freely
+    spins: bool = False
     #: strains have a kink or a jump where `switching` changes sign; `branch` continues either side
     kinked: bool = False
     #: `moment` is exact and a closed form, cheap to differentiate; else it serves guesses only
     closed_moment: bool = True
     #: names of states of its own along the ribbon, with `rates`, `end_conditions`, `own_guess`
     states: tuple[str, ...] = ()
+
+    @classmethod
+    def of(cls, numbers: Mapping[str, ca.SX]) -> ConstitutiveLaw:
+        """Return the law of numbers by the names that a scene gives them."""
+        return cls(**numbers)
 
     @abstractmethod
     def strain(self, stress: Stress) -> ca.SX:
