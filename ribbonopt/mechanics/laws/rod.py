@@ -35,7 +35,7 @@ class RodLaw(ConstitutiveLaw):
         return not self.k.is_zero()
 
     @property
-    def spins(self) -> bool:
+    def spins(self) -> bool:  # type: ignore[override]
         """Whether it is the same about all axes across d3; of numbers only, not of symbols."""
         equal = ca.is_equal(self.B[0], self.B[1])
         return bool(equal and self.k[:2].is_zero())
