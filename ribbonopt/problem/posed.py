@@ -16,7 +16,7 @@ import numpy as np
 from ribbonopt.arrays import Array
 from ribbonopt.mechanics.ends.boundary import conditions_of, start_frame, start_position
 from ribbonopt.mechanics.ends.conditions import Condition
-from ribbonopt.mechanics.laws.catalogue import numbers_of
+from ribbonopt.mechanics.laws.catalogue import leaves_plane, numbers_of
 from ribbonopt.mechanics.loads.load import Load
 from ribbonopt.scene import Loads, Scene
 from ribbonopt.scene.units import Units, in_special_units, units_of
@@ -109,8 +109,10 @@ class Posed:
         loads = tuple(type(load) for load in self.loads)
         settings = type(scene.law), scene.formulation, scene.states, scene.transcription
         # In a plane, which conditions are left depends on what plane it is.
-        plane = self.start[1][:, 1].round().tolist() if scene.states == "planar" else ()
-        rest = tuple(self.theta), conditions, loads, scene.boundary.also, tuple(plane)
+        plane: tuple[object, ...] = ()
+        if scene.states == "planar":
+            plane = *self.start[1][:, 1].round().tolist(), leaves_plane(scene, self.theta)
+        rest = tuple(self.theta), conditions, loads, scene.boundary.also, plane
         return (*settings, scene.solver, *rest)
 
     @cached_property

@@ -15,11 +15,12 @@ from numbers import Real
 from typing import Any
 
 import casadi as ca
+import numpy as np
 
 from ribbonopt.errors import ModelError
 from ribbonopt.scene import Law, OwnLaw, Scene
 
-from .law import ConstitutiveLaw
+from .law import ConstitutiveLaw, Stress
 
 #: laws by the name a scene gives them: module and class, which is imported when a scene asks for
 #: it; the fields of the class are those of the scene's
@@ -32,6 +33,9 @@ LAWS: Mapping[str, tuple[str, str]] = {
     "homotopy": ("blended", "HomotopyLaw"),
     "variational": ("variational", "VariationalLaw"),
 }
+
+
+STRAIGHT = 1e-9  # strains out of a plane, of those in it or of 1 / L
 
 
 def law_class(name: str) -> type[ConstitutiveLaw]:
@@ -94,6 +98,25 @@ def capabilities(scene: Scene) -> ConstitutiveLaw:
     """Return the relation of a scene, its law in numbers, to be asked what it has."""
     known = {f"law.{name}": ca.SX(value) for name, value in numbers_of(scene.law).items()}
     return relation_of(scene, lambda name: known.get(name, ca.SX.sym(name)), ca.SX.sym("s"))
+
+
+def leaves_plane(scene: Scene, theta: Mapping[str, float]) -> bool:
+    """Whether natural strains take a ribbon out of the plane across its width.
+
+    `theta` are the numbers of the scene by name.
+    """
+    moment = ca.SX([0.0, 0.7, 0.0])
+    for place in (0.0, 0.4, 1.0):
+        start, end = scene.interval
+        position = ca.SX(start + place * (end - start))
+        law = relation_of(scene, lambda name: ca.SX(theta[name]), position)
+        if not law.natural:
+            return False
+        stress = Stress(ca.SX.zeros(3), moment, ca.SX.zeros(len(law.states)))
+        u1, u2, u3 = np.array(ca.evalf(law.strain(stress))).ravel()
+        if max(abs(u1), abs(u3)) > STRAIGHT * max(1.0, abs(u2)):
+            return True
+    return False
 
 
 def is_linear(law: Law) -> bool:
