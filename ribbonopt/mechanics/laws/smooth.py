@@ -55,9 +55,9 @@ def sharpened(law: Law, to: float) -> Law:
         return law
     ratio = min(to, EVEN)
     if isinstance(law, Rod):
-        B, (softest, next_, _) = list(law.B), _by_size(law)
-        B[softest] = ratio * B[next_]
-        return replace(law, B=tuple(B))
+        softest, next_, _ = _by_size(law)
+        B1, B2, B3 = (ratio * law.B[next_] if i == softest else B for i, B in enumerate(law.B))
+        return replace(law, B=(B1, B2, B3))
     return replace(law, B3=law.B2 * (ratio if law.B3 < law.B2 else 1 / ratio))
 
 

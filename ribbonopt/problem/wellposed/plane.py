@@ -29,8 +29,8 @@ def in_plane(ribbon: Ribbon, posed: Posed) -> Ribbon:
     """
     if leaves_plane(posed.scene, posed.theta):
         raise ModelError(
-            f"states: planar, but the natural strains of law {posed.scene.law.type} lead out of the "
-            "plane across d2; use states: reduced, or leave it natural bending about d2 only",
+            f"states: planar, but the natural strains of law {posed.scene.law.type} lead out of "
+            "the plane across d2; use states: reduced, or leave it natural bending about d2 only",
             "law.natural",
         )
     conditions = linearize(ribbon, posed)
