@@ -91,11 +91,17 @@ def branch(text: str, C: float, known: float, form: str = "inverted") -> tuple[f
     return found.position, [(p.position, p.row["negative"]) for p in points if p.kind == "point"]
 
 
-RINGS = [(text, C) for text in (NATURAL, JOINED) for C in (1.0, 0.8)]
+SLOW = pytest.mark.slow
+FORMS = ("inverted", "algebraic", "differentiated")
+RINGS: list[Any] = [
+    pytest.param(text, C, form, marks=() if (C, form) == (1.0, "inverted") else SLOW)
+    for text in (NATURAL, JOINED)
+    for C in (1.0, 0.8)
+    for form in FORMS
+]
 
 
-@pytest.mark.parametrize("form", ["inverted", "algebraic", "differentiated"])
-@pytest.mark.parametrize(("text", "C"), RINGS)
+@pytest.mark.parametrize(("text", "C", "form"), RINGS)
 def test_michells_ring(text: str, C: float, form: str) -> None:
     known = ZAJAC / C
     found, counts = branch(text, C, known, form)
@@ -105,15 +111,20 @@ def test_michells_ring(text: str, C: float, form: str) -> None:
         assert negative == (0 if twist < known else 1)
 
 
-@pytest.mark.parametrize("form", ["inverted", "algebraic", "differentiated"])
-def test_a_straight_rod_under_torque(form: str) -> None:
+@pytest.mark.parametrize("form", ["inverted", *(pytest.param(f, marks=SLOW) for f in FORMS[1:])])
+def test_a_straight_rod_under_a_torque(form: str) -> None:
     assert GREENHILL == pytest.approx(8.9868189, abs=1e-7)
+    found, _ = branch(MOMENT, 0.8, GREENHILL, form)
+    assert found == pytest.approx(GREENHILL, abs=1e-9)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("form", FORMS)
+def test_a_straight_rod_turned_at_its_clamps(form: str) -> None:
     found, counts = branch(TURNED, 0.8, GREENHILL / 0.8, form)
     assert found == pytest.approx(GREENHILL / 0.8, abs=1e-9)
     for twist, negative in counts:
         assert negative == (0 if twist < found else 1)
-    found, _ = branch(MOMENT, 0.8, GREENHILL, form)
-    assert found == pytest.approx(GREENHILL, abs=1e-9)
 
 
 # the homogeneous problems, written out
