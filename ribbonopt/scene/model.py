@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 from typing import Annotated, Literal
 
 from . import limits
+from .along import Along
 from .continuation import ContinuationStage
 from .ends import Boundary, HalfTwists, Loop, Value
 from .laws import Law
@@ -182,6 +183,7 @@ class Scene:
     """One ribbon: its law, its interval, its boundary conditions and how to solve it.
 
     In a file with `ribbon` the interval is by default all of its length, or the piece of a loop.
+    `width` is that along s in units of the ribbon's own, to which Dw and `ribbon.width` belong.
     """
 
     name: str
@@ -205,3 +207,4 @@ class Scene:
     record: dict[str, str] = field(default_factory=dict)
     continuation: ContinuationStage | tuple[ContinuationStage, ...] | None = None
     loads: Loads = field(default_factory=Loads)
+    width: Along | None = None

@@ -16,6 +16,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, fields, is_dataclass, replace
 from typing import Any
 
+from .along import scaled
 from .ends import Boundary, End
 from .laws import Law, OwnLaw, Stiff
 from .loads import Loads
@@ -108,6 +109,7 @@ def in_special_units(scene: Scene, units: Units | None = None) -> Scene:
         parameters=parameters | own,
         boundary=_boundary(boundary, units, parameters),
         loads=_loads(scene.loads, units, parameters),
+        width=scaled(scene.width, 1.0, units.length),
         guess=_guess(scene.guess, units),
         reference=_reference(scene.reference, units),
         switching=switches if isinstance(switches, str) else _over(switches, units.length),

@@ -12,7 +12,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import fields
 from importlib import import_module
 from numbers import Real
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import casadi as ca
 import numpy as np
@@ -21,6 +21,9 @@ from ribbonopt.errors import ModelError
 from ribbonopt.scene import Law, OwnLaw, Scene
 
 from .law import ConstitutiveLaw, Stress
+
+if TYPE_CHECKING:
+    from ribbonopt.mechanics.along import Field
 
 #: laws by the name a scene gives them: module and class, which is imported when a scene asks for
 #: it; the fields of the class are those of the scene's
@@ -91,7 +94,22 @@ def relation_of(scene: Scene, theta: Callable[[str], ca.SX], position: ca.SX) ->
     `theta` gives the symbols of its numbers by name, `position` is the symbol of the arclength s.
     """
     numbers = {name: theta(f"law.{name}") for name in numbers_of(scene.law)}
-    return law_of(scene.law, numbers, position)
+    law = law_of(scene.law, numbers, position)
+    if scene.width is not None:
+        from .tapered import tapered  # few scenes have a width of their own
+
+        (width,) = (field for field in fields_of(scene) if field.name == "width")
+        law = tapered(law, width.at(position, theta), position)
+    return law
+
+
+def fields_of(scene: Scene) -> tuple[Field, ...]:
+    """Return the numbers along the ribbon that its relation depends on beside its law."""
+    if scene.width is None:
+        return ()
+    from ribbonopt.mechanics.along import Field  # as above
+
+    return (Field("width", scene.width),)
 
 
 def capabilities(scene: Scene) -> ConstitutiveLaw:
@@ -105,18 +123,16 @@ def leaves_plane(scene: Scene, theta: Mapping[str, float]) -> bool:
 
     `theta` are the numbers of the scene by name.
     """
-    moment = ca.SX([0.0, 0.7, 0.0])
-    for place in (0.0, 0.4, 1.0):
-        start, end = scene.interval
-        position = ca.SX(start + place * (end - start))
-        law = relation_of(scene, lambda name: ca.SX(theta[name]), position)
-        if not law.natural:
-            return False
-        stress = Stress(ca.SX.zeros(3), moment, ca.SX.zeros(len(law.states)))
-        u1, u2, u3 = np.array(ca.evalf(law.strain(stress))).ravel()
-        if max(abs(u1), abs(u3)) > STRAIGHT * max(1.0, abs(u2)):
-            return True
-    return False
+    position = ca.SX.sym("s")
+    law = relation_of(scene, lambda name: ca.SX(theta[name]), position)
+    if not law.natural:
+        return False
+    in_plane = Stress(ca.SX.zeros(3), ca.SX([0.0, 0.7, 0.0]), ca.SX.zeros(len(law.states)))
+    strain = ca.Function("strain", [position], [ca.densify(law.strain(in_plane))])
+    start, end = scene.interval
+    places = (start + share * (end - start) for share in (0.0, 0.4, 1.0))
+    u1, u2, u3 = np.abs([np.array(strain(s)).ravel() for s in places]).max(axis=0)
+    return bool(max(u1, u3) > STRAIGHT * max(1.0, u2))
 
 
 def is_linear(law: Law) -> bool:

@@ -10,6 +10,7 @@ from dataclasses import is_dataclass
 from itertools import pairwise
 from typing import Any, get_origin
 
+from ribbonopt.scene.along import is_along, numbers_along
 from ribbonopt.scene.ends import Boundary
 from ribbonopt.scene.faults import KeyPath, Problem, shown
 from ribbonopt.scene.loads import Loads
@@ -41,6 +42,17 @@ def check(scene: Scene) -> list[Problem]:
         values, found = values_of(formulas, scene.parameters)
         problems += check_parameters(scene.parameters)
         problems += [*found, *check_equations(boundary.also, scene.parameters)]
+    if (along := dict(numbers_along(scene))) and not problems:
+        # Imported late, as above.
+        from .along import check_along, largest
+
+        samples, found = check_along(along, scene.interval, scene.parameters)
+        problems += found
+        values |= largest(samples)
+        if ("width",) in samples:
+            from .width import check_width
+
+            problems += check_width(samples["width",])
     for name in ("start", "end"):
         problems += check_frame(getattr(boundary, name), ("boundary", name), values)
     if isinstance(scene.guess, MoebiusGuess):
@@ -87,7 +99,12 @@ def _switching(switching: tuple[float, ...], interval: tuple[float, float]) -> I
 
 
 def _formulas(value: Any, annotation: Any, path: KeyPath) -> Iterator[tuple[KeyPath, str]]:
-    """Yield the formulas in a value: texts that stand where the annotation has numbers as well."""
+    """Yield the formulas in a value: texts that stand where the annotation has numbers as well.
+
+    Not those along the ribbon, which have no one value.
+    """
+    if is_along(annotation):
+        return
     options = branches(annotation).values()
     if isinstance(value, str):
         if str in options:

@@ -71,3 +71,9 @@ def test_what_it_says_of_itself(law: Rod, natural: bool, spins: bool) -> None:
 def test_where_its_numbers_may_change_natural_strains_may_come() -> None:
     assert relation_of(scene(Rod()), ca.SX.sym, ca.SX.sym("s")).natural
     assert not capabilities(Scene("a", Kirchhoff(), Boundary())).natural
+
+
+def test_a_tapered_one_spins_as_well() -> None:
+    found = capabilities(Scene("rod", Rod(), Boundary(), width="1 - s/2"))
+    assert (found.spins, found.natural, found.developable) == (True, False, False)
+    assert not capabilities(Scene("rod", ROD, Boundary(), width="1 - s/2")).spins
