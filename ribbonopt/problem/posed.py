@@ -16,7 +16,8 @@ import numpy as np
 from ribbonopt.arrays import Array
 from ribbonopt.mechanics.ends.boundary import conditions_of, start_frame, start_position
 from ribbonopt.mechanics.ends.conditions import Condition
-from ribbonopt.mechanics.laws.catalogue import fields_of, leaves_plane, numbers_of
+from ribbonopt.mechanics.laws.asymmetry import changed_by_flip, leaves_plane
+from ribbonopt.mechanics.laws.catalogue import fields_of, numbers_of
 from ribbonopt.mechanics.loads.load import Load
 from ribbonopt.scene import Loads, Scene
 from ribbonopt.scene.units import Units, in_special_units, units_of
@@ -110,10 +111,12 @@ class Posed:
         )
         loads = tuple(type(load) for load in self.loads)
         settings = type(scene.law), scene.formulation, scene.states, scene.transcription
-        # In a plane, which conditions are left depends on what plane it is.
+        # In a plane, which conditions are left depends on what plane it is; natural strains tell
+        # whether there is one, and whether a piece of a loop stands for all of it.
         plane: tuple[object, ...] = ()
         if scene.states == "planar":
             plane = *self.start[1][:, 1].round().tolist(), leaves_plane(scene, self.theta)
+        plane = *plane, changed_by_flip(scene, self.theta)
         along = tuple(field.structure for field in fields_of(scene))
         rest = tuple(self.theta), conditions, along, loads, scene.boundary.also, plane
         return (*settings, scene.solver, *rest)

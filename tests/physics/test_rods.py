@@ -1,5 +1,6 @@
 """The ordinary rod: known clamps by every formulation, symmetries, limits, a plane, no guess."""
 
+from dataclasses import replace
 from itertools import pairwise, product
 from typing import Any
 
@@ -17,6 +18,7 @@ from ribbonopt.scene import (
     Directors,
     End,
     Kirchhoff,
+    Loop,
     Rod,
     Scene,
     Shooting,
@@ -139,6 +141,17 @@ def test_what_leads_out_of_the_plane_is_refused() -> None:
     flat = prepare(clamp(Rod(), place, turn, states="planar"))
     with pytest.raises(ModelError, match="more than its numbers"):
         flat.solve(clamp(Rod(natural=(0.0, 0.0, 0.1)), place, turn, states="planar"))
+
+
+def test_a_piece_of_a_loop_stands_for_all_while_natural_strains_have_its_symmetry() -> None:
+    start = End(position=(0.0, 0.0, 0.0), directors="identity")
+    half = Scene("ring", Rod(), Boundary(start, loop=Loop(0, "half")), interval=(0.0, 0.5))
+    prepared = prepare(half)
+    assert prepared.solve(replace(half, law=Rod(natural=(0.0, 1.0, 2.0)))).verified
+    with pytest.raises(ModelError, match="more than its numbers"):
+        prepared.solve(replace(half, law=Rod(natural=(0.1, 0.0, 0.0))))
+    with pytest.raises(ModelError, match="by flips about d1, after which the natural strains"):
+        prepare(replace(half, law=Rod(natural=(0.1, 0.0, 0.0))))
 
 
 def random_clamps(count: int) -> list[Scene]:

@@ -15,12 +15,11 @@ from numbers import Real
 from typing import TYPE_CHECKING, Any
 
 import casadi as ca
-import numpy as np
 
 from ribbonopt.errors import ModelError
 from ribbonopt.scene import Law, OwnLaw, Scene
 
-from .law import ConstitutiveLaw, Stress
+from .law import ConstitutiveLaw
 
 if TYPE_CHECKING:
     from ribbonopt.mechanics.along import Field
@@ -36,9 +35,6 @@ LAWS: Mapping[str, tuple[str, str]] = {
     "homotopy": ("blended", "HomotopyLaw"),
     "variational": ("variational", "VariationalLaw"),
 }
-
-
-STRAIGHT = 1e-9  # strains out of a plane, of those in it or of 1 / L
 
 
 def law_class(name: str) -> type[ConstitutiveLaw]:
@@ -116,23 +112,6 @@ def capabilities(scene: Scene) -> ConstitutiveLaw:
     """Return the relation of a scene, its law in numbers, to be asked what it has."""
     known = {f"law.{name}": ca.SX(value) for name, value in numbers_of(scene.law).items()}
     return relation_of(scene, lambda name: known.get(name, ca.SX.sym(name)), ca.SX.sym("s"))
-
-
-def leaves_plane(scene: Scene, theta: Mapping[str, float]) -> bool:
-    """Whether natural strains take a ribbon out of the plane across its width.
-
-    `theta` are the numbers of the scene by name.
-    """
-    position = ca.SX.sym("s")
-    law = relation_of(scene, lambda name: ca.SX(theta[name]), position)
-    if not law.natural:
-        return False
-    in_plane = Stress(ca.SX.zeros(3), ca.SX([0.0, 0.7, 0.0]), ca.SX.zeros(len(law.states)))
-    strain = ca.Function("strain", [position], [ca.densify(law.strain(in_plane))])
-    start, end = scene.interval
-    places = (start + share * (end - start) for share in (0.0, 0.4, 1.0))
-    u1, u2, u3 = np.abs([np.array(strain(s)).ravel() for s in places]).max(axis=0)
-    return bool(max(u1, u3) > STRAIGHT * max(1.0, u2))
 
 
 def is_linear(law: Law) -> bool:

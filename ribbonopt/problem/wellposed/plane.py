@@ -9,7 +9,7 @@ import numpy as np
 
 from ribbonopt.arrays import Array
 from ribbonopt.errors import ModelError
-from ribbonopt.mechanics.laws.catalogue import leaves_plane
+from ribbonopt.mechanics.laws.asymmetry import leaves_plane
 from ribbonopt.mechanics.loads.load import Load
 from ribbonopt.problem.posed import Posed
 from ribbonopt.problem.ribbon import Ribbon
