@@ -9,14 +9,15 @@ member of it that was found.
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
 
 from ribbonopt.mechanics.laws.catalogue import capabilities
 from ribbonopt.mechanics.rotations import product
-from ribbonopt.problem import Ribbon
-from ribbonopt.problem.wellposed.linearized import linearize
+from ribbonopt.problem import BoundaryValueProblem, Ribbon
+from ribbonopt.problem.wellposed.linearized import Linearized, linearize
 from ribbonopt.problem.wellposed.motions import allowed_motions, rigid, unopposed
 from ribbonopt.solution.solution import Solution
 
@@ -53,7 +54,10 @@ def _spins(solution: Solution) -> bool:
     if any(not load.dead for load in solution.posed.loads):
         return False
     posed = solution.posed.under(formulation="inverted", states="reduced")
-    conditions = linearize(Ribbon.of(posed), posed)
+    kept = solution.problem.kept(_conditions)
+    if not kept:
+        kept.append(linearize(Ribbon.of(posed), posed))
+    conditions = replace(kept[0], posed=posed)
     ends = solution.fields(np.array([0.0, 1.0]))
     (first, last), c = conditions.ribbon.model.pack(ends, conditions.reference)
     z = np.concatenate([first, last, c])
@@ -64,6 +68,11 @@ def _spins(solution: Solution) -> bool:
     motions = np.hstack([rigid(conditions, z) @ allowed_motions(conditions), spin])
     free = unopposed(conditions, z, motions)
     return bool(free.size and np.abs(free[-1]).max() > PART * np.abs(free).max())
+
+
+def _conditions(problem: BoundaryValueProblem) -> list[Linearized]:
+    """Return the place where a problem keeps its conditions, linearised."""
+    return []
 
 
 def spin_problems(solution: Solution) -> list[str]:

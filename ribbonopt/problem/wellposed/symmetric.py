@@ -14,6 +14,7 @@ def refuse_asymmetry(posed: Posed) -> None:
         return
     raise ModelError(
         f"boundary.loop.piece: {loop.piece} stands for all of the loop by flips about {axis}, "
-        f"after which the natural strains of law {posed.scene.law.type} are others; solve piece: whole",
+        f"after which the natural strains of law {posed.scene.law.type} are others; solve piece: "
+        "whole",
         "boundary.loop.piece",
     )
