@@ -117,4 +117,5 @@ def equilibrium(
         estimate=estimated,
         algebraic_start=empty if algebraic_start is None else algebraic_start,
         conserved=ribbon.conserved,
+        neutral=ribbon.law.spins,
     )

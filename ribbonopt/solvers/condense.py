@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from ribbonopt.transcription.structure import Blocks
 
 DENSE = 80  # nodes of a phase are no longer reduced when their unknowns number less than this
+NEUTRAL, NEARLY = 1e-8, 1e-4  # singular value that counts as none, over the largest and the next
 
 
 @dataclass(frozen=True, eq=False)
@@ -86,7 +87,7 @@ class CondensedSystem:
     ) -> None:
         """Factor; quicker if it is for the stages' part of the residuals `only`.
 
-        Where one `neutral` direction is known to change nothing, steps leave it alone.
+        Where one `neutral` direction may change nothing, and does, steps leave it alone.
         """
         lay = self._layout = blocks.layout
         self._elements = blocks.eliminate(derivatives, p, only)
@@ -157,8 +158,12 @@ class CondensedSystem:
 
 
 def _across_neutral(matrix: Array) -> Array:
-    """Return the inverse of a matrix (n, n) without its smallest singular value."""
+    """Return the inverse of a matrix (n, n), less its smallest singular value if that is none."""
+    if np.linalg.cond(matrix, 1) < 1 / NEUTRAL:
+        return np.asarray(np.linalg.inv(matrix))
     left, singular, right = np.linalg.svd(matrix)
+    if singular[-1] > NEARLY * singular[-2]:
+        return np.asarray(np.linalg.inv(matrix))
     return np.asarray((right[:-1].T / singular[:-1]) @ left[:, :-1].T)
 
 

@@ -122,3 +122,16 @@ def test_a_family_is_followed() -> None:
     wanted = solve(loads_scene(text.replace("twist: 2}", "twist: 5.99}"))).energy
     energy, moment = points[-1].row["energy"], points[-1].row["m0z"]
     assert (energy - wanted) / 0.01 == pytest.approx(moment, abs=0.02)
+
+
+@pytest.mark.parametrize("twist", [0.0, 1.0, 3.0])
+def test_a_family_under_a_load_is_found_from_nothing(twist: float) -> None:
+    """A dead load along the axis leaves the turn free, one across it does not."""
+    found = arch(twist=twist, more="loads: {force: {z: -5}}\n")
+    assert found.verified and spins(found)
+    s = np.linspace(0, 1, 9)
+    kept = found.sample(s, "H - 5 * dot(r, ez)")
+    np.testing.assert_allclose(kept, kept[0], rtol=0, atol=1e-8)
+    assert judged(found).spins and negative_range(found) == (judged(found).negative,) * 2
+    across = arch(twist=twist, more="loads: {force: {x: -5}}\n")
+    assert across.verified and not spins(across)

@@ -36,9 +36,10 @@ class RodLaw(ConstitutiveLaw):
 
     @property
     def spins(self) -> bool:  # type: ignore[override]
-        """Whether it is the same about all axes across d3; of numbers only, not of symbols."""
-        equal = ca.is_equal(self.B[0], self.B[1])
-        return bool(equal and self.k[:2].is_zero())
+        """Whether it is the same about all axes across d3, or of symbols, and may be."""
+        if not (self.B.is_constant() and self.k.is_constant()):
+            return True
+        return bool(ca.is_equal(self.B[0], self.B[1]) and self.k[:2].is_zero())
 
     def strain(self, stress: Stress) -> ca.SX:
         return stress.m / self.B + self.k
