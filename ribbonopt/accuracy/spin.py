@@ -35,7 +35,8 @@ class Spin(NamedTuple):
 def spins(solution: Solution) -> bool:
     """Whether nothing opposes that a bent rod turns about its clamp's tangent, sections with it.
 
-    Known of what is solved in space; in a plane nothing spins.
+    Known of what is solved in space, without loads or supports at points of it; in a plane nothing
+    spins.
     """
     known = solution.trajectory.found
     if Spin not in known:
@@ -51,7 +52,7 @@ def _spins(solution: Solution) -> bool:
     tangents = solution.trajectory.at_nodes["d3"]
     if np.linalg.norm(tangents - tangents[0], axis=1).max() < STRAIGHT:
         return False
-    if any(not load.dead for load in solution.posed.loads):
+    if solution.posed.stations or any(not load.dead for load in solution.posed.loads):
         return False
     posed = solution.posed.under(formulation="inverted", states="reduced")
     kept = solution.problem.kept(_conditions)

@@ -35,6 +35,14 @@ class Balance(ABC):
     ) -> tuple[ca.SX, ca.SX]:
         """Force n and moment m (lab) from own states x and constants c at the arclength s."""
 
+    def stepped(self, c: ca.SX, s: ca.SX) -> ca.SX | None:
+        """Force (3,) of what acts at single places up to s, lab frame; None where nothing can."""
+        return None
+
+    def with_passed(self, passed: ca.SX) -> Balance:
+        """Return the same in a phase: which stations are before it (1) and behind (0)."""
+        return self
+
     @abstractmethod
     def rates(self, section: Section) -> ca.SX:
         """Return the derivatives of the states along s."""

@@ -29,6 +29,8 @@ from ribbonopt.mechanics.rotations import product
 
 from .contract import BoundaryValueProblem, Phase
 from .equilibrium import local_stress
+from .held import held_between
+from .imposed import residuals
 from .posed import RECOVERED, Posed
 from .ribbon import Ribbon
 
@@ -58,14 +60,16 @@ def minimum(ribbon: Ribbon) -> BoundaryValueProblem:
 
     All other conditions but dead forces are left out, natural or not.
     """
-    x = ca.SX.sym("x", len(ribbon.states))
+    count, held = len(ribbon.states), held_between(ribbon)
+    x = ca.SX.sym("x", count + len(held.names))
     # Force and moment for outputs and verification only: they follow from the costates.
-    loads = ca.vertcat(*(ribbon.theta[name] for name in RECOVERED))
-    section, (start, end) = ribbon.section(x, loads), ribbon.interval
+    names = [*RECOVERED, *(f"recovered.{name}" for name in ribbon.constants[len(RECOVERED) :])]
+    loads = ca.vertcat(*(ribbon.theta[name] for name in names))
+    section, (start, end) = ribbon.section(x[:count], loads), ribbon.interval
     beyond = dead_force(ribbon) + ribbon.model.beyond(ribbon.position, end)
-    program = _program(ribbon.law, section.rod.own)
+    program = _program(ribbon.law, section.rod.own, held.estimate)
     phase = Phase(
-        dynamics=ribbon.rates(section, program.u),
+        dynamics=ca.vertcat(ribbon.rates(section, program.u), held.rates(section.rod)),
         length=end - start,
         outputs=outputs(section, ribbon.law, program.u),
         path=program.path,
@@ -74,6 +78,13 @@ def minimum(ribbon: Ribbon) -> BoundaryValueProblem:
     points = ca.SX.sym("start", x.numel()), ca.SX.sym("end", x.numel())
     costate = ca.SX.sym("costate", x.numel())
     at_start = ca.substitute(beyond, ribbon.position, start)
+    first, last = (point[:count] for point in points)
+    conditions = residuals(ribbon, first, last, loads, kinematic_only=True)
+    conditions |= held.conditions(*points)
+    found = (
+        *_loads(points[0], costate, at_start + held.force(costate), ribbon),
+        *held.reactions(costate),
+    )
     return BoundaryValueProblem(
         position=ribbon.position,
         state=x,
@@ -83,14 +94,15 @@ def minimum(ribbon: Ribbon) -> BoundaryValueProblem:
         start=start,
         phases=(phase,),
         points=points,
-        conditions=ribbon.residuals(*points, loads, kinematic_only=True),
-        state_names=ribbon.states,
+        conditions=conditions,
+        state_names=(*ribbon.states, *held.names),
         constant_names=(),
         parameter_names=tuple(ribbon.theta),
         local=program.local,
         estimate=program.estimate,
         costate=costate,
-        recovered=dict(zip(RECOVERED, _loads(points[0], costate, at_start, ribbon), strict=True)),
+        recovered=dict(zip(names, found, strict=True)),
+        completed=held.completed(x, loads[len(RECOVERED) :]),
     )
 
 
@@ -105,18 +117,19 @@ class _Program(NamedTuple):
     estimate: ca.SX
 
 
-def _program(law: ConstitutiveLaw, own: ca.SX) -> _Program:
+def _program(law: ConstitutiveLaw, own: ca.SX, more: ca.SX) -> _Program:
+    """Return the program of a law; `more` is where to start states behind its own."""
     local, known = local_stress(law)
     relaxed = law.relaxed(known)
     if relaxed is not None:
-        r, start = relaxed, ca.vertcat(known.own, relaxed.estimate)
+        r, start = relaxed, ca.vertcat(known.own, more, relaxed.estimate)
         return _Program(r.controls, r.u, r.cost, r.path, local, start)
     z = ca.SX.sym("m", len(law.components))
     stress = Stress(ca.SX.zeros(3), law.whole(z), own)
     u = law.strain(stress)
     cost, _ = law.densities(stress, u)
     free = [3 + i for i in law.components]
-    return _Program(z, u, cost, ca.SX(0, 1), local, ca.vertcat(known.own, local[free]))
+    return _Program(z, u, cost, ca.SX(0, 1), local, ca.vertcat(known.own, more, local[free]))
 
 
 def dead_force(ribbon: Ribbon) -> ca.SX:
@@ -168,7 +181,11 @@ def refusal(ribbon: Ribbon, posed: Posed) -> Refusal | None:
         )
     if posed.scene.states in WITHOUT:
         return Refusal(WITHOUT[posed.scene.states], "use states: reduced", "formulation")
-    return _load_without_potential(ribbon) or _end_without_potential(ribbon)
+    return (
+        _load_without_potential(ribbon)
+        or _point_without_potential(ribbon)
+        or _end_without_potential(ribbon)
+    )
 
 
 def _load_without_potential(ribbon: Ribbon) -> Refusal | None:
@@ -183,6 +200,18 @@ def _load_without_potential(ribbon: Ribbon) -> Refusal | None:
                 "prescribe the position of the start, or use another formulation",
                 key,
             )
+    return None
+
+
+def _point_without_potential(ribbon: Ribbon) -> Refusal | None:
+    for station in ribbon.stations:
+        for action in station.actions:
+            if action.without_potential:
+                return Refusal(
+                    f"{action.path}: {action.without_potential}",
+                    "use another formulation",
+                    action.path,
+                )
     return None
 
 

@@ -50,6 +50,7 @@ from .model import (
     SolutionGuess,
     StrainGuess,
 )
+from .stations import InteriorSupport, PointLoad
 from .supports import Support, SupportName
 from .yamlio import (
     dump_scene,
@@ -77,6 +78,7 @@ __all__ = [
     "Helix",
     "HelixGuess",
     "Homotopy",
+    "InteriorSupport",
     "Ipopt",
     "Kirchhoff",
     "LabVector",
@@ -88,6 +90,7 @@ __all__ = [
     "Newton",
     "OwnLaw",
     "OwnLoad",
+    "PointLoad",
     "Quaternion",
     "Reference",
     "Regularized",

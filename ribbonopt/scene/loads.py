@@ -8,6 +8,7 @@ from typing import Annotated, Any, Protocol, runtime_checkable
 
 from .ends import LabVector, Triple
 from .schema.bounds import InPython
+from .stations import PointLoad
 
 
 @runtime_checkable
@@ -26,11 +27,12 @@ class OwnLoad(Protocol):
 
 @dataclass(frozen=True)
 class Loads:
-    """Loads per length, all along the ribbon.
+    """Loads along the ribbon, and at single places.
 
     `force` is dead: a force per length (lab frame) that keeps its direction, as own weight does.
-    `own` are declared in Python.
+    `points` act at single arclengths; `own` are declared in Python.
     """
 
     force: Triple | LabVector | None = None
+    points: tuple[PointLoad, ...] = ()
     own: tuple[Annotated[OwnLoad, InPython()], ...] = ()

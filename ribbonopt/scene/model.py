@@ -17,6 +17,7 @@ from .ends import Boundary, HalfTwists, Loop, Value
 from .laws import Law
 from .loads import Loads
 from .schema.bounds import Bounds
+from .stations import InteriorSupport
 
 Numbers3 = tuple[float, float, float]
 Intervals = Annotated[int, Bounds(ge=1, most=limits.INTERVALS)]
@@ -207,4 +208,5 @@ class Scene:
     record: dict[str, str] = field(default_factory=dict)
     continuation: ContinuationStage | tuple[ContinuationStage, ...] | None = None
     loads: Loads = field(default_factory=Loads)
+    supports: tuple[InteriorSupport, ...] = ()
     width: Along | None = None

@@ -22,6 +22,7 @@ from .laws import Law, OwnLaw, Stiff
 from .loads import Loads
 from .model import Guess, LoadGuess, Reference, Scene, StrainGuess
 from .quantities import dimension
+from .stations import InteriorSupport, PointLoad
 
 UNIT_LENGTH, UNIT_FORCE = "units.length", "units.force"
 SHORT, LONG = 1e-2, 10.0  # lengths of intervals that need no other unit
@@ -109,6 +110,7 @@ def in_special_units(scene: Scene, units: Units | None = None) -> Scene:
         parameters=parameters | own,
         boundary=_boundary(boundary, units, parameters),
         loads=_loads(scene.loads, units, parameters),
+        supports=tuple(_support(support, units, parameters) for support in scene.supports),
         width=scaled(scene.width, 1.0, units.length),
         guess=_guess(scene.guess, units),
         reference=_reference(scene.reference, units),
@@ -130,7 +132,24 @@ def _boundary(boundary: Boundary, units: Units, parameters: Mapping[str, float])
 
 
 def _loads(loads: Loads, units: Units, parameters: Mapping[str, float]) -> Loads:
-    return replace(loads, force=_over(loads.force, units.force / units.length, parameters))
+    points = tuple(_point(point, units, parameters) for point in loads.points)
+    force = _over(loads.force, units.force / units.length, parameters)
+    return replace(loads, force=force, points=points)
+
+
+def _point(point: PointLoad, units: Units, parameters: Mapping[str, float]) -> PointLoad:
+    return PointLoad(
+        at=_over(point.at, units.length, parameters),
+        force=_over(point.force, units.force, parameters),
+        moment=_over(point.moment, units.moment, parameters),
+    )
+
+
+def _support(
+    support: InteriorSupport, units: Units, parameters: Mapping[str, float]
+) -> InteriorSupport:
+    at = _over(support.at, units.length, parameters)
+    return InteriorSupport(at, _over(support.position, units.length, parameters))
 
 
 def _end(end: End, units: Units, parameters: Mapping[str, float]) -> End:

@@ -132,7 +132,9 @@ class _Tracking:
     def _along(self) -> float:
         """Return the size of dead loads along the ribbon, as a force."""
         numbers = [load.numbers().values() for load in self.posed.loads if load.dead]
-        return self.posed.length * max((abs(v) for some in numbers for v in some), default=0.0)
+        along = self.posed.length * max((abs(v) for some in numbers for v in some), default=0.0)
+        points = (a.loads.values() for st in self.posed.stations for a in st.actions)
+        return max((abs(v) for some in points for v in some), default=along)
 
     def _regrade(self, least: int = MESH.intervals, power: float = FLAT) -> None:
         """Move the nodes to where the ribbon bends now."""
@@ -218,6 +220,7 @@ class _Tracking:
         attempt = self.structure.attempt(smooth_of(self.posed, law), mesh=self.mesh)
         if self.loads < 1:
             names = {name for load in self.posed.loads if load.dead for name in load.numbers()}
+            names |= {n for st in self.posed.stations for a in st.actions for n in a.loads}
             for i, name in enumerate(attempt.problem.parameter_names):
                 attempt.p[i] *= self.loads if name in names else 1.0
         return attempt

@@ -50,14 +50,15 @@ def in_plane(ribbon: Ribbon, posed: Posed) -> Ribbon:
 
 def _across(ribbon: Ribbon, load: Load, z: Array, posed: Posed) -> float:
     """Part of a load at one end that would take the ribbon out of its plane."""
-    x, c = (ca.SX.sym("x", len(names)) for names in (ribbon.states, ribbon.constants))
-    rod, theta = ribbon.section(x, c).rod, ribbon.theta.__getitem__
+    x, constants = (ca.SX.sym("x", len(names)) for names in (ribbon.states, ribbon.constants))
+    rod, theta = ribbon.section(x, constants).rod, ribbon.theta.__getitem__
     force, couple = load.force(rod, theta), load.couple(rod, theta)
     parts = [ca.dot(force, rod.d2), ca.dot(couple, rod.d1), ca.dot(couple, rod.d3)]
-    inputs = [x, c, ribbon.parameters, ribbon.position]
+    inputs = [x, constants, ribbon.parameters, ribbon.position]
     function = ca.Function("across", inputs, [ca.densify(ca.vertcat(*parts))])
     count = x.numel()
-    found = function(z[:count], z[2 * count :], posed.values, posed.scene.interval[0])
+    c = z[len(z) - len(ribbon.constants) :]
+    found = function(z[:count], c, posed.values, posed.scene.interval[0])
     return float(np.abs(np.array(found)).max())
 
 
