@@ -8,7 +8,7 @@ M > 1e-51; at m = 0 strains and derivatives are finite.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import fields
 from importlib import import_module
 from numbers import Real
@@ -25,7 +25,7 @@ if TYPE_CHECKING:
     from ribbonopt.mechanics.along import Field
 
 #: laws by the name a scene gives them: module and class, which is imported when a scene asks for
-#: it; the fields of the class are those of the scene's
+#: it; the class takes what the scene's has, in order
 LAWS: Mapping[str, tuple[str, str]] = {
     "kirchhoff": ("kirchhoff", "KirchhoffLaw"),
     "rod": ("rod", "RodLaw"),
@@ -73,7 +73,7 @@ def law_of(law: Law, numbers: Mapping[str, ca.SX], position: ca.SX) -> Constitut
         Symbol of the arclength s, on which numbers may depend.
     """
     if not isinstance(law, OwnLaw):
-        return law_class(law.type).of(numbers)
+        return law_class(law.type)(*_arguments(law, numbers))
     found = law.constitutive(numbers, position)
     if not isinstance(found, ConstitutiveLaw):
         raise ModelError(
@@ -82,6 +82,13 @@ def law_of(law: Law, numbers: Mapping[str, ca.SX], position: ca.SX) -> Constitut
             "law",
         )
     return found
+
+
+def _arguments(law: Law, numbers: Mapping[str, ca.SX]) -> Iterator[ca.SX]:
+    """Yield what the class of a law takes, in the order of the scene's fields; triples as (3,)."""
+    for name in (f.name for f in fields(law) if f.name != "type"):
+        triple = isinstance(getattr(law, name), tuple)
+        yield ca.vertcat(*(numbers[f"{name}.d{i}"] for i in (1, 2, 3))) if triple else numbers[name]
 
 
 def relation_of(scene: Scene, theta: Callable[[str], ca.SX], position: ca.SX) -> ConstitutiveLaw:

@@ -101,11 +101,6 @@ class ConstitutiveLaw(ABC):
     #: names of states of its own along the ribbon, with `rates`, `end_conditions`, `own_guess`
     states: tuple[str, ...] = ()
 
-    @classmethod
-    def of(cls, numbers: Mapping[str, ca.SX]) -> ConstitutiveLaw:
-        """Return the law of numbers by the names that a scene gives them."""
-        return cls(**numbers)
-
     @abstractmethod
     def strain(self, stress: Stress) -> ca.SX:
         """Strains (3,) at a stress."""

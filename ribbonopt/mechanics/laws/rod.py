@@ -6,7 +6,6 @@ m_i^2 / (2 B_i) + m_i k_i. With u1 not zero there are no generatrices and no rib
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
 
 import casadi as ca
@@ -23,11 +22,6 @@ class RodLaw(ConstitutiveLaw):
     components = (0, 1, 2)
     developable = False
     linear_at_zero = True
-
-    @classmethod
-    def of(cls, numbers: Mapping[str, ca.SX]) -> RodLaw:
-        vectors = (ca.vertcat(*(numbers[f"{x}.d{i}"] for i in (1, 2, 3))) for x in ("B", "natural"))
-        return cls(*vectors)
 
     @property
     def natural(self) -> bool:  # type: ignore[override]
