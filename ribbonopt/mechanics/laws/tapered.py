@@ -25,6 +25,7 @@ _DECLARED = (
     "smooth",
     "linear_at_zero",
     "natural",
+    "spins",
     "kinked",
     "sheeted",
     "switch_name",
