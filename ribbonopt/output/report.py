@@ -35,6 +35,7 @@ def report(summary: Mapping[str, Any]) -> str:
         _row("energy", s["energy"], errors["energy"]),
         _row("invariant H(0)", s["H0"], errors["H0"]),
         *(_row(name, value, s["recorded_error"][name]) for name, value in s["recorded"].items()),
+        *_acting(s),
         *_unknown_bars(s),
         *_phases(s),
         "",
@@ -62,6 +63,27 @@ def _phases(s: Mapping[str, Any]) -> list[str]:
         at = ", ".join(f"{point:.6g}" for point in s["switch_points"])
         where = f"; switches at s = {at}" if at else " all along"
         lines.append(f"  phases                   {phase_words(s['phases'])}{where}")
+    return lines
+
+
+def _acting(s: Mapping[str, Any]) -> list[str]:
+    """Lines on what acts on the ribbon and what its supports carry, where that is not n(0) alone.
+
+    All of it adds up to zero.
+    """
+    between = [r for r in s["reactions"] if not r["path"].startswith("boundary.")]
+    if not s["loads"] and not between:
+        return []
+    unit = "N, " if s["units"].startswith("SI") else ""
+    lines = [f"  forces on the ribbon ({unit}lab frame):"]
+    for load in s["loads"]:
+        where = "in all" if load["at"] is None else f"at s = {load['at']:.6g}"
+        force = ", ".join(_number(v, None, small=False) for v in load["force"])
+        lines.append(f"    {load['path']:<22} ({force}) {where}")
+    for held in s["reactions"]:
+        where = held["path"].removeprefix("boundary.")
+        label = f"  carried at {where}" if where == held["path"] else f"  at the {where}"
+        lines.append(_row(label, held["force"], held["error"]))
     return lines
 
 

@@ -1,8 +1,9 @@
 """A solution as pieces to draw: rows along s, split where u2 changes sign while u3 does not vanish.
 
 There eta = u3/u2 leaps from one sign to the other, whether u2 jumps (Sadowsky's law at m2 = 0) or
-passes through 0 (the other laws). Rows approach the ends of each piece from inside, so that a jump
-at an end shows its own side only, and they crowd there, where regularised laws change quickly.
+passes through 0 (the other laws). They are split as well where something acts at a single place.
+Rows approach the ends of each piece from inside, so that a jump at an end shows its own side only,
+and they crowd there, where regularised laws change quickly.
 """
 
 from __future__ import annotations
@@ -14,6 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ribbonopt.mechanics.widths import widths
+from ribbonopt.solution.acting import at_places
 from ribbonopt.solution.solution import Solution
 
 Array = NDArray[np.float64]
@@ -74,11 +76,11 @@ def sample_pieces(solution: Solution, rows: int = ROWS) -> tuple[Piece, ...]:
     s = _grid(start, end, rows, INSET * length)
     values = solution.outputs(s)
     scale = _scale(values)
-    crossings = _crossings(solution, s, values, scale)
-    if not crossings:
+    cuts = sorted({*_crossings(solution, s, values, scale), *_places(solution)})
+    if not cuts:
         return (_piece(solution, s, values, scale),)
     pieces = []
-    for a, b in pairwise([start, *crossings, end]):
+    for a, b in pairwise([start, *cuts, end]):
         if b - a > SHORTEST * length:
             s = _grid(a, b, max(9, round(rows * (b - a) / length)), INSET * length)
             pieces.append(_piece(solution, s, solution.outputs(s), scale))
@@ -115,6 +117,13 @@ def _crossings(solution: Solution, s: Array, values: dict[str, Array], scale: fl
     steady = np.abs(values["u2"]) > NO_BEND * scale
     rows = np.flatnonzero(steady & twisted)
     return [_bisect(solution, s[i], s[j], up[i]) for i, j in pairwise(rows) if up[i] != up[j]]
+
+
+def _places(solution: Solution) -> list[float]:
+    """Arclengths at which a load or a support acts: n jumps there, strains may."""
+    if not solution.posed.stations:
+        return []
+    return list(dict.fromkeys(place.at for place in at_places(solution)))
 
 
 def _bisect(solution: Solution, a: float, b: float, up: bool) -> float:

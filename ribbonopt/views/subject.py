@@ -10,6 +10,7 @@ from ribbonopt.errors import ViewError
 from ribbonopt.scene.units import Units
 from ribbonopt.solution.solution import Solution
 
+from .acting import Acting, acting_of
 from .pieces import ROWS, Piece, in_plane, sample_pieces
 from .symmetry import continued
 
@@ -31,6 +32,8 @@ class Subject:
         What follows by symmetry, or empty.
     count : int
         How many times the interval makes all of it.
+    acting : Acting
+        What acts and holds: at ends only where the ribbon does not go on by symmetry.
     units : Units
         Of all of it.
     half_width : float or None
@@ -44,6 +47,7 @@ class Subject:
     units: Units = field(default_factory=Units)
     half_width: float | None = None
     count: int = 1
+    acting: Acting = field(default_factory=Acting)
 
     @property
     def pieces(self) -> tuple[Piece, ...]:
@@ -101,4 +105,5 @@ def subject_of(solution: Solution, complete: bool) -> Subject:
         units=solution.units,
         half_width=None if ribbon is None else ribbon.width / 2,
         count=count,
+        acting=acting_of(solution, ends=band is None),
     )
