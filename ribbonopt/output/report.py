@@ -67,24 +67,30 @@ def _phases(s: Mapping[str, Any]) -> list[str]:
 
 
 def _acting(s: Mapping[str, Any]) -> list[str]:
-    """Lines on what acts on the ribbon and what its supports carry, where that is not n(0) alone.
-
-    All of it adds up to zero.
-    """
+    """Lines on loads and on what supports and ends carry, where n(0) does not say all of it."""
     between = [r for r in s["reactions"] if not r["path"].startswith("boundary.")]
     if not s["loads"] and not between:
         return []
-    unit = "N, " if s["units"].startswith("SI") else ""
-    lines = [f"  forces on the ribbon ({unit}lab frame):"]
+    unit = "N, N m, " if s["units"].startswith("SI") else ""
+    lines = [f"  on the ribbon ({unit}lab frame):"]
     for load in s["loads"]:
         where = "in all" if load["at"] is None else f"at s = {load['at']:.6g}"
-        force = ", ".join(_number(v, None, small=False) for v in load["force"])
-        lines.append(f"    {load['path']:<22} ({force}) {where}")
+        lines.append(f"    {load['path']:<22} {_load(load)} {where}")
     for held in s["reactions"]:
         where = held["path"].removeprefix("boundary.")
         label = f"  carried at {where}" if where == held["path"] else f"  at the {where}"
         lines.append(_row(label, held["force"], held["error"]))
     return lines
+
+
+def _load(load: Mapping[str, Any]) -> str:
+    """Write the force and the moment of a load, but for one that is zero."""
+    both = [(word, load[word]) for word in ("force", "moment") if any(load[word])]
+    texts = []
+    for word, vector in both or [("force", load["force"])]:
+        numbers = ", ".join(_number(v, None, small=False) for v in vector)
+        texts.append(f"({numbers})" if word == "force" else f"moment ({numbers})")
+    return " and ".join(texts)
 
 
 def _unknown_bars(s: Mapping[str, Any]) -> list[str]:

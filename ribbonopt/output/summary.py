@@ -12,7 +12,6 @@ import numpy as np
 
 from ribbonopt.accuracy.carried import reaction_errors
 from ribbonopt.accuracy.estimate import estimate_error
-from ribbonopt.arrays import Array
 from ribbonopt.checks.topology import count_half_twists
 from ribbonopt.checks.validity import warnings_of
 from ribbonopt.checks.zero_moment import lacks_linearisation
@@ -120,10 +119,13 @@ def _recorded(solution: Solution) -> dict[str, Any]:
 
 
 def _loads(solution: Solution) -> list[dict[str, Any]]:
-    """Return the force of each load in all: along the ribbon (`at` None), and at single places."""
-    along = [(name, None, force) for name, force in resultants(solution).items()]
-    points = [(p.path, p.at, p.force) for p in at_places(solution) if not p.support]
-    return [_acting(*load) for load in (*along, *points)]
+    """Return force and couple of each load in all: along the ribbon (`at` None), and at places."""
+    along = [(name, None, *both) for name, both in resultants(solution).items()]
+    points = [(p.path, p.at, p.force, p.moment) for p in at_places(solution) if not p.support]
+    return [
+        {"path": path, "at": at, "force": force.tolist(), "moment": moment.tolist()}
+        for path, at, force, moment in (*along, *points)
+    ]
 
 
 def _reactions(solution: Solution) -> list[dict[str, Any]]:
@@ -134,13 +136,9 @@ def _reactions(solution: Solution) -> list[dict[str, Any]]:
         with suppress(np.linalg.LinAlgError):
             errors = list(reaction_errors(solution))
     return [
-        _acting(place.path, place.at, place.force) | {"error": error}
+        {"path": place.path, "at": place.at, "force": place.force.tolist(), "error": error}
         for place, error in zip(found, errors, strict=True)
     ]
-
-
-def _acting(path: str, at: float | None, force: Array) -> dict[str, Any]:
-    return {"path": path, "at": at, "force": force.tolist()}
 
 
 def _error_estimate(solution: Solution) -> dict[str, float | None]:

@@ -23,7 +23,7 @@ VECTORS = ("r", "d1", "d2", "d3", "n", "m")
 
 @dataclass(frozen=True, eq=False)
 class PlaceForce:
-    """The force (3,) on the ribbon at the arclength `at`; `path` is whose, in the scene.
+    """The force and moment (3,) on the ribbon at the arclength `at`; `path` is whose, in the scene.
 
     `support` says whether that holds the ribbon, or is its end: then the equilibrium has found it.
     """
@@ -31,19 +31,23 @@ class PlaceForce:
     path: str
     at: float
     force: Array
+    moment: Array
     support: bool
 
 
 def at_places(solution: Solution) -> tuple[PlaceForce, ...]:
     """Return the forces between the ends, in order of arclength: point loads and reactions."""
-    posed, units = solution.posed, solution.units
-    theta, unknown = _numbers(solution)
+    if not solution.posed.stations:
+        return ()
+    posed, units, (numbers, constants) = solution.posed, solution.units, _numbers(solution)
+    # In a plane what is across it is not among the unknowns.
+    theta, unknown = _symbols(numbers), _symbols(constants)
     return tuple(
         PlaceForce(
             action.path,
-            units.length * theta.get(f"{action.path}.at", action.at),
-            # In a plane what is across it is not among the unknowns.
-            units.force * _vector(action.force(_symbols(theta), _symbols(unknown))),
+            units.length * numbers.get(f"{action.path}.at", action.at),
+            units.force * _vector(action.force(theta, unknown)),
+            units.moment * _vector(action.couple(theta, unknown)),
             support=not action.loads,
         )
         for station in posed.stations
@@ -60,9 +64,9 @@ def reactions(solution: Solution) -> tuple[PlaceForce, ...]:
     between = tuple(place for place in at_places(solution) if place.support)
     if solution.scene.boundary.loop is not None:
         return between
-    (start, end), n = solution.scene.interval, solution.at_nodes["n"]
-    first = PlaceForce("boundary.start", float(start), 0.0 - n[0], support=True)
-    last = PlaceForce("boundary.end", float(end), n[-1], support=True)
+    (start, end), n, m = solution.scene.interval, *(solution.at_nodes[name] for name in "nm")
+    first = PlaceForce("boundary.start", float(start), 0.0 - n[0], 0.0 - m[0], support=True)
+    last = PlaceForce("boundary.end", float(end), n[-1], m[-1], support=True)
     return (first, *between, last)
 
 
@@ -70,35 +74,47 @@ def forces_along(solution: Solution, s: Array) -> dict[str, Array]:
     """Return the force per length (k, 3) of each load along the ribbon at arclengths s (k,)."""
     if not solution.posed.loads:
         return {}
-    return _along(solution, s / solution.units.length, solution.outputs(s))
+    found = _along(solution, s / solution.units.length, solution.outputs(s))
+    return {name: force for name, (force, _) in found.items()}
 
 
-def resultants(solution: Solution) -> dict[str, Array]:
-    """Return the force (3,) of each load along the ribbon in all, by the scheme's quadrature."""
+def resultants(solution: Solution) -> dict[str, tuple[Array, Array]]:
+    """Return the force (3,) and couple (3,) of each load along the ribbon in all.
+
+    By the scheme's quadrature; the couple is that which is given, without moments of the force.
+    """
     if not solution.posed.loads:
         return {}
     start, end = solution.scene.interval
     _, fraction, weights, _ = solution.trajectory.stages
     s = (start + (end - start) * fraction) / solution.units.length
-    forces = _along(solution, s, solution.at_stages)
-    return {name: (end - start) * (weights @ force) for name, force in forces.items()}
+    along = _along(solution, s, solution.at_stages)
+    share = (end - start) * weights
+    return {name: (share @ force, share @ couple) for name, (force, couple) in along.items()}
 
 
-def _along(solution: Solution, s: Array, values: Mapping[str, Array]) -> dict[str, Array]:
-    """Return forces per length (k, 3) at arclengths s (k,) in units L = 1, outputs there known."""
+def _along(
+    solution: Solution, s: Array, values: Mapping[str, Array]
+) -> dict[str, tuple[Array, Array]]:
+    """Return forces and couples per length (k, 3) at arclengths s (k,), which are in units L = 1.
+
+    `values` are the outputs there, in the units of the scene.
+    """
     units, theta = solution.units, _symbols(_numbers(solution)[0])
-    vectors = [ca.SX.sym(name, 3) for name in VECTORS]
     own, position = solution.posed.loads, ca.SX.sym("s")
-    r, d1, d2, d3, n, m = vectors
+    r, d1, d2, d3, n, m = (ca.SX.sym(name, 3) for name in VECTORS)
     section = Section(r, d1, d2, d3, n, m, position, ca.SX(0, 1))
-    forces = [ca.densify(load.force(section, theta)) for load in own]
-    function = ca.Function("forces", [*vectors, position], forces)
-    inputs = [(values[name] / units.of(name)).T for name in VECTORS]
-    found = function.map(len(s)).call([*inputs, s[None]])
-    unit, result = units.force / units.length, dict[str, Array]()
-    for load, force in zip(own, found, strict=True):
-        # Two of a user's own may share a name.
-        result[load.name] = result.get(load.name, 0.0) + unit * np.array(force).T
+    vectors = [ca.vertcat(x.force(section, theta), x.couple(section, theta)) for x in own]
+    inputs = [r, d1, d2, d3, n, m, position]
+    function = ca.Function("acting", inputs, [ca.densify(vector) for vector in vectors])
+    numbers = [(values[name] / units.of(name)).T for name in VECTORS]
+    result: dict[str, tuple[Array, Array]] = {}
+    for load, found in zip(own, function.map(len(s)).call([*numbers, s[None]]), strict=True):
+        force, couple = np.split(np.array(found).T, 2, axis=1)
+        force, couple = force * units.force / units.length, couple * units.force
+        if load.name in result:  # as two of a user's own may have it
+            force, couple = force + result[load.name][0], couple + result[load.name][1]
+        result[load.name] = force, couple
     return result
 
 

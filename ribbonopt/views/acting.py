@@ -27,8 +27,8 @@ class Site:
     ----------
     path, at : str, float
         Name in the scene, and arclength.
-    force, reaction : (3,) arrays
-        On the ribbon, lab frame: what is given, and what is carried along the axes held.
+    force, moment, reaction : (3,) arrays
+        On the ribbon, lab frame: what is given, and the force carried along the axes held.
     held, whole : str, bool
         Lab axes along which the position is held, and whether that is all of it.
     clamped : bool
@@ -42,6 +42,7 @@ class Site:
     path: str
     at: float
     force: Array
+    moment: Array
     reaction: Array
     held: str = ""
     whole: bool = False
@@ -74,6 +75,11 @@ class Acting:
     def largest(self) -> float:
         """The largest of given forces, zero if there is none."""
         return max((float(np.linalg.norm(site.force)) for site in self.sites), default=0.0)
+
+    @property
+    def strongest(self) -> float:
+        """The largest of given moments, zero if there is none."""
+        return max((float(np.linalg.norm(site.moment)) for site in self.sites), default=0.0)
 
     @property
     def densest(self) -> float:
@@ -110,9 +116,9 @@ def _between(solution: Solution) -> Iterable[Site]:
         if place.support:
             support = scene.supports[int(place.path.rpartition(".")[2])]
             held = "".join(components(support.position, scene.parameters))
-            yield Site(place.path, place.at, zero, place.force, held, _whole(solution, held))
+            yield Site(place.path, place.at, zero, zero, place.force, held, _whole(solution, held))
         else:
-            yield Site(place.path, place.at, place.force, zero)
+            yield Site(place.path, place.at, place.force, place.moment, zero)
 
 
 def _at_end(solution: Solution, outward: int, end: End) -> Site:
@@ -120,8 +126,8 @@ def _at_end(solution: Solution, outward: int, end: End) -> Site:
     scene, row = solution.scene, -1 if outward > 0 else 0
     values = {name: solution.at_nodes[name][row] for name in ("n", "d1", "d2", "d3")}
     axes = {"x": np.eye(3)[0], "y": np.eye(3)[1], "z": np.eye(3)[2]} | values
-    given = components(end.force, scene.parameters)
-    force = sum((f * axes[axis] for axis, f in given.items()), np.zeros(3))
+    given = [components(load, scene.parameters) for load in (end.force, end.moment)]
+    force, moment = (sum((v * axes[a] for a, v in g.items()), np.zeros(3)) for g in given)
     held = "".join(held_position(end, scene.parameters))
     carried = np.array([axis in held for axis in "xyz"]) * values["n"]
     frame = frame_of(end, scene.parameters) is not None
@@ -131,6 +137,7 @@ def _at_end(solution: Solution, outward: int, end: End) -> Site:
         "boundary.end" if outward > 0 else "boundary.start",
         float(scene.interval[row]),
         outward * force,
+        outward * moment,
         outward * carried,
         held,
         _whole(solution, held),

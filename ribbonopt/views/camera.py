@@ -18,6 +18,7 @@ UP = np.array([1.0, 0.5, 0.8])  # up in the picture and towards the viewer, if t
 CHOICE = 0.03  # views this close to the best are as good
 AMBIENT = 0.5
 GLOSS = 0.16
+ONE_WAY = 0.5  # mean of unit vectors of forces that go about one way
 UPRIGHT = 4.0  # how much rather forces are seen upright
 FACING = 0.5  # a face this frontal (cosine) needs not be more so
 
@@ -67,7 +68,7 @@ def place_camera(line: Array, normals: Array, ways: Array | None = None) -> Came
         score *= np.sqrt(np.maximum(1 - (towards @ ways.T) ** 2, 0)).mean(axis=1)
         upright = ways.mean(axis=0)
     good = np.flatnonzero(score > (1 - CHOICE) * score.max())
-    views = (_level(t, spread) for t in towards[good])
+    views = (_level(t, spread, upright) for t in towards[good])
     return max(views, key=lambda c: float(c.towards @ UP) + UPRIGHT * abs(float(c.up @ upright)))
 
 
@@ -80,11 +81,16 @@ def _directions() -> Array:
     return np.stack([rho * np.cos(angle), rho * np.sin(angle), z], axis=1)
 
 
-def _level(towards: Array, spread: Array) -> Camera:
-    """Turn the picture so that the lab axis nearest to its longest extent is level."""
+def _level(towards: Array, spread: Array, upright: Array) -> Camera:
+    """Turn the picture so that the lab axis nearest to its longest extent is level.
+
+    Where forces go one way, `upright`, it is the one that is most across that.
+    """
     across = np.eye(3) - np.outer(towards, towards)
-    longest = np.linalg.eigh(across @ spread @ across)[1][:, -1]
-    right = across[np.argmax(np.abs(longest))]
+    level = np.linalg.eigh(across @ spread @ across)[1][:, -1]
+    if np.linalg.norm(across @ upright) > ONE_WAY:
+        level = np.cross(across @ upright, towards)
+    right = across[np.argmax(np.abs(across @ level))]
     right = right / np.linalg.norm(right)
     up = np.cross(towards, right)
     if up @ UP < 0:

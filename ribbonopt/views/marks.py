@@ -33,18 +33,20 @@ PLATE = "#b8b8b8"
 class Marks:
     """Marks in the plane of a picture: polygons with their colours, lines, arrows (k, 2, 2).
 
-    Arrows are pairs of tail and way: `arrows` of forces, `rows` of forces per length.
+    Arrows are pairs of tail and way: `arrows` of forces, `rows` of forces per length. `rings`
+    (k, 2), of moments, end in an arrow.
     """
 
     polygons: tuple[tuple[Array, str], ...]
     lines: tuple[tuple[Array, str], ...]
     arrows: Array
     rows: Array
+    rings: tuple[Array, ...] = ()
 
     @property
     def points(self) -> Array:
         """All that a picture must have room for, (k, 2)."""
-        parts = [p for p, _ in (*self.polygons, *self.lines)]
+        parts = [*(p for p, _ in (*self.polygons, *self.lines)), *self.rings]
         for arrows in (self.arrows, self.rows):
             parts += [arrows[:, 0], arrows.sum(axis=1)]
         return np.concatenate(parts)
@@ -55,11 +57,13 @@ def marks_of(acting: Acting, surface: Surface, camera: Camera, size: float) -> M
     artist = _Artist(surface, camera, size)
     polygons: list[tuple[Array, str]] = []
     lines: list[tuple[Array, str]] = []
-    arrows, rows = [], []
+    arrows, rows, rings = [], [], []
     for site in acting.sites:
         if np.linalg.norm(site.force) > NOTHING * acting.largest:
             length = LONGEST * size / acting.largest
             arrows.append(artist.arrow(site.at, length * site.force, site.outward))
+        if np.linalg.norm(site.moment) > NOTHING * acting.strongest:
+            rings.append(artist.ring(site.at, site.moment))
         if site.clamped:
             polygons.append((artist.clamp(site), PLATE if site.whole else "white"))
             if site.guide is not None:
@@ -74,13 +78,27 @@ def marks_of(acting: Acting, surface: Surface, camera: Camera, size: float) -> M
     if acting.string:
         lines.append((artist.chord, ":"))
     none = np.empty((0, 2, 2))
-    return Marks(tuple(polygons), tuple(lines), np.array(arrows or none), np.array(rows or none))
+    both = np.array(arrows or none), np.array(rows or none)
+    return Marks(tuple(polygons), tuple(lines), *both, tuple(rings))
 
 
 def paint_marks(axes: Axes, marks: Marks) -> None:
     """Draw marks into axes, below what is drawn there otherwise."""
-    from matplotlib.patches import Polygon
+    from matplotlib.patches import FancyArrowPatch, Polygon
+    from matplotlib.path import Path
 
+    for ring in marks.rings:
+        arrow = FancyArrowPatch(
+            path=Path(ring),
+            arrowstyle="-|>",
+            mutation_scale=11,
+            shrinkA=0,
+            shrinkB=0,
+            color=TWIST,
+            lw=1.4,
+            zorder=0.6,
+        )
+        axes.add_patch(arrow)
     for corners, colour in marks.polygons:
         axes.add_patch(Polygon(corners, fc=colour, ec=INK, lw=0.8, zorder=0.5))
     for points, style in marks.lines:
@@ -126,6 +144,18 @@ class _Artist:
         if outward and _unit(way) @ _unit(away) < AGAINST:
             return np.array([self._point(s) - way, way])
         return np.array([self._beside(s, _unit(way)), way])
+
+    def ring(self, s: float, moment: Array) -> Array:
+        """Return most of a circle (k, 2) about a moment (3,), right-handed, around the ribbon."""
+        sheet, row = self.surface.at(s)
+        middle, axis = sheet.piece.r[row], moment / np.linalg.norm(moment)
+        out = np.linalg.norm(sheet.points(1)[row] - middle)
+        frame = (sheet.piece.d1[row], sheet.piece.d2[row], sheet.piece.d3[row])
+        across = [v - (v @ axis) * axis for v in frame]
+        first = _unit(max(across, key=lambda v: float(v @ v)))
+        angle = np.linspace(0.15 * np.pi, 1.75 * np.pi, 49)[:, None]
+        circle = np.cos(angle) * first + np.sin(angle) * np.cross(axis, first)
+        return self._seen(middle + max(WIDER * out, SYMBOL * self.size) * circle)
 
     def clamp(self, site: Site) -> Array:
         """Return the corners (4, 2) of a plate behind an end."""

@@ -21,6 +21,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 WIDTH, HEIGHT = 7.2, 6.4  # inches, at most
+NARROWEST = 0.75  # width of a picture over its height: room for its title
 
 
 def plot_ribbon(
@@ -62,7 +63,9 @@ def draw_ribbon(subject: Subject, half_width: float | None = None) -> Figure:
     for x, y in marks.points:
         left, right, low, high = min(left, x), max(right, x), min(low, y), max(high, y)
     foot = 0.13 * size
-    box = (left - 0.03 * size, right + 0.03 * size, low - foot, high + 0.03 * size)
+    low, high = low - foot, high + 0.03 * size
+    beside = max(0.03 * size, (NARROWEST * (high - low) - (right - left)) / 2)
+    box = (left - beside, right + beside, low, high)
     page = WIDTH / (box[1] - box[0])
     height = min(HEIGHT, page * (box[3] - box[2]))
     figure = blank(WIDTH, max(height, 0.2 * WIDTH) + 0.7)
@@ -164,6 +167,8 @@ def _arrows(subject: Subject) -> str:
     found = []
     if acting.largest > 0:
         found.append(f"forces up to {acting.largest:.3g}{' N' * si}")
+    if acting.strongest > 0:
+        found.append(f"moments up to {acting.strongest:.3g}{' N m' * si}")
     if acting.densest > 0:
         found.append(f"forces per length up to {acting.densest:.3g}{' N/m' * si}")
     return "arrows: " + ", ".join(found) if found else ""
