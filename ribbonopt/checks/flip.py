@@ -61,11 +61,8 @@ def find_flip(solution: Solution) -> Flip | None:
     """Find the flip at the end of a solution that is one half of a closed band, if it is one.
 
     None for a ribbon that is already closed, and for one whose image would not join it smoothly
-    (position and tangent, within 1e-6) at both ends: both must lie on the axis. None under loads
-    between the ends, of which an image need not have its share.
+    (position and tangent, within 1e-6) at both ends: both must lie on the axis.
     """
-    if solution.posed.loaded:
-        return None
     start, end = solution.scene.interval
     s = np.array([start, end])
     ends = solution.outputs(s)

@@ -1,16 +1,19 @@
 """What acts on a solution adds up to zero, and is what independent codes found."""
 
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
+import casadi as ca
 import numpy as np
 import pytest
 
 from ribbonopt import loads_scene, solve
 from ribbonopt.accuracy.carried import reaction_errors
+from ribbonopt.mechanics.loads.load import Load, Theta
+from ribbonopt.mechanics.section import Section
 from ribbonopt.output.report import report
 from ribbonopt.output.summary import summarize
-from ribbonopt.scene import Collocation, Scene
+from ribbonopt.scene import Collocation, Loads, Scene
 from ribbonopt.solution.acting import at_places, forces_along, reactions, resultants
 from ribbonopt.solution.solution import Solution
 
@@ -23,6 +26,17 @@ boundary:
   start: {support: clamped, position: [0, 0, 0], directors: identity}
   end: {support: free, force: [0, -1, 0]}
 loads: {force: {x: -3}, points: [{at: 0.5, force: {d1: 2, d3: -1}}, {at: 0.7, force: [0, 1, 2]}]}
+"""
+
+SI = """
+name: hung
+law: {type: sadowsky}
+states: planar
+ribbon: {length: 0.3, width: 0.01, thickness: 1e-4, youngs_modulus: 4.5e9, poisson_ratio: 0.38}
+boundary:
+  start: {support: clamped, position: [0, 0, 0], directors: identity}
+  end: {support: free}
+loads: {force: {x: -2e-3}, points: [{at: 0.1, force: [-1e-4, 0, 0]}]}
 """
 
 
@@ -71,20 +85,7 @@ def test_dead_and_following_forces_on_a_ribbon_in_space() -> None:
 
 
 def test_forces_along_are_in_the_units_of_the_scene() -> None:
-    sizes = "length: 0.3, width: 0.01, thickness: 1e-4"
-    ribbon = f"{{{sizes}, youngs_modulus: 4.5e9, poisson_ratio: 0.38}}"
-    found = solve(
-        loads_scene(f"""
-        name: hung
-        law: {{type: sadowsky}}
-        states: planar
-        ribbon: {ribbon}
-        boundary:
-          start: {{support: clamped, position: [0, 0, 0], directors: identity}}
-          end: {{support: free}}
-        loads: {{force: {{x: -2e-3}}, points: [{{at: 0.1, force: [-1e-4, 0, 0]}}]}}
-        """)
-    )
+    found = solve(loads_scene(SI))
     forces = forces_along(found, np.array([0.0, 0.12, 0.3]))
     np.testing.assert_allclose(forces["loads.force"], [[-2e-3, 0, 0]] * 3, rtol=1e-12)
     assert reactions(found)[0].force == pytest.approx([7e-4, 0, 0], abs=1e-14)
@@ -116,3 +117,34 @@ def test_nothing_is_said_where_nothing_acts_between(solved: Callable[..., Soluti
     assert "on the ribbon (" not in report(summary)
     # A piece of a loop has no ends.
     assert summarize(solved("band_three"))["reactions"] == []
+
+
+@dataclass(frozen=True)
+class Stirred(Load):
+    """A couple per length about y, on ribbons in the plane of x and z."""
+
+    c: float
+    name = "stirred"
+
+    def numbers(self) -> dict[str, float]:
+        return {"stirred.c": self.c}
+
+    def force(self, section: Section, theta: Theta) -> ca.SX:
+        return ca.SX.zeros(3)
+
+    def couple(self, section: Section, theta: Theta) -> ca.SX:
+        return ca.vertcat(0, theta("stirred.c"), 0)
+
+    def symmetries(self, motions: np.ndarray) -> np.ndarray:
+        return np.eye(motions.shape[1])  # those of the plane
+
+
+def test_a_couple_along_the_ribbon_is_what_the_clamp_holds() -> None:
+    # Numbers of a load declared in Python are in units Dw = L = 1.
+    scene = replace(loads_scene(SI), loads=Loads(own=(Stirred(0.7),)))
+    found = solve(scene)
+    force, couple = resultants(found)["stirred"]
+    assert not force.any()
+    unit = 4.5e9 * 1e-4**3 / (12 * (1 - 0.38**2)) * 0.01 / 0.3
+    assert couple == pytest.approx([0, 0.7 * unit, 0], rel=1e-12)
+    assert found.m0 == pytest.approx(couple, rel=1e-10, abs=1e-15)

@@ -1,7 +1,7 @@
 """Arrows and symbols are what acts and holds, beside the ribbon and below it."""
 
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 
 import numpy as np
 import pytest
@@ -10,6 +10,8 @@ from matplotlib.patches import Polygon
 from matplotlib.quiver import Quiver
 
 from ribbonopt import loads_scene, plot_ribbon, plot_strains, solve
+from ribbonopt.mechanics.loads.load import Load
+from ribbonopt.scene import Loads
 from ribbonopt.solution.solution import Solution
 from ribbonopt.views.acting import PLACES, Acting, Site, acting_of
 from ribbonopt.views.camera import Camera, place_camera
@@ -31,6 +33,23 @@ boundary:
   end: {support: free, force: [-1, 0, 0]}
 loads: {points: [{at: 0.5, force: [-2, 0, 0]}, {at: 0.7, moment: {y: 1.5}}]}
 """
+
+
+@dataclass(frozen=True)
+class Wind(Load):
+    """A pressure along d1."""
+
+    p: float
+    name = "wind"
+
+    def numbers(self):
+        return {"wind.p": self.p}
+
+    def force(self, section, theta):
+        return theta("wind.p") * section.d1
+
+    def symmetries(self, motions):
+        return np.eye(motions.shape[1])
 
 
 def strip():
@@ -171,3 +190,12 @@ def test_the_camera_shows_forces_upright(solved: Callable[..., Solution]) -> Non
     line, d1 = (np.concatenate([getattr(p, name) for p in subject.pieces]) for name in ("r", "d1"))
     camera = place_camera(line, d1, subject.acting.ways)
     assert abs(camera.up @ X) > 0.7 and abs(camera.right @ Z) > 0.95
+
+
+def test_a_load_declared_in_python_is_drawn_along_the_ribbon() -> None:
+    scene = loads_scene(POINTS)
+    found = solve(replace(scene, loads=Loads(own=(Wind(3.0),))))
+    acting = acting_of(found, ends=True)
+    (force,) = acting.along
+    np.testing.assert_allclose(force, 3 * found.sample(acting.s, "d1"), atol=1e-12)
+    assert acting.densest == pytest.approx(3)
