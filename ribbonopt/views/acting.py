@@ -16,6 +16,7 @@ from ribbonopt.solution.solution import Solution
 from .pieces import Array
 
 PLACES = 18  # of a load along the ribbon
+QUIET = 1e-6  # of the force at an end: what is carried and has no direction to show
 ACROSS = 0.5  # component of the unit vector across a plane, from which an axis is
 
 
@@ -130,6 +131,8 @@ def _at_end(solution: Solution, outward: int, end: End) -> Site:
     force, moment = (sum((v * axes[a] for a, v in g.items()), np.zeros(3)) for g in given)
     held = "".join(held_position(end, scene.parameters))
     carried = np.array([axis in held for axis in "xyz"]) * values["n"]
+    if np.linalg.norm(carried) <= QUIET * np.linalg.norm(values["n"]):
+        carried = np.zeros(3)
     frame = frame_of(end, scene.parameters) is not None
     # In a plane one director tells the frame.
     clamped = frame or (scene.states == "planar" and bool(end.d1 or end.d3))

@@ -174,13 +174,14 @@ class _Artist:
     def support(self, site: Site) -> tuple[Array, Array]:
         """Return a triangle (3, 2), or a circle where the position is held in part, and its base.
 
-        It stands where the support pushes from, or below.
+        It stands where the support pushes from, or below along what it holds.
         """
-        way = self._seen(-site.reaction)
+        way, away = self._seen(-site.reaction), _unit(site.outward * self._direction(site.at))
         if np.linalg.norm(way) <= max(SEEN * np.linalg.norm(site.reaction), NOTHING):
-            x, y = _unit(self._direction(site.at))
-            way = np.array([y, -x]) if x >= 0 else np.array([-y, x])
-        away = _unit(site.outward * self._direction(site.at))
+            held = [self._seen(np.eye(3)["xyz".index(axis)]) for axis in site.held]
+            way = max(held, key=lambda v: float(v @ v))
+            fit = way @ away if abs(way @ away) > abs(AGAINST) else -way[1]
+            way = way if fit >= 0 else -way
         way = away if _unit(way) @ away < AGAINST else _unit(way)
         side, height = np.array([-way[1], way[0]]), SYMBOL * self.size
         tip = self._beside(site.at, way)
