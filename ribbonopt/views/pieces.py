@@ -14,6 +14,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from ribbonopt.mechanics.laws.catalogue import capabilities
 from ribbonopt.mechanics.widths import widths
 from ribbonopt.solution.acting import at_places
 from ribbonopt.solution.solution import Solution
@@ -36,7 +37,7 @@ class Piece:
     s, u1, u2, u3 : (k,) arrays
         Arclength and strains.
     eta : (k,) array
-        u3/u2, and 0 where the ribbon is straight, planar or purely twisted.
+        u3/u2, and 0 where the ribbon is straight, planar or purely twisted, and of a rod with u1.
     r, d1, d2, d3 : (k, 3) arrays
         Centre line and directors, lab frame.
     mirrored : bool
@@ -69,6 +70,11 @@ def in_plane(pieces: tuple[Piece, ...]) -> float:
     return largest[0] / max(*largest, np.finfo(float).tiny)
 
 
+def is_rod(solution: Solution) -> bool:
+    """Whether the law leaves u1 free: such a rod is drawn as a strip along d2, whatever u1 is."""
+    return 0 in capabilities(solution.scene).components
+
+
 def sample_pieces(solution: Solution, rows: int = ROWS) -> tuple[Piece, ...]:
     """Sample a solution along its interval, about `rows` rows in all."""
     start, end = solution.scene.interval
@@ -76,7 +82,8 @@ def sample_pieces(solution: Solution, rows: int = ROWS) -> tuple[Piece, ...]:
     s = _grid(start, end, rows, INSET * length)
     values = solution.outputs(s)
     scale = _scale(values)
-    cuts = sorted({*_crossings(solution, s, values, scale), *_places(solution)})
+    crossings = [] if is_rod(solution) else _crossings(solution, s, values, scale)
+    cuts = sorted({*crossings, *_places(solution)})
     if not cuts:
         return (_piece(solution, s, values, scale),)
     pieces = []
@@ -98,7 +105,8 @@ def _piece(solution: Solution, s: Array, values: dict[str, Array], scale: float)
     u1, u2, u3 = (values[name] for name in ("u1", "u2", "u3"))
     r, d1, d2, d3 = (values[name] for name in ("r", "d1", "d2", "d3"))
     width = widths(solution.scene, s)
-    return Piece(s, u1, u2, u3, _eta(u2, u3, scale), r, d1, d2, d3, width=width)
+    eta = np.zeros(len(s)) if is_rod(solution) else _eta(u2, u3, scale)
+    return Piece(s, u1, u2, u3, eta, r, d1, d2, d3, width=width)
 
 
 def _scale(values: dict[str, Array]) -> float:

@@ -35,8 +35,8 @@ def plot_ribbon(
         What to draw.
     half_width
         Default: that of the ribbon, where the scene says it; else a twentieth of the length drawn,
-        or less so that no generatrices cross. The figure states it. It is that where the width
-        along the ribbon is 1.
+        or less so that no generatrices cross; an eightieth of a rod. The figure states it. It is
+        that where the width along the ribbon is 1.
     complete
         Add, in a lighter tone, the rest of a band of which this solution is a piece by symmetry.
     """
@@ -44,16 +44,9 @@ def plot_ribbon(
 
 
 def draw_ribbon(subject: Subject, half_width: float | None = None) -> Figure:
-    """Draw a ribbon.
-
-    Raises
-    ------
-    ViewError
-        Where it has no generatrices.
-    """
-    subject.demand_generatrices()
+    """Draw a ribbon; a rod with u1 as a strip along d2, which is straight across."""
     pieces = subject.pieces
-    surface = sweep(pieces, subject.half_width if half_width is None else half_width)
+    surface = sweep(pieces, subject.drawn if half_width is None else half_width)
     line = np.concatenate([p.r for p in pieces])
     camera = place_camera(line, np.concatenate([p.d1 for p in pieces]), subject.acting.ways)
     drawing = draw_surface(surface, camera, list(subject.acting.places))
@@ -147,7 +140,8 @@ def _caption(subject: Subject, surface: Surface) -> str:
     width = f"{surface.half_width:.3g}{unit}" + (" w(s)" if surface.tapers else "")
     if surface.half_width == subject.half_width:
         width += ", the ribbon's own,"
-    lines = [rf"drawn to the half-width {width} along generatrices $d_2 + \eta\, d_3$"]
+    across = "$d_2$" if subject.rod else r"generatrices $d_2 + \eta\, d_3$"
+    lines = [f"drawn to the half-width {width} along {across}"]
     notes = []
     if subject.mirrored:
         notes.append(f"{subject.rest} (light)")
@@ -162,13 +156,13 @@ def _caption(subject: Subject, surface: Surface) -> str:
 
 
 def _arrows(subject: Subject) -> str:
-    """Return what the arrows are, in words; "" if there is none."""
+    """Return what the longest arrows are, in words; "" if there is none."""
     acting, si = subject.acting, subject.units.si
     found = []
     if acting.largest > 0:
-        found.append(f"forces up to {acting.largest:.3g}{' N' * si}")
+        found.append(f"force {acting.largest:.3g}{' N' * si}")
     if acting.strongest > 0:
-        found.append(f"moments up to {acting.strongest:.3g}{' N m' * si}")
+        found.append(f"moment {acting.strongest:.3g}{' N m' * si}")
     if acting.densest > 0:
-        found.append(f"forces per length up to {acting.densest:.3g}{' N/m' * si}")
-    return "arrows: " + ", ".join(found) if found else ""
+        found.append(f"force per length {acting.densest:.3g}{' N/m' * si}")
+    return "arrows, the longest: " + ", ".join(found) if found else ""

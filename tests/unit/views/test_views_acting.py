@@ -136,7 +136,7 @@ def test_a_heavy_cantilever_is_drawn_with_its_weight_and_its_clamp(
     surface = next(c for c in figure.axes[0].collections if isinstance(c, PolyCollection))
     assert isinstance(plate, Polygon)
     assert max(plate.get_zorder(), row.get_zorder()) < surface.get_zorder()
-    assert "forces per length up to 5" in " ".join(t.get_text() for t in figure.texts)
+    assert "force per length 5" in " ".join(t.get_text() for t in figure.texts)
 
 
 def test_forces_of_a_scene_are_those_of_its_file() -> None:
