@@ -10,6 +10,7 @@ from ribbonopt.mechanics.laws.catalogue import curvature_across
 from ribbonopt.scene.units import Units
 from ribbonopt.solution.solution import Solution
 
+from .acting import Acting, acting_of
 from .pieces import ROWS, Piece, in_plane, is_rod, sample_pieces
 from .symmetry import continued
 
@@ -31,6 +32,8 @@ class Subject:
         What follows by symmetry, or empty.
     count : int
         How many times the interval makes all of it.
+    acting : Acting
+        What acts and holds: at ends only where the ribbon does not go on by symmetry.
     units : Units
         Of all of it.
     half_width : float or None
@@ -50,6 +53,7 @@ class Subject:
     count: int = 1
     across: float | None = 0.0
     rod: bool = False
+    acting: Acting = field(default_factory=Acting)
 
     @property
     def pieces(self) -> tuple[Piece, ...]:
@@ -111,4 +115,5 @@ def subject_of(solution: Solution, complete: bool) -> Subject:
         count=count,
         across=curvature_across(solution.scene),
         rod=is_rod(solution),
+        acting=acting_of(solution, ends=band is None),
     )
