@@ -70,10 +70,6 @@ class RodModel(ABC):
         """dx/ds for the Darboux vector u (3,) along the directors, eqs. (2.1), (2.2), (2.7)."""
 
     @abstractmethod
-    def beyond(self, s: ca.SX, end: ca.SX) -> ca.SX:
-        """Force (3,) of the dead loads between the arclengths s and `end`, lab frame."""
-
-    @abstractmethod
     def start_conditions(self, x: ca.SX) -> dict[str, ca.SX]:
         """Conditions at the start that make states mean what they stand for, by name."""
 
@@ -133,12 +129,9 @@ class SpatialRod(RodModel):
         return Section(x[:3], *directors, n, m, s, ca.SX(0, 1) if own is None else own)
 
     def rates(self, x: ca.SX, section: Section, u: ca.SX) -> ca.SX:
-        q, _ = self._split(x)
+        q, rest = self._split(x)
         turn = self.orientation.rates(q, u)
-        return ca.vertcat(section.d3, turn, self.balance.rates(section))
-
-    def beyond(self, s: ca.SX, end: ca.SX) -> ca.SX:
-        return self.balance.beyond(s, end)
+        return ca.vertcat(section.d3, turn, self.balance.rates(section, rest))
 
     def start_conditions(self, x: ca.SX) -> dict[str, ca.SX]:
         q, rest = self._split(x)

@@ -10,8 +10,9 @@ which n and m(0) are recovered. Controls:
 
 Sign: with equations x_{e+1} - x_e - ... = 0 and the Lagrangian cost + lambda . equations, lambda is
 the derivative of the energy with respect to a shift of the rest of the ribbon, which is n; a turn
-by dt of the rest changes q by dt q / 2, hence m . e_k = lambda_q . (e_k q) / 2. With dead forces in
-the cost, -Q . d3 with Q(s) all that acts beyond s, the costate of r is the constant n - Q.
+by dt of the rest changes q by dt q / 2, hence m . e_k = lambda_q . (e_k q) / 2. Dead loads f along
+the ribbon are in the cost as -f . r, so that the costate of r is n all along it, whether the start
+is free to move or not; a dead force Q at an end is there as -Q . d3, and that costate is n - Q.
 """
 
 from __future__ import annotations
@@ -62,18 +63,18 @@ def minimum(ribbon: Ribbon) -> BoundaryValueProblem:
     # Force and moment for outputs and verification only: they follow from the costates.
     loads = ca.vertcat(*(ribbon.theta[name] for name in RECOVERED))
     section, (start, end) = ribbon.section(x, loads), ribbon.interval
-    beyond = dead_force(ribbon) + ribbon.model.beyond(ribbon.position, end)
-    program = _program(ribbon.law, section.rod.own)
+    dead, rod = dead_force(ribbon), section.rod
+    program = _program(ribbon.law, rod.own)
+    work = ribbon.work(rod)
     phase = Phase(
         dynamics=ribbon.rates(section, program.u),
         length=end - start,
-        outputs=outputs(section, ribbon.law, program.u),
+        outputs=outputs(section, ribbon.law, program.u, work),
         path=program.path,
-        cost=program.cost - ca.dot(beyond, section.rod.d3),
+        cost=program.cost - ca.dot(dead, rod.d3) - work,
     )
     points = ca.SX.sym("start", x.numel()), ca.SX.sym("end", x.numel())
     costate = ca.SX.sym("costate", x.numel())
-    at_start = ca.substitute(beyond, ribbon.position, start)
     return BoundaryValueProblem(
         position=ribbon.position,
         state=x,
@@ -90,7 +91,7 @@ def minimum(ribbon: Ribbon) -> BoundaryValueProblem:
         local=program.local,
         estimate=program.estimate,
         costate=costate,
-        recovered=dict(zip(RECOVERED, _loads(points[0], costate, at_start, ribbon), strict=True)),
+        recovered=dict(zip(RECOVERED, _loads(points[0], costate, dead, ribbon), strict=True)),
     )
 
 
@@ -172,22 +173,11 @@ def refusal(ribbon: Ribbon, posed: Posed) -> Refusal | None:
 
 
 def _load_without_potential(ribbon: Ribbon) -> Refusal | None:
-    held = {c.axis for c in ribbon.conditions if isinstance(c, Component) and _holds_start(c)}
     for load in ribbon.loads:
-        key = load.name
-        if not load.dead:
-            return Refusal(f"{key} follows the ribbon", "use another formulation", key)
-        if held < set("xyz"):
-            return Refusal(
-                f"{key} does work on the start, which is free to move",
-                "prescribe the position of the start, or use another formulation",
-                key,
-            )
+        if load.without_potential:
+            reason = f"{load.name} {load.without_potential}"
+            return Refusal(reason, "use another formulation", load.name)
     return None
-
-
-def _holds_start(condition: Component) -> bool:
-    return (condition.end, condition.quantity) == ("start", "position")
 
 
 def _end_without_potential(ribbon: Ribbon) -> Refusal | None:

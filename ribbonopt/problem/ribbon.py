@@ -140,6 +140,12 @@ class Ribbon:
         model = self.model.rates(section.x, section.rod, u)
         return ca.vertcat(model, self.law.rates(section.rod.stress, u))
 
+    def work(self, rod: Section) -> ca.SX:
+        """Return the work f . r per length of the loads that have a potential."""
+        theta = self.theta.__getitem__
+        known = [load for load in self.loads if not load.without_potential]
+        return sum((ca.dot(load.force(rod, theta), rod.r) for load in known), ca.SX(0))
+
     def residuals(
         self, start: ca.SX, end: ca.SX, c: ca.SX, *, kinematic_only: bool = False
     ) -> dict[str, ca.SX]:

@@ -91,6 +91,6 @@ def _phase(ribbon: Ribbon, unknowns: Unknowns, kind: int, length: ca.SX) -> Phas
     return Phase(
         dynamics=ribbon.rates(section, u),
         length=length,
-        outputs=outputs(section, ribbon.law, u),
+        outputs=outputs(section, ribbon.law, u, ribbon.work(section.rod)),
         singular=singular(law, unknowns.stress),
     )

@@ -29,6 +29,7 @@ _ROOTS: tuple[KeyPath, ...] = (
     ("boundary", "start"),
     ("boundary", "end"),
     ("loads",),
+    ("gravity",),
     ("ribbon",),
 )
 _ITEMS = {2: ("start", "end"), 3: ("x", "y", "z")}

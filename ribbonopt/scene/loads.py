@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Annotated, Any, Protocol, runtime_checkable
 
-from .ends import LabVector, Triple
+from .ends import LabVector, Triple, Value
 from .schema.bounds import InPython
 
 
@@ -28,9 +28,12 @@ class OwnLoad(Protocol):
 class Loads:
     """Loads per length, all along the ribbon.
 
-    `force` is dead: a force per length (lab frame) that keeps its direction, as own weight does.
-    `own` are declared in Python.
+    `force` and `couple` are dead: per length, in the lab frame, they keep their direction while the
+    ribbon moves. `pressure` follows it: a force per length along the normal d1, in SI a pressure
+    in pascals times the width. `own` are declared in Python.
     """
 
     force: Triple | LabVector | None = None
+    couple: Triple | LabVector | None = None
+    pressure: Value | None = None
     own: tuple[Annotated[OwnLoad, InPython()], ...] = ()

@@ -56,6 +56,7 @@ QUANTITIES: Mapping[str, Named] = {
     "u3": Named("twist", length=-1, at_ends=True),
     "eta": Named("slope of the generatrices, u3 / u2"),
     "energy": Named("strain energy per length", force=1),
+    "potential": Named("energy per length less the work of loads along the ribbon", force=1),
     "H": Named("invariant W_Leg + n3", force=1),
     "n_dot_m": Named("invariant n . m", length=1, force=2),
     "switching": Named("what changes sign where the curvature may jump", length=1, force=1),

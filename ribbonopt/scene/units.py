@@ -16,7 +16,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, fields, is_dataclass, replace
 from typing import Any
 
-from .ends import Boundary, End
+from .ends import Boundary, End, LabVector, Triple
 from .laws import Kirchhoff, Law, OwnLaw
 from .loads import Loads
 from .model import Guess, LoadGuess, Reference, Scene, StrainGuess
@@ -106,6 +106,7 @@ def in_special_units(scene: Scene, units: Units | None = None) -> Scene:
         parameters=parameters | own,
         boundary=_boundary(boundary, units, parameters),
         loads=_loads(scene.loads, units, parameters),
+        gravity=_gravity(scene, units),
         guess=_guess(scene.guess, units),
         reference=_reference(scene.reference, units),
         switching=switches if isinstance(switches, str) else _over(switches, units.length),
@@ -128,7 +129,25 @@ def _boundary(boundary: Boundary, units: Units, parameters: Mapping[str, float])
 
 
 def _loads(loads: Loads, units: Units, parameters: Mapping[str, float]) -> Loads:
-    return replace(loads, force=_over(loads.force, units.force / units.length, parameters))
+    per_length = units.force / units.length
+    return replace(
+        loads,
+        force=_over(loads.force, per_length, parameters),
+        couple=_over(loads.couple, units.force, parameters),
+        pressure=_over(loads.pressure, per_length, parameters),
+    )
+
+
+def _gravity(scene: Scene, units: Units) -> Triple | LabVector | None:
+    """Return the weight per length, for which gravity stands in a scene without a `ribbon`."""
+    ribbon = scene.ribbon
+    if scene.gravity is None or ribbon is None or ribbon.density is None:
+        return scene.gravity
+    mass = ribbon.density * ribbon.width * ribbon.thickness
+    weight: Triple | LabVector = _over(
+        scene.gravity, units.force / units.length / mass, scene.parameters
+    )
+    return weight
 
 
 def _end(end: End, units: Units, parameters: Mapping[str, float]) -> End:

@@ -2,7 +2,7 @@
 
 IPOPT on a coarse mesh, from a shape that need not even be a ribbon; force and moment follow from
 the costates. What is prescribed of loads at the ends is left out here, unless a dead force has a
-potential; so are loads that follow the ribbon, which have none.
+potential; so are loads along the ribbon that have none.
 """
 
 from __future__ import annotations
@@ -20,4 +20,4 @@ def least_energy_of(posed: Posed, law: Law) -> Posed:
     """Return a scene under a law with a smooth energy, as this solve wants it."""
     settings = {"formulation": "energy", "states": "reduced", "solver": SOLVER}
     found = posed.under(law=law, transcription=MESH, **settings)
-    return replace(found, loads=tuple(load for load in found.loads if load.dead))
+    return replace(found, loads=tuple(one for one in found.loads if not one.without_potential))

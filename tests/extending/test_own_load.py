@@ -87,6 +87,6 @@ def test_bad_loads_are_refused(user: Import) -> None:
 def test_no_file_can_say_it(user: Import) -> None:
     with pytest.raises(SceneError, match=r"loads\.own: Pressure is declared in Python"):
         dump_scene(pressed(user))
-    with pytest.raises(SceneError, match=r"unknown key.* \(known keys: force\)"):
+    with pytest.raises(SceneError, match=r"unknown key.* \(known keys: force, couple, pressure\)"):
         loads_scene("{name: a, law: {type: sadowsky}, boundary: {}, loads: {pres: 3}}")
     assert "own" not in json_schema()["properties"]["loads"]["properties"]
