@@ -136,7 +136,7 @@ class DeadLoads(Balance):
         return ca.vertcat(*(states.get(f"F{axis}", known[i]) for i, axis in enumerate(AXES)))
 
     def _moment(self, x: ca.SX) -> ca.SX:
-        """a (3,), lab frame."""
+        """Return a (3,), lab frame."""
         states = dict(zip(self.states, ca.vertsplit(x), strict=True))
         return ca.vertcat(*(states.get(f"a{axis}", 0) for axis in AXES))
 

@@ -33,7 +33,8 @@ def report(summary: Mapping[str, Any]) -> str:
         _row("strains u(0), directors", s["u0"], errors["u0"]),
         *(["  (force and moment recovered from the costates)"] * (s["loads_from"] == "costates")),
         _row("energy", s["energy"], errors["energy"]),
-        _row("invariant H(0)", s["H0"], errors["H0"]),
+        *_potential(s),
+        _row("invariant H(0)" if _is_constant(s) else "H(0)", s["H0"], errors["H0"]),
         *(_row(name, value, s["recorded_error"][name]) for name, value in s["recorded"].items()),
         *_unknown_bars(s),
         *_phases(s),
@@ -51,6 +52,22 @@ def report(summary: Mapping[str, Any]) -> str:
         *(f"    {reason}" for reason in s["skipped"]),
     ]
     return "\n".join(lines)
+
+
+def _is_constant(summary: Mapping[str, Any]) -> bool:
+    """Whether H is an invariant: not under loads that change it."""
+    known = summary["conserved"]
+    return not known or "H" in known
+
+
+def _potential(summary: Mapping[str, Any]) -> list[str]:
+    """Lines on the potential and on what loads along the ribbon leave constant."""
+    s, bar = summary, summary["error_estimate"]["potential"]
+    lines = []
+    if s["potential"] not in (None, s["energy"]):
+        lines.append(_row("potential", s["potential"], bar))
+    names = [name for name in s["conserved"] if name != "H"]
+    return lines + [f"  {'invariant ' + name:<25}{s['conserved'][name]:.10g}" for name in names]
 
 
 def _phases(s: Mapping[str, Any]) -> list[str]:
@@ -130,7 +147,7 @@ def _drifts(drift: Mapping[str, float | None]) -> str:
     words = {"n": "n", "n_dot_m": "n.m", "H": "H", "orthonormality": "orthonormality"}
     # Under loads less is conserved; without convergence nothing is known.
     known = {k: v for k, v in drift.items() if v is not None} or drift
-    return ", ".join(f"{words[k]} {_short(v)}" for k, v in known.items())
+    return ", ".join(f"{words.get(k, k)} {_short(v)}" for k, v in known.items())
 
 
 def _steps(path: Sequence[Mapping[str, Any]]) -> str:

@@ -17,12 +17,13 @@ is free to move or not; a dead force Q at an end is there as -Q . d3, and that c
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from typing import NamedTuple
 
 import casadi as ca
 
 from ribbonopt.errors import ModelError
-from ribbonopt.mechanics.ends.conditions import Component
+from ribbonopt.mechanics.ends.conditions import Component, Condition
 from ribbonopt.mechanics.ends.placement import LoadAlong
 from ribbonopt.mechanics.laws.law import ConstitutiveLaw, Stress
 from ribbonopt.mechanics.outputs import outputs
@@ -125,7 +126,7 @@ def dead_force(ribbon: Ribbon) -> ca.SX:
     given = {
         c.axis: ribbon.theta[c.name]
         for c in ribbon.conditions
-        if isinstance(c, Component) and _is_dead_force(ribbon, c)
+        if isinstance(c, Component) and _is_dead_force(ribbon.conditions, c)
     }
     force = ca.vertcat(*(given.get(axis, ca.SX(0)) for axis in "xyz"))
     for condition in ribbon.conditions:
@@ -134,10 +135,10 @@ def dead_force(ribbon: Ribbon) -> ca.SX:
     return force
 
 
-def _is_dead_force(ribbon: Ribbon, condition: Component) -> bool:
+def _is_dead_force(conditions: Sequence[Condition], condition: Component) -> bool:
     held = [
         c
-        for c in ribbon.conditions
+        for c in conditions
         if isinstance(c, Component) and (c.quantity, c.axis) == ("position", condition.axis)
     ]
     return condition.quantity == "force" and condition.axis in "xyz" and len(held) < 2
@@ -169,7 +170,7 @@ def refusal(ribbon: Ribbon, posed: Posed) -> Refusal | None:
         )
     if posed.scene.states in WITHOUT:
         return Refusal(WITHOUT[posed.scene.states], "use states: reduced", "formulation")
-    return _load_without_potential(ribbon) or _end_without_potential(ribbon)
+    return _load_without_potential(ribbon) or end_without_potential(ribbon.conditions)
 
 
 def _load_without_potential(ribbon: Ribbon) -> Refusal | None:
@@ -180,11 +181,12 @@ def _load_without_potential(ribbon: Ribbon) -> Refusal | None:
     return None
 
 
-def _end_without_potential(ribbon: Ribbon) -> Refusal | None:
-    for condition in ribbon.conditions:
+def end_without_potential(conditions: Sequence[Condition]) -> Refusal | None:
+    """Return why what is prescribed at the ends has no potential; None where it has one."""
+    for condition in conditions:
         if not isinstance(condition, Component) or condition.kinematic or not condition.value:
             continue
-        if not _is_dead_force(ribbon, condition):
+        if not _is_dead_force(conditions, condition):
             return Refusal(
                 f"{condition.name}, other than zero, has no potential here (only a dead force, in "
                 "lab components, on an end free to follow it has)",

@@ -78,7 +78,7 @@ VECTORS = tuple(name for name, shape in OUTPUTS.items() if shape == "vector")
 START_VECTORS = (("n0x", "n0y", "n0z"), ("m0x", "m0y", "m0z"), ("u1", "u2", "u3"))
 
 #: ... and all numbers of an equilibrium
-ANSWERS = ("energy", "H0", *(part for vector in START_VECTORS for part in vector))
+ANSWERS = ("energy", "potential", "H0", *(part for vector in START_VECTORS for part in vector))
 
 
 def dimension(name: str) -> tuple[int, int]:

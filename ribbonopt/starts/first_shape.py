@@ -14,10 +14,10 @@ from ribbonopt.guess.placing import place_ends
 from ribbonopt.guess.shapes import Chord, Shape
 from ribbonopt.mechanics.ends.conditions import Component, Frame
 from ribbonopt.mechanics.ends.frames import DIRECTORS
-from ribbonopt.mechanics.ends.placement import LoadAlong
 from ribbonopt.mechanics.ends.winding import winding
 from ribbonopt.problem import Posed, Ribbon
 from ribbonopt.scene import LoadGuess
+from ribbonopt.solution.potential import dead_force_of
 
 from .loops import loop_of
 
@@ -69,17 +69,6 @@ def compresses(posed: Posed, chord: Chord) -> bool:
     """
     force, along = dead_force_of(posed), chord.end[0] - chord.start[0]
     return bool(force @ along < -ACROSS * np.linalg.norm(force) * np.linalg.norm(along))
-
-
-def dead_force_of(posed: Posed) -> Array:
-    """Dead force (3,) on an end, lab frame."""
-    force = np.zeros(3)
-    for c in posed.conditions:
-        if isinstance(c, Component) and c.quantity == "force" and c.axis in "xyz":
-            force["xyz".index(c.axis)] = c.value
-        elif isinstance(c, LoadAlong):
-            force += c.value * np.array(c.along)
-    return force
 
 
 def follower_loads(posed: Posed) -> FollowerLoads | IntegratedLoads | None:
