@@ -16,7 +16,7 @@ import numpy as np
 from ribbonopt.arrays import Array
 from ribbonopt.mechanics.ends.boundary import conditions_of, start_frame, start_position
 from ribbonopt.mechanics.ends.conditions import Condition
-from ribbonopt.mechanics.laws.catalogue import numbers_of
+from ribbonopt.mechanics.laws.catalogue import fields_of, numbers_of
 from ribbonopt.mechanics.loads.load import Load
 from ribbonopt.scene import Loads, Scene
 from ribbonopt.scene.units import Units, in_special_units, units_of
@@ -82,6 +82,8 @@ class Posed:
         """Every number of the scene, in units Dw = L = 1, by name and in order."""
         scene, (position, _) = self.scene, self.start
         values = {f"law.{name}": value for name, value in numbers_of(scene.law).items()}
+        for along in fields_of(scene):
+            values |= along.numbers()
         values |= {"interval.start": scene.interval[0], "interval.end": scene.interval[1]}
         values |= {f"reference.{axis}": float(position[i]) for i, axis in enumerate("xyz")}
         values |= {f"parameters.{name}": value for name, value in scene.parameters.items()}
@@ -110,7 +112,8 @@ class Posed:
         settings = type(scene.law), scene.formulation, scene.states, scene.transcription
         # In a plane, which conditions are left depends on what plane it is.
         plane = self.start[1][:, 1].round().tolist() if scene.states == "planar" else ()
-        rest = tuple(self.theta), conditions, loads, scene.boundary.also, tuple(plane)
+        along = tuple(field.structure for field in fields_of(scene))
+        rest = tuple(self.theta), conditions, along, loads, scene.boundary.also, tuple(plane)
         return (*settings, scene.solver, *rest)
 
     @cached_property

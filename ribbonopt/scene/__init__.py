@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from .along import Along, Scaled, Table, TableFile
 from .continuation import ContinuationStage
 from .ends import (
     AnyVector,
@@ -61,6 +62,7 @@ from .yamlio import (
 
 __all__ = [
     "Algebraic",
+    "Along",
     "AnyVector",
     "ArcGuess",
     "Auto",
@@ -92,6 +94,7 @@ __all__ = [
     "Rotation",
     "RotationVector",
     "Sadowsky",
+    "Scaled",
     "Scene",
     "Shooting",
     "SingleSheet",
@@ -99,6 +102,8 @@ __all__ = [
     "StrainGuess",
     "Support",
     "SupportName",
+    "Table",
+    "TableFile",
     "Turn",
     "Turns",
     "Value",

@@ -17,6 +17,7 @@ from typing import Annotated, Any, NamedTuple, get_args, get_origin
 
 from ribbonopt.errors import SceneError
 
+from .along import Table
 from .faults import KeyPath, dotted, nearest
 from .model import Scene
 from .schema.annotations import branches, hints
@@ -31,6 +32,7 @@ _ROOTS: tuple[KeyPath, ...] = (
     ("loads",),
     ("gravity",),
     ("ribbon",),
+    ("width",),
 )
 _ITEMS = {2: ("start", "end"), 3: ("x", "y", "z")}
 _MOST_LISTED = 8
@@ -38,11 +40,15 @@ _WORD = re.compile(r"[A-Za-z_]\w*")
 
 
 class _Part(NamedTuple):
-    """What a path leads to: the steps to it, the value, and whether its place takes any number."""
+    """What a path leads to: the steps to it, the value, and whether its place takes any number.
+
+    `tabled` says that it is in a table, which no number of it changes continuously.
+    """
 
     steps: KeyPath
     value: Any
     varies: bool
+    tabled: bool = False
 
 
 def value_at(scene: Scene, path: str) -> float:
@@ -64,7 +70,7 @@ def with_value(scene: Scene, path: str, value: float) -> Scene:
     SceneError
         As `value_at` does.
     """
-    changed: Scene = _replaced(scene, _number(scene, path).steps, float(value))
+    changed: Scene = replaced(scene, _number(scene, path).steps, float(value))
     return changed
 
 
@@ -84,6 +90,9 @@ def fault_of(scene: Scene, path: str) -> str:
         return f"{path!r} is no number of this scene{_meant(path, paths_of(scene))}"
     if _continues(part):
         return ""
+    if part.tabled:
+        instead = "write a formula of s and parameters, and continue one of those"
+        return f"{path!r} is a table, which is not continued; {instead}"
     if _is_real(part.value):
         kind = "a setting of the computation" if part.varies else "a whole number"
         return f"{path!r} is {kind}, which is not continued{_some(paths_of(scene))}"
@@ -103,7 +112,7 @@ def _number(scene: Scene, path: str) -> _Part:
 
 
 def _continues(part: _Part) -> bool:
-    return part.varies and _is_real(part.value) and _ours(part)
+    return part.varies and not part.tabled and _is_real(part.value) and _ours(part)
 
 
 def _ours(part: _Part) -> bool:
@@ -115,6 +124,7 @@ def _part(scene: Scene, keys: KeyPath) -> _Part | None:
     holder: Any = None
     value: Any = scene
     steps: KeyPath = ()
+    tabled = False
     for key in keys:
         if value is None:
             break
@@ -123,7 +133,8 @@ def _part(scene: Scene, keys: KeyPath) -> _Part | None:
             return None
         holder, steps = value, (*steps, step)
         value = getattr(value, str(step)) if is_dataclass(value) else value[step]
-    return _Part(steps, value, _varies(holder, steps[-1]))
+        tabled = tabled or isinstance(value, Table)
+    return _Part(steps, value, _varies(holder, steps[-1]), tabled)
 
 
 def _step(holder: Any, key: str) -> str | int | None:
@@ -166,6 +177,8 @@ def _is_real(value: Any) -> bool:
 
 def _numbers(value: Any, varies: bool, path: KeyPath) -> Iterator[str]:
     """Yield the paths of the numbers that vary inside a value."""
+    if isinstance(value, Table):
+        return
     if is_dataclass(value):
         for name in (member.name for member in fields(value)):
             yield from _numbers(getattr(value, name), _varies(value, name), (*path, name))
@@ -180,17 +193,17 @@ def _numbers(value: Any, varies: bool, path: KeyPath) -> Iterator[str]:
         yield dotted(path)
 
 
-def _replaced(holder: Any, steps: KeyPath, value: float) -> Any:
-    """Return a value with a number replaced inside it, all else as it was."""
+def replaced(holder: Any, steps: KeyPath, value: Any) -> Any:
+    """Return a value with another put in its place inside it, all else as it was."""
     if not steps:
         return value
     step, *rest = steps
     if isinstance(holder, dict):
-        return {**holder, step: _replaced(holder[step], tuple(rest), value)}
+        return {**holder, step: replaced(holder[step], tuple(rest), value)}
     if isinstance(step, int):
-        inner = _replaced(holder[step], tuple(rest), value)
+        inner = replaced(holder[step], tuple(rest), value)
         return (*holder[:step], inner, *holder[step + 1 :])
-    return replace(holder, **{step: _replaced(getattr(holder, step), tuple(rest), value)})
+    return replace(holder, **{step: replaced(getattr(holder, step), tuple(rest), value)})
 
 
 def _instead(formula: str, scene: Scene) -> str:

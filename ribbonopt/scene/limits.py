@@ -19,6 +19,8 @@ REACH = 1e6
 STRAIN = MOMENT = REACH
 #: a force n acts on lengths 1 / sqrt(n); a load per length on the cube root
 FORCE, FORCE_PER_LENGTH = REACH**2, REACH**3
+#: widths along the ribbon, in units of its own: none is a million times another
+WIDTH, NARROW = 1e3, 1e-6
 #: radians in all; a frame keeps ten digits. 1e5 is 16,000 turns
 ANGLE = 1e5
 #: ratios of stiffnesses, and of what smooths a law to the law
@@ -36,6 +38,7 @@ COUNTED = 1_000  # special points of one kind at which a stage may end
 
 #: items of one list or mapping of a scene, by its key; `ITEMS` for all others
 ITEMS = 10_000
+ROWS = 200  # of a table along the ribbon: each costs operations at every point of a mesh
 ITEMS_OF = {"also": 100, "switching": 100, "turns": 1_000, "continuation": 100, "record": 1_000}
 
 RIBBONS = 1_000_000  # of a study, all of which are put in order before the first is solved

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Annotated, Any, Protocol, runtime_checkable
 
-from .ends import LabVector, Triple, Value
+from .along import Along
 from .schema.bounds import InPython
 
 
@@ -25,15 +25,27 @@ class OwnLoad(Protocol):
 
 
 @dataclass(frozen=True)
+class AlongAxes:
+    """Components in the lab frame, each a number along the ribbon; those not given are zero."""
+
+    x: Along | None = None
+    y: Along | None = None
+    z: Along | None = None
+
+
+AlongVector = tuple[Along, Along, Along] | AlongAxes
+
+
+@dataclass(frozen=True)
 class Loads:
-    """Loads per length, all along the ribbon.
+    """Loads per length, all along the ribbon: numbers, formulas of s, or tables.
 
     `force` and `couple` are dead: per length, in the lab frame, they keep their direction while the
     ribbon moves. `pressure` follows it: a force per length along the normal d1, in SI a pressure
     in pascals times the width. `own` are declared in Python.
     """
 
-    force: Triple | LabVector | None = None
-    couple: Triple | LabVector | None = None
-    pressure: Value | None = None
+    force: AlongVector | None = None
+    couple: AlongVector | None = None
+    pressure: Along | None = None
     own: tuple[Annotated[OwnLoad, InPython()], ...] = ()

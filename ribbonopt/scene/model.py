@@ -11,6 +11,7 @@ from dataclasses import dataclass, field
 from typing import Annotated, Literal
 
 from . import limits
+from .along import Along
 from .continuation import ContinuationStage
 from .ends import Boundary, HalfTwists, LabVector, Loop, Triple, Value
 from .laws import Law
@@ -186,6 +187,7 @@ class Scene:
     """One ribbon: its law, its interval, its boundary conditions and how to solve it.
 
     In a file with `ribbon` the interval is by default all of its length, or the piece of a loop.
+    `width` is that along s in units of the ribbon's own, to which Dw and `ribbon.width` belong.
     """
 
     name: str
@@ -210,3 +212,4 @@ class Scene:
     continuation: ContinuationStage | tuple[ContinuationStage, ...] | None = None
     loads: Loads = field(default_factory=Loads)
     gravity: Triple | LabVector | None = None
+    width: Along | None = None

@@ -16,9 +16,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass, fields, is_dataclass, replace
 from typing import Any
 
+from .along import scaled
 from .ends import Boundary, End, LabVector, Triple
 from .laws import Kirchhoff, Law, OwnLaw
-from .loads import Loads
+from .loads import AlongAxes, AlongVector, Loads
 from .model import Guess, LoadGuess, Reference, Scene, StrainGuess
 from .quantities import dimension
 
@@ -105,8 +106,9 @@ def in_special_units(scene: Scene, units: Units | None = None) -> Scene:
         interval=(start / units.length, end / units.length),
         parameters=parameters | own,
         boundary=_boundary(boundary, units, parameters),
-        loads=_loads(scene.loads, units, parameters),
+        loads=_loads(scene.loads, units),
         gravity=_gravity(scene, units),
+        width=scaled(scene.width, 1.0, units.length),
         guess=_guess(scene.guess, units),
         reference=_reference(scene.reference, units),
         switching=switches if isinstance(switches, str) else _over(switches, units.length),
@@ -128,14 +130,27 @@ def _boundary(boundary: Boundary, units: Units, parameters: Mapping[str, float])
     return replace(boundary, start=start, end=end)
 
 
-def _loads(loads: Loads, units: Units, parameters: Mapping[str, float]) -> Loads:
+def _loads(loads: Loads, units: Units) -> Loads:
+    if loads == Loads():
+        return loads
     per_length = units.force / units.length
     return replace(
         loads,
-        force=_over(loads.force, per_length, parameters),
-        couple=_over(loads.couple, units.force, parameters),
-        pressure=_over(loads.pressure, per_length, parameters),
+        force=_along(loads.force, per_length, units.length),
+        couple=_along(loads.couple, units.force, units.length),
+        pressure=scaled(loads.pressure, per_length, units.length),
     )
+
+
+def _along(vector: AlongVector | None, unit: float, length: float) -> AlongVector | None:
+    """Return a vector of numbers along the ribbon divided by a unit, its arclength by a length."""
+    if isinstance(vector, AlongAxes):
+        x, y, z = (scaled(v, unit, length) for v in (vector.x, vector.y, vector.z))
+        return AlongAxes(x, y, z)
+    if vector is None:
+        return None
+    x, y, z = (scaled(value, unit, length) for value in vector)
+    return x, y, z
 
 
 def _gravity(scene: Scene, units: Units) -> Triple | LabVector | None:

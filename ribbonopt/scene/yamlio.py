@@ -10,6 +10,7 @@ from typing import Any
 from ribbonopt.errors import SceneError
 from ribbonopt.reading import MEGA, Kind, read_text
 
+from .along import TableFile, numbers_along
 from .checks.whole import check
 from .ends import Boundary
 from .faults import InvalidSceneError, Problem, nearest, report
@@ -38,7 +39,8 @@ def load_scene(path: str | os.PathLike[str], overrides: Sequence[str] = ()) -> S
     Returns
     -------
     Scene
-        The validated scene. Relative paths in it stay as they are written.
+        The validated scene. Relative paths in it stay as they are written, but tables that it
+        names by their files, from its folder, are read and stand in it as numbers.
 
     Raises
     ------
@@ -81,7 +83,10 @@ def locate(path: str | os.PathLike[str], overrides: Sequence[str], key: str) -> 
 
 
 def loads_scene(text: str, source: str = "<string>", overrides: Sequence[str] = ()) -> Scene:
-    """Read a scene from YAML text; `source` names it in messages. See `load_scene`."""
+    """Read a scene from YAML text; `source` names it in messages. See `load_scene`.
+
+    The folder of `source` is that of the tables which it names by their files.
+    """
     try:
         written = read(text)
     except YamlTextError as error:
@@ -99,7 +104,7 @@ def loads_scene(text: str, source: str = "<string>", overrides: Sequence[str] = 
 
         plain = override(written, overrides)
     try:
-        scene = _validated(plain.data)
+        scene = _validated(plain.data, os.path.dirname(source))
     except InvalidSceneError as error:
         problems = [*plain.problems, *error.problems]
         raise SceneError(report(source, problems, plain.places)) from None
@@ -197,13 +202,20 @@ def json_schema() -> dict[str, Any]:
     return schema
 
 
-def _validated(data: object) -> Scene:
+def _validated(data: object, folder: str = "") -> Scene:
+    """Return a checked scene; `folder` is what the paths of its tables are relative to."""
     try:
         scene = validate(Scene, data)
     except InvalidSceneError as error:
         raise InvalidSceneError([*error.problems, *_further(data, error.problems)]) from None
     if isinstance(data, dict) and "interval" not in data and scene.ribbon is not None:
         scene = replace(scene, interval=scene.ribbon.interval(scene.boundary.loop))
+    if any(isinstance(value, TableFile) for _, value in numbers_along(scene)):
+        from .tables import embedded  # few scenes have any
+
+        scene, faults = embedded(scene, folder)
+        if faults:
+            raise InvalidSceneError(faults)
     if problems := check(scene):
         raise InvalidSceneError(problems)
     return scene
@@ -215,10 +227,10 @@ def _further(data: object, problems: Sequence[Problem]) -> list[Problem]:
         return []
     faulty = {problem.path[0] for problem in problems}
     if "parameters" in faulty:
-        faulty |= {"boundary", "guess"}  # their formulas would seem to use unknown names
+        faulty |= {"boundary", "guess", "width"}  # their formulas would seem to use unknown names
     if "interval" in faulty:
-        faulty.add("ribbon")  # which would seem not to be as long as the default
-    parts = {"interval", "parameters", "boundary", "guess", "ribbon"} - faulty
+        faulty |= {"ribbon", "width"}  # which would seem not to be as long as the default
+    parts = {"interval", "parameters", "boundary", "guess", "ribbon", "width"} - faulty
     sound = {key: value for key, value in data.items() if key in parts}
     blank = {"name": "scene", "law": Sadowsky(), "boundary": Boundary()}
     return check(validate(Scene, blank | sound))

@@ -6,11 +6,11 @@ divided by that of the equation.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Sequence
-from typing import Literal
+from collections.abc import Callable
 
 import casadi as ca
 
+from ribbonopt.mechanics.formulas import SymbolicEnv
 from ribbonopt.scene.formulas.expressions import Number, Quantity, evaluate, parts
 from ribbonopt.scene.formulas.parsing import parse_equation
 from ribbonopt.scene.quantities import dimension
@@ -29,7 +29,7 @@ def equation(index: int, text: str, parameters: dict[str, float]) -> Equation:
 
     def difference(context: Context, name: str) -> ca.SX:
         unit = _unit(context) if UNIT_LENGTH in parameters else None
-        env = _SymbolicEnv(context, name, unit)
+        env = _env(context, name, unit)
         result = ca.SX(evaluate(formula.left, env) - evaluate(formula.right, env))
         return result if unit is None else result / unit(dimension.length, dimension.force)
 
@@ -46,20 +46,14 @@ def _unit(context: Context) -> Unit:
     return lambda a, b: length**a * force**b
 
 
-class _SymbolicEnv:
-    """Evaluates a formula on CasADi expressions of both ends; `unit` as above, or None for 1."""
+def _env(context: Context, prefix: str, unit: Unit | None) -> SymbolicEnv:
+    """Return what formulas at both ends are made of; `unit` as above, or None for 1."""
 
-    def __init__(self, context: Context, prefix: str, unit: Unit | None) -> None:
-        self._context, self._prefix, self._unit = context, prefix, unit
+    def number(value: float, key: str | None) -> ca.SX:
+        return ca.SX(value) if key is None else context.theta(f"{prefix}.{key}")
 
-    def number(self, value: float, key: str | None) -> ca.SX:
-        return ca.SX(value) if key is None else self._context.theta(f"{self._prefix}.{key}")
-
-    def name(self, name: str) -> ca.SX:
-        return self._context.theta(f"parameters.{name}")
-
-    def quantity(self, name: str, end: EndName) -> ca.SX:
-        section = self._context.ends[end]
+    def quantity(name: str, end: EndName) -> ca.SX:
+        section = context.ends[end]
         value: ca.SX
         if name[0] == "u" and name[1:]:
             value = section.u[int(name[1]) - 1]
@@ -67,16 +61,6 @@ class _SymbolicEnv:
             value = section.rod.along(getattr(section.rod, name[0]))[int(name[1]) - 1]
         else:
             value = getattr(section.rod, name)
-        return value if self._unit is None else value * self._unit(*dimension(name))
+        return value if unit is None else value * unit(*dimension(name))
 
-    def vector(self, components: Sequence[ca.SX]) -> ca.SX:
-        return ca.vertcat(*components)
-
-    def component(self, vector: ca.SX, axis: Literal["x", "y", "z"]) -> ca.SX:
-        value: ca.SX = vector["xyz".index(axis)]
-        return value
-
-    def call(self, function: str, arguments: Sequence[ca.SX]) -> ca.SX:
-        name = {"abs": "fabs", "norm": "norm_2"}.get(function, function)
-        value: ca.SX = getattr(ca, name)(*arguments)
-        return value
+    return SymbolicEnv(number, lambda name: context.theta(f"parameters.{name}"), quantity)

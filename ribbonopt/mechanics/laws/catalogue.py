@@ -12,6 +12,7 @@ from collections.abc import Callable, Mapping
 from dataclasses import fields
 from importlib import import_module
 from numbers import Real
+from typing import TYPE_CHECKING
 
 import casadi as ca
 
@@ -19,6 +20,9 @@ from ribbonopt.errors import ModelError
 from ribbonopt.scene import Law, OwnLaw, Scene
 
 from .law import ConstitutiveLaw
+
+if TYPE_CHECKING:
+    from ribbonopt.mechanics.along import Field
 
 #: laws by the name a scene gives them: module and class, which is imported when a scene asks for
 #: it; the fields of the class are those of the scene's
@@ -79,7 +83,22 @@ def relation_of(scene: Scene, theta: Callable[[str], ca.SX], position: ca.SX) ->
     `theta` gives the symbols of its numbers by name, `position` is the symbol of the arclength s.
     """
     numbers = {name: theta(f"law.{name}") for name in numbers_of(scene.law)}
-    return law_of(scene.law, numbers, position)
+    law = law_of(scene.law, numbers, position)
+    if scene.width is not None:
+        from .tapered import tapered  # few scenes have a width of their own
+
+        (width,) = (field for field in fields_of(scene) if field.name == "width")
+        law = tapered(law, width.at(position, theta), position)
+    return law
+
+
+def fields_of(scene: Scene) -> tuple[Field, ...]:
+    """Return the numbers along the ribbon that its relation depends on beside its law."""
+    if scene.width is None:
+        return ()
+    from ribbonopt.mechanics.along import Field  # as above
+
+    return (Field("width", scene.width),)
 
 
 def capabilities(scene: Scene) -> ConstitutiveLaw:

@@ -17,6 +17,7 @@ from .dead_couple import DeadCouple
 from .dead_force import DeadForce
 from .load import Load
 from .pressure import Pressure
+from .weight import OfWidth
 
 
 def loads_of(scene: Scene) -> tuple[Load, ...]:
@@ -30,14 +31,20 @@ def loads_of(scene: Scene) -> tuple[Load, ...]:
     theta = {f"parameters.{name}": value for name, value in scene.parameters.items()}
     theta |= {"interval.start": scene.interval[0], "interval.end": scene.interval[1]}
     given, loads = scene.loads, list[Load]()
+    width = Field("width", scene.width) if scene.width is not None else None
+    theta |= {} if width is None else width.numbers()
 
-    def vector(name: str, value: Any) -> Components | None:
-        parts: dict[str, Part] = {a: Share(Field(f"{name}.{a}", v)) for a, v in by_axis(value)}
+    def vector(name: str, value: Any, width: Field | None = None) -> Components | None:
+        shares = {axis: Share(Field(f"{name}.{axis}", number)) for axis, number in by_axis(value)}
+        parts: dict[str, Part] = {
+            axis: share if width is None else OfWidth(share, width)
+            for axis, share in shares.items()
+        }
         return Components(parts, theta, scene.interval) if parts else None
 
     if force := vector("loads.force", given.force):
         loads.append(DeadForce(force))
-    if weight := vector("gravity", scene.gravity):
+    if weight := vector("gravity", scene.gravity, width):
         loads.append(DeadForce(weight, "gravity"))
     if couple := vector("loads.couple", given.couple):
         loads.append(DeadCouple(couple))

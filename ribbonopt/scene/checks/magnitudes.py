@@ -45,6 +45,7 @@ _PER_LENGTH = _Kind(
 _COUPLE = _Kind(0, 1, limits.FORCE, "D w / L^2", "it bends to a millionth of the length")
 _ANGLE = _Kind(0, 0, limits.ANGLE, "rad", "angles so large lose their digits")
 _TURNS = _Kind(0, 0, limits.ANGLE / 6, "turns", "angles so large lose their digits")
+_WIDTH = _Kind(0, 0, limits.WIDTH, "", "it is in units of the ribbon's own width")
 _SMOOTHING = _Kind(0, 0, limits.SMOOTHING, "", "nothing is left of the law")
 
 _KINDS: dict[KeyPath, _Kind] = {
@@ -71,6 +72,7 @@ _KINDS: dict[KeyPath, _Kind] = {
     ("reference", "n0"): _FORCE,
     ("reference", "m0"): _MOMENT,
     ("law", "epsilon"): _SMOOTHING,
+    ("width",): _WIDTH,
 }
 
 
@@ -118,7 +120,7 @@ def _interval(start: float, end: float) -> Iterator[Problem]:
 def in_units(scene: Scene, values: Mapping[KeyPath, float]) -> Iterator[Problem]:
     """Yield what is too large, or too unlike the rest, in units L = 1, Dw = 1.
 
-    `values` are those of the formulas, by path.
+    `values` are those of the formulas, by path; of what varies along the ribbon, the largest.
     """
     units = units_of(scene)
     start, end = scene.interval
@@ -164,10 +166,10 @@ def _at(value: Any, path: KeyPath) -> Any:
 def _numbers(
     value: Any, path: KeyPath, values: Mapping[KeyPath, float]
 ) -> Iterator[tuple[KeyPath, float]]:
-    """Yield the numbers in a value with their paths, those of formulas as well."""
+    """Yield the numbers in a value with their paths, those of formulas and tables as well."""
     if isinstance(value, float):
         yield path, value
-    elif isinstance(value, str) and path in values:
+    elif path in values:
         yield path, values[path]
     elif isinstance(value, tuple):
         for index, item in enumerate(value):

@@ -10,9 +10,9 @@ from dataclasses import is_dataclass
 from itertools import pairwise
 from typing import Any, get_origin
 
+from ribbonopt.scene.along import is_along, numbers_along
 from ribbonopt.scene.ends import Boundary
 from ribbonopt.scene.faults import KeyPath, Problem, shown
-from ribbonopt.scene.loads import Loads
 from ribbonopt.scene.model import Guess, MoebiusGuess, RibbonSizes, Scene
 from ribbonopt.scene.schema.annotations import branches, hints, inside
 from ribbonopt.scene.wording import written
@@ -31,7 +31,6 @@ def check(scene: Scene) -> list[Problem]:
         return problems  # what follows computes with these numbers
     problems = [*_name(scene.name), *_interval(scene.interval)]
     formulas = dict(_formulas(boundary, Boundary, ("boundary",)))
-    formulas |= _formulas(scene.loads, Loads, ("loads",))
     formulas |= _formulas(scene.guess, Guess, ("guess",))
     formulas |= _formulas(scene.gravity, hints(Scene)["gravity"], ("gravity",))
     values: dict[KeyPath, float] = {}
@@ -42,6 +41,17 @@ def check(scene: Scene) -> list[Problem]:
         values, found = values_of(formulas, scene.parameters)
         problems += check_parameters(scene.parameters)
         problems += [*found, *check_equations(boundary.also, scene.parameters)]
+    if (along := dict(numbers_along(scene))) and not problems:
+        # Imported late, as above.
+        from .along import check_along, largest
+
+        samples, found = check_along(along, scene.interval, scene.parameters)
+        problems += found
+        values |= largest(samples)
+        if ("width",) in samples:
+            from .width import check_width
+
+            problems += check_width(samples["width",])
     for name in ("start", "end"):
         problems += check_frame(getattr(boundary, name), ("boundary", name), values)
     if isinstance(scene.guess, MoebiusGuess):
@@ -92,7 +102,12 @@ def _switching(switching: tuple[float, ...], interval: tuple[float, float]) -> I
 
 
 def _formulas(value: Any, annotation: Any, path: KeyPath) -> Iterator[tuple[KeyPath, str]]:
-    """Yield the formulas in a value: texts that stand where the annotation has numbers as well."""
+    """Yield the formulas in a value: texts that stand where the annotation has numbers as well.
+
+    Not those along the ribbon, which have no one value.
+    """
+    if is_along(annotation):
+        return
     options = branches(annotation).values()
     if isinstance(value, str):
         if str in options:

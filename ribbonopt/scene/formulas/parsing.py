@@ -17,11 +17,13 @@ from ribbonopt.scene.quantities import Shape
 from .expressions import Node, Number, Quantity, evaluate, parts
 from .grammar import FormulaError, Parser
 from .numeric import NumericEnv
+from .words import ARCLENGTH
 
 __all__ = [
     "EquationFormula",
     "FormulaError",
     "evaluate_value",
+    "parse_along",
     "parse_equation",
     "parse_expression",
     "parse_value",
@@ -59,6 +61,11 @@ def parse_value(text: str, parameters: Iterable[str] = ()) -> Node:
     if node.shape == "vector":
         raise FormulaError(text, None, "found a vector, expected a scalar")
     return node
+
+
+def parse_along(text: str, parameters: Iterable[str] = ()) -> Node:
+    """Parse the formula of a number along the ribbon, such as "1 - 0.7*s"; see `parse_value`."""
+    return parse_value(text, [*parameters, ARCLENGTH])
 
 
 def parse_equation(text: str, parameters: Iterable[str] = ()) -> EquationFormula:

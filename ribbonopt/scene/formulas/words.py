@@ -31,6 +31,8 @@ SIGNS: dict[type[ast.operator], str] = {
     ast.Div: "/",
     ast.Pow: "**",
 }
+#: the name of s in formulas along the ribbon, and in them alone
+ARCLENGTH = "s"
 
 #: words of the grammar, which no parameter may shadow
 RESERVED = frozenset((*FUNCTIONS, *AT_ENDS, *AXES, *CONSTANTS, "start", "end"))
