@@ -22,6 +22,7 @@ from ribbonopt.solution.potential import dead_force_of
 from .loops import loop_of
 
 ACROSS = 1e-12  # cosine of a right angle
+MIDDLE = np.array([0.5])
 SMALL_BOW = 0.3  # radians, for a strip that nothing shortens but a load
 
 
@@ -44,6 +45,10 @@ def shapes_for(posed: Posed, *, wound: bool = True) -> Iterator[Shape]:
     plain = Chord(start, end, length, winding=turn)
     if chord > length * (1 - 1e-9) and (posed.loads or compresses(posed, plain)):
         bow = SMALL_BOW
+    if posed.loads and bow:
+        # To the side where it has the lesser potential: a strip that hangs, not an arch.
+        pull = np.sum([load.mean_force() for load in posed.loads], axis=0)
+        bow *= 1.0 if pull @ plain.frames(MIDDLE)[0][:, 0] >= 0 else -1.0
     yield replace(plain, bow=bow)
     if plain.straight and not bow:
         return

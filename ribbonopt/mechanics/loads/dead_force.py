@@ -44,6 +44,9 @@ class DeadForce(DeadLoad):
     def size_along(self) -> float:
         return float(np.abs(self.components.samples).max())
 
+    def mean_force(self) -> Array:
+        return np.asarray(self.components.samples.mean(axis=0))
+
     def force(self, section: Section, theta: Theta) -> ca.SX:
         return self.components.at(section.s, theta)
 

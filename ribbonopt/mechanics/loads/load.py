@@ -71,6 +71,10 @@ class Load(ABC):
         """Return about its largest size per length, units Dw = L = 1."""
         return max((abs(value) for value in self.numbers().values()), default=0.0)
 
+    def mean_force(self) -> Array:
+        """Return about the mean (3,) of a dead force per length, lab frame; zero if not known."""
+        return np.zeros(3)
+
     @property
     def structure_key(self) -> tuple[object, ...]:
         """What loads share that differ in numbers only."""
