@@ -37,7 +37,7 @@ def gaps_at_nodes(
     gap = _gap(theirs["H"][0], ours["H"][0], float(np.abs(ours["n"][0]).max()))
     errors["H0"] = max(gap, CANCEL * parts)
     for name in ("energy", "potential"):
-        errors[name] = _gap(*(np.array(one.integral(name)) for one in (better, trajectory)))
+        errors[name] = _gap(np.array(better.integral(name)), np.array(trajectory.integral(name)))
     along = {name: ours[name] for name in ("r", "d1", "d2", "d3", "u")}
     if len(trajectory.ends) > 2:
         along = _shifted(trajectory, better.nodes[::split])

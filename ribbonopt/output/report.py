@@ -34,7 +34,7 @@ def report(summary: Mapping[str, Any]) -> str:
         *(["  (force and moment recovered from the costates)"] * (s["loads_from"] == "costates")),
         _row("energy", s["energy"], errors["energy"]),
         *_potential(s),
-        _row("invariant H(0)" if _is_constant(s) else "H(0)", s["H0"], errors["H0"]),
+        _row("H(0)" if _varies(s) else "invariant H(0)", s["H0"], errors["H0"]),
         *(_row(name, value, s["recorded_error"][name]) for name, value in s["recorded"].items()),
         *_unknown_bars(s),
         *_phases(s),
@@ -54,10 +54,10 @@ def report(summary: Mapping[str, Any]) -> str:
     return "\n".join(lines)
 
 
-def _is_constant(summary: Mapping[str, Any]) -> bool:
-    """Whether H is an invariant: not under loads that change it."""
-    known = summary["conserved"]
-    return not known or "H" in known
+def _varies(summary: Mapping[str, Any]) -> bool:
+    """Whether H is no invariant: loads or a law that varies change it."""
+    drift = summary["invariant_drift"]
+    return drift["orthonormality"] is not None and drift["H"] is None
 
 
 def _potential(summary: Mapping[str, Any]) -> list[str]:
@@ -97,12 +97,15 @@ def _others(equilibria: Sequence[Mapping[str, Any]]) -> list[str]:
     """Lines on all equilibria found, where there are several."""
     if len(equilibria) == 1:
         return []
-    lines = [f"  {len(equilibria)} equilibria, by energy; the first is the one above:"]
+    told = [found.get("potential") for found in equilibria]
+    worked = None not in told and told != [found["energy"] for found in equilibria]
+    name = "potential" if worked else "energy"
+    lines = [f"  {len(equilibria)} equilibria, by {name}; the first is the one above:"]
     for i, found in enumerate(equilibria, start=1):
         n = ", ".join(f"{v:.6g}" for v in found["n0"])
         m = ", ".join(f"{v:.6g}" for v in found["m0"])
         lines.append(
-            f"    {i}: energy {found['energy']:.8g}, n(0) = ({n}), m(0) = ({m}), "
+            f"    {i}: {name} {found[name]:.8g}, n(0) = ({n}), m(0) = ({m}), "
             f"from {found['starts']} starts"
         )
     return lines

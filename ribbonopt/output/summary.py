@@ -93,6 +93,7 @@ def _equilibrium(solution: Solution) -> dict[str, Any]:
     """Return what tells one equilibrium of a scene from the others; `starts` led to it."""
     return {
         "energy": solution.energy,
+        "potential": potential(solution),
         "n0": solution.n0.tolist(),
         "m0": solution.m0.tolist(),
         "starts": solution.times,

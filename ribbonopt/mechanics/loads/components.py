@@ -25,9 +25,13 @@ PLACES = 33  # at which loads that vary are looked at
 class Part(Protocol):
     """One component per length, units Dw = L = 1."""
 
-    #: what to multiply to have more of it
-    scale: str
-    uniform: bool
+    @property
+    def scale(self) -> str:
+        """Name of the number to multiply to have more of it."""
+
+    @property
+    def uniform(self) -> bool:
+        """Whether it is the same all along the ribbon."""
 
     def numbers(self) -> dict[str, float]:
         """Numbers by parameter name."""

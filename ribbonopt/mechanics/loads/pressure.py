@@ -49,7 +49,7 @@ class Pressure(Load):
         if not self.p.uniform:
             return None
         (p,) = self.p.numbers().values()
-        return np.einsum("ki,ki->k", n, n) / 2 - p * m2
+        return np.asarray(np.sum(n**2, axis=1) / 2 - p * m2)
 
     def lines_of_action(self) -> tuple[Line, Line]:
         return None, np.zeros(3)
