@@ -101,7 +101,7 @@ def estimate_error(solution: Solution) -> dict[str, float]:
     """
     units = solution.units
     quantity = {"n0": "n", "m0": "m", "u0": "u", "u": "u", "H0": "H"}
-    quantity |= {"energy": "m", "potential": "m"}
+    quantity |= {"potential": "m", "energy": "m"}
     found = analyse(solution)
     bar = SAFETY if found.known else math.nan
     errors = {name: error for name, error in found.errors.items() if name != RESOLVED}
