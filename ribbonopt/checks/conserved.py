@@ -28,7 +28,7 @@ H_LOADED, IN_PLANE = "H + f.r", "n^2/2 - p m2"
 class Conserved(NamedTuple):
     """A quantity (k,) or (k, 3) at the nodes, units Dw = L = 1, and what its drift is relative to.
 
-    `length` and `force` are the exponents of its dimension.
+    That is the size of its parts, which may cancel. `length` and `force` are the exponents of its dimension.
     """
 
     values: Array
@@ -56,7 +56,7 @@ def conserved(solution: Solution, uniform: bool) -> Mapping[str, Conserved]:
     if uniform and len(known) == len(levels):
         work = np.sum(known, axis=0)
         name = H_LOADED if work.any() else "H"
-        size = max(float(np.abs(part).max()) for part in (nodes["H"], work))
+        size = max(float(np.abs(part).max()) for part in (nodes["H"], nodes["n3"], work))
         found[name] = Conserved(nodes["H"] + work, size, 0, 1)
     forces, couples = (_common([load.lines_of_action()[i] for load in loads]) for i in (0, 1))
     if forces is not None and couples is not None:
@@ -67,7 +67,7 @@ def conserved(solution: Solution, uniform: bool) -> Mapping[str, Conserved]:
             found["e.(m + r x n)"] = Conserved(about @ forces, moment, 1, 1)
             found["e x n"] = Conserved(np.cross(forces, n), force, 0, 1)
     if len(loads) == 1 and (level := _in_plane(nodes, loads[0])) is not None:
-        found[IN_PLANE] = Conserved(level, float(np.abs(level).max()), 0, 2)
+        found[IN_PLANE] = Conserved(level, force**2, 0, 2)
     return found
 
 

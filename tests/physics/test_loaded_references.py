@@ -307,6 +307,14 @@ def test_a_ring_is_pressed_flat(p: float) -> None:
     assert found.verification.drift["H"] < 1e-12
 
 
+def test_a_strip_under_pressure_in_a_plane_has_one_more_invariant() -> None:
+    found = solve(ribbon("{pressure: 6}", states="planar"))
+    drift = found.verification.drift
+    assert max(drift[name] for name in ("n^2/2 - p m2", "H")) < 1e-12
+    # At the free end nothing is left.
+    assert abs(summarize(found)["conserved"]["n^2/2 - p m2"]) < 1e-12
+
+
 @pytest.mark.slow
 def test_opposite_sides_touch(configs: Path) -> None:
     points = list(Continuation(load_scene(configs / "ring_pressed.yaml")))
@@ -344,9 +352,10 @@ def test_gravity_is_the_weight_of_the_density() -> None:
     assert summarize(found)["conserved"]["H + f.r"] == pytest.approx(found.start["H"], rel=1e-12)
 
 
-def test_gravity_pulls_at_the_width_there_is() -> None:
+@pytest.mark.parametrize(("form", "states"), [("inverted", "reduced"), ("energy", "reduced")])
+def test_gravity_pulls_at_the_width_there_is(form: str, states: str) -> None:
     density = 5 * RIGIDITY / 0.5**3 / (0.02 * 1e-4 * 9.81)
-    found = solve(film(density, width="'1 - 1.4*s'"))
+    found = solve(film(density, width="'1 - 1.4*s'", formulation=form, states=states))
     tip = 0.5 * np.array([-0.326452366854, 0.936274162831])
     np.testing.assert_allclose(found.sample(0.5, "r")[[0, 2]], tip, atol=1e-10)
 
