@@ -79,7 +79,8 @@ class Share:
         return None if found is None else self._shared(found, theta)
 
     def sampled(self, s: Array, theta: Mapping[str, float]) -> Array:
-        return self.field.sampled(s, theta)
+        name = self.field.name
+        return np.full(len(s), theta[name]) if name in theta else self.field.sampled(s, theta)
 
     @property
     def structure(self) -> object:
