@@ -88,7 +88,7 @@ class Structure:
 
     def build(self) -> None:
         """Build everything for the scene's own number of intervals now."""
-        self.on((self.posed.scene.transcription.intervals,))[1].build()
+        self.on(self.mesh(None).elements)[1].build()
 
     def attempt(
         self,
@@ -109,24 +109,44 @@ class Structure:
         """
         if posed is not self.posed and posed.structure != self.posed.structure:
             raise ModelError("this scene differs from the prepared one in more than its numbers")
-        mesh = mesh or self.mesh(switches)
+        if self.problem.stations and not self.sheets:
+            switches = posed.places
+        if mesh is None:
+            mesh = self.mesh(switches, places=posed.places)
+        elif len(mesh.phases) < len(self.problem.phases) == len(posed.places) + 1:
+            mesh = mesh.resampled(sum(mesh.elements), posed.places)
         nlp, solver = self.on(mesh.elements)
         p = nlp.layout.parameters(posed.values, mesh.widths)
         parts = self.ribbon, self.problem, nlp, solver, self.sheets, switches
         return Attempt(posed, p, *parts, ledger or Ledger())
 
-    def mesh(self, switches: Array | None, least: int = 0, graded_as: Mesh | None = None) -> Mesh:
+    def mesh(
+        self,
+        switches: Array | None,
+        least: int = 0,
+        graded_as: Mesh | None = None,
+        places: Array | None = None,
+    ) -> Mesh:
         """Uniform elements, `least` or more; in phases, of about the width they would have without.
 
         `switches` are the fractions of the length where phases meet. `graded_as` is a mesh of one
-        phase whose elements are as wide where these should be.
+        phase whose elements are as wide where these should be. `places` are the fractions at which
+        something acts or holds: nodes are there.
         """
         count = max(self.posed.scene.transcription.intervals, least)
+        places = self.posed.places if places is None else places
+        if len(places) and not self.sheets:
+            pieces = Mesh.uniform(*_shared(count, places, 1))
+            return pieces if self.problem.stations else pieces.joined(places)
         if graded_as is not None:
             inner = np.empty(0) if switches is None else switches
             return graded_as.resampled(count, inner, LEAST_IN_PHASE)
         if switches is None or not len(switches):
             return Mesh.uniform(count)
-        shares = np.diff(np.concatenate([[0.0], switches, [1.0]]))
-        counts = (max(LEAST_IN_PHASE, round(count * float(share))) for share in shares)
-        return Mesh.uniform(*counts)
+        return Mesh.uniform(*_shared(count, switches, LEAST_IN_PHASE))
+
+
+def _shared(count: int, switches: Array, least: int) -> list[int]:
+    """Return numbers of elements of the phases that meet at fractions, by their lengths."""
+    shares = np.diff(np.concatenate([[0.0], switches, [1.0]]))
+    return [max(least, round(count * float(share))) for share in shares]

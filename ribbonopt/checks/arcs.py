@@ -17,6 +17,7 @@ from ribbonopt.guess import Guess
 from ribbonopt.guess.balanced import Balanced
 from ribbonopt.guess.named import ShapeGuess
 from ribbonopt.problem import Ribbon
+from ribbonopt.problem.imposed import margins_function
 from ribbonopt.scene import Scene
 from ribbonopt.solution.solution import Solution
 from ribbonopt.transcription.buffered import Mapped
@@ -41,7 +42,9 @@ class Arcs:
 def phase_words(kinds: tuple[int, ...]) -> str:
     """Return the kinds of phases in words."""
     words = {1: "m2 > 0", -1: "m2 < 0", 0: "m2 = 0 (mixture)"}
-    return ", ".join(words[kind] for kind in kinds) or "one, without a sign change"
+    # At a single place where something acts or holds two of one kind meet.
+    turns = (kind for i, kind in enumerate(kinds) if not i or kind != kinds[i - 1])
+    return ", ".join(words[kind] for kind in turns) or "one, without a sign change"
 
 
 def changed_phases(before: tuple[int, ...], after: tuple[int, ...]) -> str:
@@ -52,6 +55,21 @@ def changed_phases(before: tuple[int, ...], after: tuple[int, ...]) -> str:
 
 
 MIXTURE = Arcs((0,), np.empty(0))  # from end to end
+
+
+def arcs_of(solution: Solution) -> Arcs:
+    """Return the arcs of a solution in phases; those that meet at a single place count as one."""
+    turns = solution.trajectory.turns
+    kinds = (solution.sheets[0], *(solution.sheets[i] for i in turns))
+    return Arcs(kinds, solution.trajectory.ends[list(turns)])
+
+
+def cut_at(arcs: Arcs, places: Array) -> Arcs:
+    """Return arcs that also end at fractions (k,) of the length, where something acts or holds."""
+    ends = np.sort(np.concatenate([arcs.switches, places]))
+    middles = (np.append(0.0, ends) + np.append(ends, 1.0)) / 2
+    kinds = np.array(arcs.kinds)[np.searchsorted(arcs.switches, middles)]
+    return Arcs(tuple(kinds.tolist()), ends)
 
 
 def is_mixture(guess: Guess) -> bool:
@@ -230,7 +248,7 @@ def phase_problems(
 
 def _margins(ribbon: Ribbon) -> dict[int, tuple[tuple[str, ...], int, Mapped]]:
     """Names of the margins of every kind of phase, how many are none of zeros, and all values."""
-    found = {kind: ribbon.margins_function(kind) for kind in (-1, 0, 1)}
+    found = {kind: margins_function(ribbon, kind) for kind in (-1, 0, 1)}
     return {
         kind: (names, count, Mapped(function)) for kind, (names, count, function) in found.items()
     }

@@ -28,7 +28,8 @@ H_LOADED, IN_PLANE = "H + f.r", "n^2/2 - p m2"
 class Conserved(NamedTuple):
     """A quantity (k,) or (k, 3) at the nodes, units Dw = L = 1, and what its drift is relative to.
 
-    That is the size of its parts, which may cancel. `length` and `force` are the exponents of its dimension.
+    That is the size of its parts, which may cancel. `length` and `force` are the exponents of its
+    dimension.
     """
 
     values: Array

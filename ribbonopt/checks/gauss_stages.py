@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass
 
+import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
 
@@ -12,6 +13,7 @@ from ribbonopt.accuracy.estimate import relative_error
 from ribbonopt.arrays import Array
 from ribbonopt.mechanics.section import RodFields
 from ribbonopt.problem import Ribbon
+from ribbonopt.problem.held import held_between
 from ribbonopt.solution.solution import Solution
 from ribbonopt.transcription import Tableau, gauss
 from ribbonopt.transcription.tableaus import MAX_DEGREE
@@ -85,7 +87,8 @@ def gauss_stages(solution: Solution, ribbon: Ribbon) -> GaussStages:
         places = _places(widths, degree)
         along = trajectory.outputs(places)
     lengths = np.array(trajectory.dense.blocks.layout.elements)
-    firsts = parts * np.cumsum(lengths)[:-1]
+    turns = np.array(trajectory.turns, dtype=int)
+    firsts = parts * np.cumsum(lengths)[turns - 1]
     points = {k: v[[0, *(firsts // parts), -1]] for k, v in trajectory.at_nodes.items()}
     # Packed together, in order, for quaternions that do not change their sign.
     at = np.concatenate([[0], degree * firsts, [len(places)]])
@@ -93,6 +96,9 @@ def gauss_stages(solution: Solution, ribbon: Ribbon) -> GaussStages:
     fields = RodFields(*(np.insert(a, at, b, axis=0) for a, b in pairs))
     # Any point of reference will do: it is for constants, which the energy does without.
     x, _ = ribbon.model.pack(fields, fields.r[0])
+    if ribbon.stations:
+        ends = trajectory.ends[[0, *turns, -1]]
+        x = np.hstack([x, _held(solution, ribbon, np.insert(places, at, ends), fields.r)])
     z = np.einsum("ki,kij->kj", fields.m, fields.frames)[:, list(ribbon.law.components)]
     rows = at + np.arange(len(at))
     inside = np.delete(np.arange(len(x)), rows)
@@ -110,6 +116,17 @@ def gauss_stages(solution: Solution, ribbon: Ribbon) -> GaussStages:
         along["switching"],
         error or 0.0,
     )
+
+
+def _held(solution: Solution, ribbon: Ribbon, fraction: Array, r: Array) -> Array:
+    """States of the least energy that stand for supports between the ends, at fractions."""
+    held, (start, _) = held_between(ribbon), solution.posed.scene.interval
+    names = list(ribbon.theta)
+    theta = ca.Function("places", [ribbon.parameters], [ca.vertcat(ca.SX(0, 1), *held.places)])
+    known = dict(zip(solution.problem.parameter_names, solution.dense.theta, strict=True))
+    s = np.array(theta([known.get(name, 0.0) for name in names])).ravel()
+    places = (s - start) / solution.posed.length
+    return held.packed(fraction, r, places, solution.trajectory.outputs(places)["r"])
 
 
 def _places(widths: Array, degree: int) -> Array:

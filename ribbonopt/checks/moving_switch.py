@@ -85,7 +85,8 @@ class MovingSwitches:
     def at(self, solution: Solution, stages: GaussStages, theta: Array) -> Moved:
         """Return what moves at the switches of a solution."""
         trajectory, firsts = solution.trajectory, stages.firsts
-        nx, switches = stages.x.shape[1], trajectory.ends[1:-1]
+        turns = list(trajectory.turns)
+        nx, switches = stages.x.shape[1], trajectory.ends[turns]
         o = {name: value for name, value in trajectory.outputs(switches).items() if name in "num"}
         frames = solution.fields(switches).frames
         n, m = (np.einsum("ki,kij->kj", o[name], frames) for name in "nm")
@@ -99,7 +100,7 @@ class MovingSwitches:
             size = float(np.linalg.norm(strains))
             if size <= most:
                 continue  # nothing leaps: there is nothing to move
-            sign = np.sign(solution.sheets[i + 1] - solution.sheets[i])
+            sign = np.sign(solution.sheets[turns[i]] - solution.sheets[turns[i] - 1])
             jumps[e] = sign * change / size
             turning[i] = sign * jacobian.reshape(nx, nx).T / size
             stiffness[i] = trajectory.length**2 * sign * slope[i] @ strains / size**2

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
+from ribbonopt.mechanics.widths import widths
 from ribbonopt.solution.solution import Solution
 
 from .approach import nearest_approach
@@ -50,7 +51,10 @@ def contact_problems(solution: Solution) -> list[str]:
     else:
         length, closed, r = band.pieces * (end - start), True, band.line(points)
     ribbon = solution.scene.ribbon
-    width = DRAWN * length if ribbon is None else ribbon.width
+    width = DRAWN * length  # where it is widest
+    if ribbon is not None:
+        along = widths(solution.scene, np.linspace(start, end, points + 1))
+        width = ribbon.width * float(along.max())
     found = nearest_approach(r / length, width / length, APART * width / length, closed)
     if found is None:
         return []

@@ -14,6 +14,7 @@ import numpy as np
 
 from ribbonopt.arrays import Array
 from ribbonopt.mechanics.laws.catalogue import is_developable
+from ribbonopt.mechanics.widths import widths
 from ribbonopt.scene import RibbonSizes
 from ribbonopt.solution.solution import Solution
 
@@ -23,6 +24,7 @@ from .zero_moment import zero_moment_problems
 SLENDER = 10.0  # least ratio of length to width, and of width to thickness
 WIDEST = 1 / math.sqrt(3)  # w / L of a Moebius band in space (Schwartz 2023)
 NOTABLE, MEETING = 0.5, 2.0  # |eta'| w
+STEEP = 0.5  # |w'|: each edge leaves the tangent by 14 degrees
 ROWS = 2001
 FLAT = 1e-9  # of the largest moment, or of D w / L: below it m3 counts as zero
 
@@ -32,8 +34,11 @@ def warnings_of(solution: Solution) -> list[str]:
     ribbon, converged = solution.scene.ribbon, solution.status.converged
     result = []
     if ribbon is not None:
-        result += [*_slenderness(ribbon), *_width_of_loop(solution, ribbon)]
-        result += _generatrices(solution, ribbon.width) if converged else []
+        s = np.linspace(*solution.scene.interval, ROWS)
+        width = ribbon.width * widths(solution.scene, s)
+        result += [*_slenderness(ribbon, width), *_width_of_loop(solution, float(width.min()))]
+        result += _taper(s, width)
+        result += _generatrices(solution, s, width) if converged else []
     if converged:
         result += zero_moment_problems(solution)
         result += [*planar_problems(solution), *contact_problems(solution)]
@@ -45,9 +50,11 @@ def wunderlich_factor(x: float) -> float:
     return 1.0 if x == 0 else math.log((2 + x) / (2 - x)) / x
 
 
-def _slenderness(ribbon: RibbonSizes) -> list[str]:
-    pairs = (("length", "width"), ("width", "thickness"))
-    ratios = {pair: getattr(ribbon, pair[0]) / getattr(ribbon, pair[1]) for pair in pairs}
+def _slenderness(ribbon: RibbonSizes, width: Array) -> list[str]:
+    ratios = {
+        ("length", "width"): ribbon.length / float(width.max()),
+        ("width", "thickness"): float(width.min()) / ribbon.thickness,
+    }
     return [
         f"the {large} is only {ratio:.3g} times the {small}; the model is for L >> w >> h"
         for (large, small), ratio in ratios.items()
@@ -55,12 +62,25 @@ def _slenderness(ribbon: RibbonSizes) -> list[str]:
     ]
 
 
-def _width_of_loop(solution: Solution, ribbon: RibbonSizes) -> list[str]:
+def _taper(s: Array, width: Array) -> list[str]:
+    """Say where the width changes too fast along s for a law of each section by itself."""
+    slopes = np.abs(np.gradient(width, s))
+    row = int(slopes.argmax())
+    if slopes[row] <= STEEP:
+        return []
+    return [
+        f"the width changes by {slopes[row]:.3g} per length at s = {s[row]:.4g}; the model is for "
+        "widths that hardly change over the width itself (|w'| << 1)"
+    ]
+
+
+def _width_of_loop(solution: Solution, width: float) -> list[str]:
+    """Compare the least width of a Moebius band with what no band can have all along."""
     loop = solution.scene.boundary.loop
     if loop is None or loop.half_twists % 2 == 0:
         return []
     start, end = solution.scene.interval
-    share = ribbon.width / (loop.pieces * (end - start))
+    share = width / (loop.pieces * (end - start))
     if share < WIDEST:
         return []
     return [
@@ -69,14 +89,13 @@ def _width_of_loop(solution: Solution, ribbon: RibbonSizes) -> list[str]:
     ]
 
 
-def _generatrices(solution: Solution, width: float) -> list[str]:
+def _generatrices(solution: Solution, s: Array, width: Array) -> list[str]:
     """Compare with Wunderlich's energy where the generatrices turn fastest."""
     if not is_developable(solution.scene):
         return []
-    s = np.linspace(*solution.scene.interval, ROWS)
-    slopes = np.abs(generatrix_slopes(solution, s))
-    row = int(slopes.argmax())
-    x, place = float(slopes[row]) * width, f"at s = {s[row]:.4g}"
+    products = np.abs(generatrix_slopes(solution, s)) * width
+    row = int(products.argmax())
+    x, place = float(products[row]), f"at s = {s[row]:.4g}"
     if x >= MEETING:
         return [
             f"the generatrices meet inside the ribbon {place} (|eta'| w = {x:.3g}, beyond 2): "

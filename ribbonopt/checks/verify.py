@@ -15,6 +15,7 @@ from ribbonopt.accuracy.estimate import SAFETY, Analysis, analyse
 from ribbonopt.accuracy.gaps import LEAST
 from ribbonopt.arrays import Array
 from ribbonopt.problem import Ribbon
+from ribbonopt.problem.imposed import verdicts_function
 from ribbonopt.solution.solution import Solution
 from ribbonopt.solution.verification import NO_LENGTH, Verification, unverified
 from ribbonopt.transcription.buffered import Buffered
@@ -132,12 +133,14 @@ def _worst_condition(solution: Solution, ribbon: Ribbon) -> tuple[str, float]:
     count, constants = len(ribbon.states), len(ribbon.constants)
     nodes = solution.dense.at_nodes
     # Without further states, and without the lengths of phases.
-    known = (
+    known = [
         nodes[0, :count],
         nodes[-1, :count],
         solution.constants[:constants],
         solution.dense.theta,
-    )
+    ]
+    if len(places := solution.posed.places):
+        known.append(solution.trajectory.states(places)[:, :count].ravel())
     (values,) = verdicts(*known)
     # Relative to the loads, absolute in lengths and directors (L = 1).
     n0, m0 = solution.n0 / solution.units.force, solution.m0 / solution.units.moment
@@ -151,13 +154,16 @@ def _worst_condition(solution: Solution, ribbon: Ribbon) -> tuple[str, float]:
 
 def _verdicts(ribbon: Ribbon) -> tuple[tuple[str, ...], Buffered]:
     """Names of what to verify, and their values on numpy arrays."""
-    names, function = ribbon.verdicts_function
+    names, function = verdicts_function(ribbon)
     return names, Buffered(function)
 
 
 def _drifts(solution: Solution, uniform: bool) -> dict[str, float]:
     """Drifts of what is conserved; H is not where the law depends on s."""
     nodes, unknown = solution.trajectory.at_nodes, float("nan")
+    if solution.posed.stations:  # n steps there, and what follows from it
+        drift = {"orthonormality": float(nodes["orthonormality"].max())}
+        return dict.fromkeys(("n", "n_dot_m", "H"), unknown) | drift
     drift = {"orthonormality": float(nodes["orthonormality"].max())}
     if solution.posed.loads:
         from .conserved import conserved  # few scenes have loads

@@ -83,7 +83,7 @@ class IntegratedLoads:
 
 def _bounded_strain(posed: Posed, loads: LoadGuess) -> float:
     """Bound of the strains by H = W + n3, |u|^2 <= 2 W; infinite where H is not constant."""
-    if posed.loads:
+    if posed.loaded:
         return math.inf
     n, m = (float(np.linalg.norm(v)) for v in (loads.force, loads.moment))
     return math.sqrt(m**2 + 4 * n)

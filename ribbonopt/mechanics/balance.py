@@ -40,9 +40,21 @@ class Balance(ABC):
     ) -> tuple[ca.SX, ca.SX]:
         """Force n and moment m (lab) from own states x and constants c at the arclength s."""
 
+    def stepped(self, c: ca.SX, s: ca.SX) -> ca.SX | None:
+        """Force (3,) of what acts at single places up to s, lab frame; None where nothing can."""
+        return None
+
+    def with_passed(self, passed: ca.SX) -> Balance:
+        """Return the same in a phase: which stations are before it (1) and behind (0)."""
+        return self
+
     @abstractmethod
     def rates(self, section: Section, x: ca.SX) -> ca.SX:
         """Return the derivatives of the own states x along s."""
+
+    def beyond(self, s: ca.SX) -> ca.SX:
+        """Force (3,) of the dead loads at single places behind the arclength s, lab frame."""
+        return ca.SX.zeros(3)
 
     def start_conditions(self, x: ca.SX) -> dict[str, ca.SX]:
         """Conditions, by name, on own states x at the start."""

@@ -16,7 +16,8 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import casadi as ca
 import numpy as np
@@ -28,6 +29,9 @@ from .loads.load import DeadLoad, Load, Theta
 from .orientation import DirectorTriad, Orientation, UnitQuaternion
 from .rotations import cross_matrix, matrix_of
 from .section import RodFields, Section
+
+if TYPE_CHECKING:
+    from .stations import Station
 
 
 class RodModel(ABC):
@@ -57,6 +61,10 @@ class RodModel(ABC):
         return np.eye(6)
 
     @abstractmethod
+    def with_passed(self, passed: ca.SX) -> RodModel:
+        """Return the same in a phase between stations: which are before it (1) and behind (0)."""
+
+    @abstractmethod
     def section(
         self, x: ca.SX, c: ca.SX, s: ca.SX, reference: ca.SX, own: ca.SX | None = None
     ) -> Section:
@@ -68,6 +76,10 @@ class RodModel(ABC):
     @abstractmethod
     def rates(self, x: ca.SX, section: Section, u: ca.SX) -> ca.SX:
         """dx/ds for the Darboux vector u (3,) along the directors, eqs. (2.1), (2.2), (2.7)."""
+
+    @abstractmethod
+    def beyond(self, s: ca.SX) -> ca.SX:
+        """Force (3,) of the dead loads at single places behind the arclength s, lab frame."""
 
     @abstractmethod
     def start_conditions(self, x: ca.SX) -> dict[str, ca.SX]:
@@ -116,9 +128,11 @@ class SpatialRod(RodModel):
 
     @property
     def unknowns(self) -> Mapping[str, int]:
-        rest = len(self.balance.states) + len(self.balance.constants) - 6
         counts = {"position": 3, "directors": len(self.orientation.names), "force": 3, "moment": 3}
-        return counts | ({"moment of the loads": rest} if rest else {})
+        return counts | of_loads(self.balance.states, self.balance.constants, 6)
+
+    def with_passed(self, passed: ca.SX) -> RodModel:
+        return replace(self, balance=self.balance.with_passed(passed))
 
     def section(
         self, x: ca.SX, c: ca.SX, s: ca.SX, reference: ca.SX, own: ca.SX | None = None
@@ -126,12 +140,16 @@ class SpatialRod(RodModel):
         q, rest = self._split(x)
         n, m = self.balance.force_and_moment(x[:3], rest, c, s, reference)
         directors = self.orientation.directors(q)
-        return Section(x[:3], *directors, n, m, s, ca.SX(0, 1) if own is None else own)
+        own = ca.SX(0, 1) if own is None else own
+        return Section(x[:3], *directors, n, m, s, own, self.balance.stepped(c, s))
 
     def rates(self, x: ca.SX, section: Section, u: ca.SX) -> ca.SX:
         q, rest = self._split(x)
         turn = self.orientation.rates(q, u)
         return ca.vertcat(section.d3, turn, self.balance.rates(section, rest))
+
+    def beyond(self, s: ca.SX) -> ca.SX:
+        return self.balance.beyond(s)
 
     def start_conditions(self, x: ca.SX) -> dict[str, ca.SX]:
         q, rest = self._split(x)
@@ -169,19 +187,44 @@ class SpatialRod(RodModel):
         return x[3:end], x[end:]
 
 
-def least_balance(loads: tuple[Load, ...], theta: Theta) -> Balance:
-    """Return the balance with the fewest unknowns that loads allow."""
+def of_loads(states: tuple[str, ...], constants: tuple[str, ...], usual: int) -> dict[str, int]:
+    """Return unknown numbers of a balance beside the usual ones, by what they stand for."""
+    reactions = sum(" of " in name for name in constants)
+    rest = len(states) + len(constants) - usual - reactions
+    counts = {"moment of the loads": rest, "forces and moments at single places": reactions}
+    return {words: count for words, count in counts.items() if count}
+
+
+def least_balance(
+    loads: tuple[Load, ...], theta: Theta, stations: tuple[Station, ...] = ()
+) -> Balance:
+    """Return the balance with the fewest unknowns that loads and stations allow."""
     dead = tuple(load for load in loads if isinstance(load, DeadLoad))
-    if not loads:
-        return ConstantForce()
-    return DeadLoads(dead, theta) if len(dead) == len(loads) else ForceMomentStates(loads, theta)
+    found: Balance = ConstantForce()
+    if loads:
+        every = len(dead) == len(loads)
+        found = DeadLoads(dead, theta) if every else ForceMomentStates(loads, theta)
+    return _stepped(found, stations, theta)
 
 
-def least_model(loads: tuple[Load, ...], theta: Theta) -> RodModel:
-    """Return the model in space with the fewest unknowns that loads allow."""
-    return SpatialRod(UnitQuaternion(), least_balance(loads, theta))
+def least_model(
+    loads: tuple[Load, ...], theta: Theta, stations: tuple[Station, ...] = ()
+) -> RodModel:
+    """Return the model in space with the fewest unknowns that loads and stations allow."""
+    return SpatialRod(UnitQuaternion(), least_balance(loads, theta, stations))
 
 
-def full_model(loads: tuple[Load, ...], theta: Theta) -> RodModel:
+def full_model(
+    loads: tuple[Load, ...], theta: Theta, stations: tuple[Station, ...] = ()
+) -> RodModel:
     """Return the paper's 18 states, under any loads."""
-    return SpatialRod(DirectorTriad(), ForceMomentStates(loads, theta))
+    balance = _stepped(ForceMomentStates(loads, theta), stations, theta)
+    return SpatialRod(DirectorTriad(), balance)
+
+
+def _stepped(balance: Balance, stations: tuple[Station, ...], theta: Theta) -> Balance:
+    if not stations:
+        return balance
+    from .stepped import Stepped  # few scenes have stations
+
+    return Stepped(balance, stations, theta)

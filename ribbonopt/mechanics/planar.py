@@ -7,7 +7,8 @@ plane, d1 = cos(turn) a - sin(turn) b and d3 = sin(turn) a + cos(turn) b, so tha
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import casadi as ca
 import numpy as np
@@ -17,9 +18,12 @@ from ribbonopt.errors import ModelError
 
 from .balance import Balance
 from .loads.load import Load, Theta
-from .model import RodModel, least_balance
+from .model import RodModel, least_balance, of_loads
 from .rotations import directors_of
 from .section import RodFields, Section
+
+if TYPE_CHECKING:
+    from .stations import Station
 
 ALONG = 1 - 1e-9  # least component of d2 along the normal of its plane
 AXES = "xyz"
@@ -82,9 +86,12 @@ class PlanarRod(RodModel):
 
     @property
     def unknowns(self) -> Mapping[str, int]:
-        rest = len(self.states) + len(self.constants) - 6
+        balance = self.states[3:], self.constants
         counts = {"position": 2, "directors": 1, "force": 2, "moment": 1}
-        return counts | ({"moment of the loads": rest} if rest else {})
+        return counts | of_loads(*balance, 3)
+
+    def with_passed(self, passed: ca.SX) -> RodModel:
+        return replace(self, balance=self.balance.with_passed(passed))
 
     @property
     def motions(self) -> Array:
@@ -98,12 +105,17 @@ class PlanarRod(RodModel):
         r = ca.vertcat(*(x[0] if k == i else x[1] if k == j else reference[k] for k in range(3)))
         rest, whole = self._whole(self.balance.states, x[3:]), self.balance.constants
         n, m = self.balance.force_and_moment(r, rest, self._whole(whole, c), s, reference)
-        return Section(r, *self._directors(x[2]), n, m, s, ca.SX(0, 1) if own is None else own)
+        stepped = self.balance.stepped(self._whole(whole, c), s)
+        own = ca.SX(0, 1) if own is None else own
+        return Section(r, *self._directors(x[2]), n, m, s, own, stepped)
 
     def rates(self, x: ca.SX, section: Section, u: ca.SX) -> ca.SX:
         own = self._whole(self.balance.states, x[3:])
         rest = self.balance.rates(section, own)[self._kept(self.balance.states)]
         return ca.vertcat(section.d3[list(self.plane.inside)], u[1], rest)
+
+    def beyond(self, s: ca.SX) -> ca.SX:
+        return self.balance.beyond(s)
 
     def start_conditions(self, x: ca.SX) -> dict[str, ca.SX]:
         found = self.balance.start_conditions(self._whole(self.balance.states, x[3:]))
@@ -159,7 +171,7 @@ class PlanarRod(RodModel):
         """Places of the components of a balance that are in the plane, by its names."""
         inside = {AXES[i] for i in self.plane.inside}
         across = AXES[self.plane.axis]
-        axes = {"n": inside, "m": {across}, "a": {across}, "F": inside}
+        axes = {"n": inside, "F": inside, "m": {across}, "a": {across}, "b": {across}}
         return [i for i, name in enumerate(names) if name[1] in axes[name[0]]]
 
     def _whole(self, names: tuple[str, ...], part: ca.SX) -> ca.SX:
@@ -168,6 +180,8 @@ class PlanarRod(RodModel):
         return ca.vertcat(*(known.get(i, ca.SX(0)) for i in range(len(names))))
 
 
-def planar_model(loads: tuple[Load, ...], theta: Theta, plane: Plane) -> RodModel:
-    """Return the model in a plane with the fewest unknowns that loads allow."""
-    return PlanarRod(plane, least_balance(loads, theta))
+def planar_model(
+    loads: tuple[Load, ...], theta: Theta, plane: Plane, stations: tuple[Station, ...] = ()
+) -> RodModel:
+    """Return the model in a plane with the fewest unknowns that loads and stations allow."""
+    return PlanarRod(plane, least_balance(loads, theta, stations))

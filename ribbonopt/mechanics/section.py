@@ -13,7 +13,10 @@ from .laws.law import Stress
 
 @dataclass(frozen=True, eq=False)
 class Section:
-    """One cross section: lab-frame vectors (3,), arclength, and the law's own states (k,)."""
+    """One cross section: lab-frame vectors (3,), arclength, and the law's own states (k,).
+
+    `stepped` is the force (3,) of what acts at single places up to here, if anything does.
+    """
 
     r: ca.SX
     d1: ca.SX
@@ -23,6 +26,7 @@ class Section:
     m: ca.SX
     s: ca.SX
     own: ca.SX
+    stepped: ca.SX | None = None
 
     def along(self, vector: ca.SX) -> ca.SX:
         """Components (3,) of a lab vector along the directors."""

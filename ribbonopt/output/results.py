@@ -127,7 +127,12 @@ def load_solution(path: str | Path, scene: Scene | None = None) -> Solution:
     try:
         posed = Posed.of(scene, _units(scene, saved.units))
         structure = Structure.of(posed).in_phases(saved.sheets)
-        problem, (nlp, _) = structure.problem, structure.on(saved.elements)
+        problem = structure.problem
+        if len(saved.elements) != len(problem.phases):
+            raise ValueError(
+                f"elements: expected a number of them for each of the {len(problem.phases)} phases"
+            )
+        nlp, _ = structure.on(saved.elements)
         _refuse_other_scene(plain, saved, posed, problem, nlp.unknowns)
         # The saved parameters, because some follow from the solution (loads from costates).
         p = np.concatenate([saved.theta, saved.widths])

@@ -184,7 +184,7 @@ def refuse_mesh(
     """
     if not set(sheets) <= {-1, 0, 1}:
         raise ValueError("sheets: expected kinds of phases, each -1, 0 or 1")
-    if len(elements) != max(len(sheets), 1) or min(elements) < 1:
+    if (sheets and len(elements) != len(sheets)) or min(elements, default=0) < 1:
         raise ValueError("elements: expected a number of them for each phase")
     if sum(elements) != len(widths) or len(widths) > len(w):
         raise ValueError("widths: expected one for each element")

@@ -61,12 +61,12 @@ class Prepared:
     @property
     def nlp(self) -> NLP:
         """The program on the scene's own number of intervals."""
-        return self.structure.on((self.scene.transcription.intervals,))[0]
+        return self.structure.on(self.structure.mesh(None).elements)[0]
 
     @property
     def solver(self) -> Solver:
         """The solver of `nlp`."""
-        return self.structure.on((self.scene.transcription.intervals,))[1]
+        return self.structure.on(self.structure.mesh(None).elements)[1]
 
     def posed(self, scene: Scene | Posed | None = None) -> Posed:
         """Return a scene (default: the prepared one) posed."""

@@ -17,6 +17,8 @@ import numpy as np
 from ribbonopt.checks.arcs import (
     MIXTURE,
     Arcs,
+    arcs_of,
+    cut_at,
     given_arcs,
     is_mixture,
     sign_changes,
@@ -45,7 +47,7 @@ class Search(Tried):
         A guess that has phases itself is tried in these first.
         """
         if isinstance(guess, Solution) and guess.sheets and self.phases_help:
-            if self.run_in(Arcs(guess.sheets, guess.trajectory.ends[1:-1]), guess):
+            if self.run_in(arcs_of(guess), guess):
                 return True
         if self.needs_phases and not isinstance(guess, Solution) and is_mixture(guess):
             if self.run_in(MIXTURE, Balanced(guess)):
@@ -65,6 +67,8 @@ class Search(Tried):
 
     def run_in(self, arcs: Arcs, source: Guess, least: int = 0) -> bool:
         """Try a guess in phases, on `least` intervals or more; whether that succeeds."""
+        if self.posed.stations:
+            arcs = cut_at(arcs, self.posed.places)
         structure = self.structure.in_phases(arcs.kinds)
         mesh = structure.mesh(arcs.switches, least, self._layers_of(source, arcs))
         attempt = structure.attempt(self.posed, self.ledger, mesh, arcs.switches)
@@ -90,7 +94,8 @@ class Search(Tried):
             # A layer that a uniform mesh of so few intervals would not see.
             count, self.layered = self.posed.scene.transcription.intervals, True
             count = max(count, len(guess.mesh.widths) // COARSER)
-            self._take(guess.mesh.resampled(count, np.empty(0)))
+            whole = guess.mesh.joined(guess.trajectory.ends[1:-1])
+            self._take(whole.resampled(count, np.empty(0)))
         elif self.wound:
             self._take(None)
             self.wound = False
@@ -138,7 +143,7 @@ class Search(Tried):
 
     def _freed(self, arcs: Arcs, source: Guess) -> tuple[Arcs, Guess]:
         """Return arcs and a guess: nearer, for a mixture from end to end, by leaving m2 free."""
-        if arcs.kinds != MIXTURE.kinds:
+        if arcs.kinds != MIXTURE.kinds or self.posed.stations:
             return arcs, source
         attempt = self.structure.in_phases(arcs.kinds, free=True).attempt(self.posed, self.ledger)
         attempt.run(source, quick=True, check=False)
@@ -159,4 +164,5 @@ class Search(Tried):
         """Mesh of a source that was graded to layers, where phases need that too."""
         if not (self.layered and isinstance(source, Solution)) or len(arcs.kinds) == 1:
             return None
-        return source.mesh if source.mesh.graded and not source.sheets else None
+        graded = source.mesh.graded and not source.sheets
+        return source.mesh.joined(source.trajectory.ends[1:-1]) if graded else None

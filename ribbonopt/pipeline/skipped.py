@@ -19,7 +19,7 @@ def skipped(
     result, scene = [], posed.given
     solvers = () if ledger is None else ledger.solvers
     if scene.states != "full":
-        if not posed.loads:
+        if not posed.loaded:
             result.append("force and moment as states (no loads: n is constant, m follows from r)")
         if scene.states == "planar":
             result.append("what is across the plane (an angle carries the frame)")

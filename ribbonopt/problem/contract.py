@@ -85,6 +85,8 @@ class BoundaryValueProblem:
     costate, recovered : SX symbols (nx,), mapping of str to SX
         Costates at the start, and parameters whose values follow from them once a problem with a
         cost is solved; until then they enter outputs only.
+    completed : SX (nx,) or None
+        States with what was recovered, from states and parameters, where they hold any of it.
     slack : int
         How many constants, the last, relax conditions that are too many: zero where these agree.
     known : SX column symbol (nk,)
@@ -93,6 +95,8 @@ class BoundaryValueProblem:
         k at each of the points, for conditions; empty if no condition contains it.
     conserved : tuple of str
         Outputs that are constant along the solution, and yet not by construction.
+    stations : tuple of int
+        Which of the points are at known places, where something acts or holds.
     """
 
     position: ca.SX
@@ -112,11 +116,13 @@ class BoundaryValueProblem:
     algebraic_start: ca.SX = field(default_factory=lambda: ca.SX(0, 1))
     costate: ca.SX = field(default_factory=lambda: ca.SX(0, 1))
     recovered: Mapping[str, ca.SX] = field(default_factory=dict)
+    completed: ca.SX | None = None
     slack: int = 0
     known: ca.SX = field(default_factory=lambda: ca.SX(0, 1))
     known_at: tuple[ca.SX, ...] = ()
     known_names: tuple[str, ...] = ()
     conserved: tuple[str, ...] = ()
+    stations: tuple[int, ...] = ()
     _kept: dict[Callable[..., Any], Any] = field(default_factory=dict, init=False, repr=False)
 
     def __post_init__(self) -> None:
@@ -157,6 +163,12 @@ class BoundaryValueProblem:
     def square(self) -> bool:
         """Whether there is nothing to minimise and no inequality: equations only."""
         return all(p.cost is None and p.path.numel() == 0 for p in self.phases)
+
+    @property
+    def lengths(self) -> int:
+        """How many constants, before any slack, are lengths of phases: none if they are known."""
+        lengths = ca.vertcat(*(phase.length for phase in self.phases))
+        return len(self.phases) - 1 if ca.depends_on(lengths, self.constants) else 0
 
     @property
     def unknown_count(self) -> int:

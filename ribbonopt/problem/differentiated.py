@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import casadi as ca
 
+from ribbonopt.errors import ModelError
 from ribbonopt.mechanics.laws.law import Stress
 
 from .contract import BoundaryValueProblem
@@ -19,6 +20,7 @@ from .ribbon import Ribbon
 
 def differentiated(ribbon: Ribbon, posed: Posed) -> BoundaryValueProblem:
     """Return the ODE of the states of the rod and the strains that the law leaves free."""
+    _refuse_couples(ribbon)
     unknowns, law = Unknowns.of(ribbon), ribbon.law
     free = list(law.components)
     names = [f"u{i + 1}" for i in free]
@@ -28,7 +30,7 @@ def differentiated(ribbon: Ribbon, posed: Posed) -> BoundaryValueProblem:
         g = ca.substitute(moment.equations, moment.unknowns, u)
     else:
         g = u - unknowns.section.u[free]
-    rates = ribbon.rates(unknowns.section, law.whole(u))
+    rates = unknowns.rates(law.whole(u))
     change = ca.jtimes(g, unknowns.x, rates) + ca.jacobian(g, ribbon.position)
     slope = _solved(ca.jacobian(g, u), -change)
 
@@ -44,6 +46,18 @@ def differentiated(ribbon: Ribbon, posed: Posed) -> BoundaryValueProblem:
         estimate=estimate,
         start_conditions={f"start: law along d{i + 1}": g[k] for k, i in enumerate(free)},
     )
+
+
+def _refuse_couples(ribbon: Ribbon) -> None:
+    """Raise ModelError where a moment acts at a single place: strains, states here, leap there."""
+    for station in ribbon.stations:
+        for action in station.actions:
+            if action.leaps:
+                raise ModelError(
+                    f"formulation differentiated: {action.path}.moment makes the strains leap, "
+                    "which are continuous states here; use formulation: inverted or algebraic",
+                    f"{action.path}.moment",
+                )
 
 
 def _solved(matrix: ca.SX, right: ca.SX) -> ca.SX:

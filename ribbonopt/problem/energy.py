@@ -12,13 +12,14 @@ Sign: with equations x_{e+1} - x_e - ... = 0 and the Lagrangian cost + lambda . 
 the derivative of the energy with respect to a shift of the rest of the ribbon, which is n; a turn
 by dt of the rest changes q by dt q / 2, hence m . e_k = lambda_q . (e_k q) / 2. Dead loads f along
 the ribbon are in the cost as -f . r, so that the costate of r is n all along it, whether the start
-is free to move or not; a dead force Q at an end is there as -Q . d3, and that costate is n - Q.
+is free to move or not; a dead force Q at an end, or at a place beyond s, is there as -Q . d3, and
+that costate is n - Q.
 """
 
 from __future__ import annotations
 
 from collections.abc import Sequence
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import casadi as ca
 
@@ -31,8 +32,13 @@ from ribbonopt.mechanics.rotations import product
 
 from .contract import BoundaryValueProblem, Phase
 from .equilibrium import local_stress
+from .held import held_between
+from .imposed import residuals
 from .posed import RECOVERED, Posed
 from .ribbon import Ribbon
+
+if TYPE_CHECKING:
+    from ribbonopt.mechanics.stations import Station
 
 WITHOUT = {
     "full": "costates of nine director components are not unique",
@@ -60,22 +66,32 @@ def minimum(ribbon: Ribbon) -> BoundaryValueProblem:
 
     All other conditions but dead forces are left out, natural or not.
     """
-    x = ca.SX.sym("x", len(ribbon.states))
+    count, held = len(ribbon.states), held_between(ribbon)
+    x = ca.SX.sym("x", count + len(held.names))
     # Force and moment for outputs and verification only: they follow from the costates.
-    loads = ca.vertcat(*(ribbon.theta[name] for name in RECOVERED))
-    section, (start, end) = ribbon.section(x, loads), ribbon.interval
-    dead, rod = dead_force(ribbon), section.rod
-    program = _program(ribbon.law, rod.own)
-    work = ribbon.work(rod)
+    names = [*RECOVERED, *(f"recovered.{name}" for name in ribbon.constants[len(RECOVERED) :])]
+    loads = ca.vertcat(*(ribbon.theta[name] for name in names))
+    section, (start, end) = ribbon.section(x[:count], loads), ribbon.interval
+    rod, work = section.rod, ribbon.work(section.rod)
+    beyond = dead_force(ribbon) + ribbon.model.beyond(ribbon.position)
+    program = _program(ribbon.law, rod.own, held.estimate)
     phase = Phase(
-        dynamics=ribbon.rates(section, program.u),
+        dynamics=ca.vertcat(ribbon.rates(section, program.u), held.rates(section.rod)),
         length=end - start,
         outputs=outputs(section, ribbon.law, program.u, work),
         path=program.path,
-        cost=program.cost - ca.dot(dead, rod.d3) - work,
+        cost=program.cost - ca.dot(beyond, rod.d3) - work,
     )
     points = ca.SX.sym("start", x.numel()), ca.SX.sym("end", x.numel())
     costate = ca.SX.sym("costate", x.numel())
+    at_start = ca.substitute(beyond, ribbon.position, start)
+    first, last = (point[:count] for point in points)
+    conditions = residuals(ribbon, first, last, loads, kinematic_only=True)
+    conditions |= held.conditions(*points)
+    found = (
+        *_loads(points[0], costate, at_start + held.force(costate), ribbon),
+        *held.reactions(costate),
+    )
     return BoundaryValueProblem(
         position=ribbon.position,
         state=x,
@@ -85,14 +101,15 @@ def minimum(ribbon: Ribbon) -> BoundaryValueProblem:
         start=start,
         phases=(phase,),
         points=points,
-        conditions=ribbon.residuals(*points, loads, kinematic_only=True),
-        state_names=ribbon.states,
+        conditions=conditions,
+        state_names=(*ribbon.states, *held.names),
         constant_names=(),
         parameter_names=tuple(ribbon.theta),
         local=program.local,
         estimate=program.estimate,
         costate=costate,
-        recovered=dict(zip(RECOVERED, _loads(points[0], costate, dead, ribbon), strict=True)),
+        recovered=dict(zip(names, found, strict=True)),
+        completed=held.completed(x, loads[len(RECOVERED) :]),
     )
 
 
@@ -107,18 +124,19 @@ class _Program(NamedTuple):
     estimate: ca.SX
 
 
-def _program(law: ConstitutiveLaw, own: ca.SX) -> _Program:
+def _program(law: ConstitutiveLaw, own: ca.SX, more: ca.SX) -> _Program:
+    """Return the program of a law; `more` is where to start states behind its own."""
     local, known = local_stress(law)
     relaxed = law.relaxed(known)
     if relaxed is not None:
-        r, start = relaxed, ca.vertcat(known.own, relaxed.estimate)
+        r, start = relaxed, ca.vertcat(known.own, more, relaxed.estimate)
         return _Program(r.controls, r.u, r.cost, r.path, local, start)
     z = ca.SX.sym("m", len(law.components))
     stress = Stress(ca.SX.zeros(3), law.whole(z), own)
     u = law.strain(stress)
     cost, _ = law.densities(stress, u)
     free = [3 + i for i in law.components]
-    return _Program(z, u, cost, ca.SX(0, 1), local, ca.vertcat(known.own, local[free]))
+    return _Program(z, u, cost, ca.SX(0, 1), local, ca.vertcat(known.own, more, local[free]))
 
 
 def dead_force(ribbon: Ribbon) -> ca.SX:
@@ -170,7 +188,11 @@ def refusal(ribbon: Ribbon, posed: Posed) -> Refusal | None:
         )
     if posed.scene.states in WITHOUT:
         return Refusal(WITHOUT[posed.scene.states], "use states: reduced", "formulation")
-    return _load_without_potential(ribbon) or end_without_potential(ribbon.conditions)
+    return (
+        _load_without_potential(ribbon)
+        or point_without_potential(ribbon.stations)
+        or end_without_potential(ribbon.conditions)
+    )
 
 
 def _load_without_potential(ribbon: Ribbon) -> Refusal | None:
@@ -178,6 +200,19 @@ def _load_without_potential(ribbon: Ribbon) -> Refusal | None:
         if load.without_potential:
             reason = f"{load.name} {load.without_potential}"
             return Refusal(reason, "use another formulation", load.name)
+    return None
+
+
+def point_without_potential(stations: Sequence[Station]) -> Refusal | None:
+    """Return why what acts at single places has no potential; None where it has one."""
+    for station in stations:
+        for action in station.actions:
+            if action.without_potential:
+                return Refusal(
+                    f"{action.path}: {action.without_potential}",
+                    "use another formulation",
+                    action.path,
+                )
     return None
 
 

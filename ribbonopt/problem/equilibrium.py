@@ -12,13 +12,19 @@ from ribbonopt.mechanics.laws.law import ConstitutiveLaw, Stress
 from ribbonopt.mechanics.outputs import outputs, singular
 
 from .contract import BoundaryValueProblem, Phase
+from .imposed import residuals
+from .pieces import between_stations
 from .ribbon import Ribbon
 
 
 @dataclass(frozen=True, eq=False)
 class Unknowns:
-    """States x of rod and law, constants c, their cross section, and what a law may read of it."""
+    """States x of rod and law, constants c, their cross section, and what a law may read of it.
 
+    With stations between the ends all are written with the symbols of `marked`.
+    """
+
+    marked: Ribbon
     x: ca.SX
     c: ca.SX
     section: CrossSection
@@ -29,8 +35,13 @@ class Unknowns:
         """Return fresh symbols for a ribbon."""
         x = ca.SX.sym("x", len(ribbon.states))
         c = ca.SX.sym("c", len(ribbon.constants))
-        section = ribbon.section(x, c)
-        return cls(x, c, section, section.rod.stress)
+        marked = ribbon.marked
+        section = marked.section(x, c)
+        return cls(marked, x, c, section, section.rod.stress)
+
+    def rates(self, u: ca.SX) -> ca.SX:
+        """Return dx/ds of the states of model and law for strains u (3,)."""
+        return self.marked.rates(self.section, u)
 
 
 def local_stress(law: ConstitutiveLaw) -> tuple[ca.SX, Stress]:
@@ -57,7 +68,7 @@ def equilibrium(
     estimate: Callable[[Stress], ca.SX] | None = None,
     start_conditions: Mapping[str, ca.SX] | None = None,
 ) -> BoundaryValueProblem:
-    """Return the square problem of one phase with these strains.
+    """Return the square problem with these strains, of one phase, or one between stations each.
 
     Parameters
     ----------
@@ -82,7 +93,7 @@ def equilibrium(
     more = more_states or {}
     x = ca.vertcat(unknowns.x, *more.values())
     slopes = empty if more_rates is None else more_rates
-    rates = ca.vertcat(ribbon.rates(unknowns.section, u), slopes)
+    rates = ca.vertcat(unknowns.rates(u), slopes)
     start, end = ribbon.interval
     phase = Phase(
         dynamics=rates,
@@ -92,11 +103,15 @@ def equilibrium(
         path=empty if path is None else path,
         singular=singular(ribbon.law, unknowns.stress),
     )
-    points = ca.SX.sym("start", x.numel()), ca.SX.sym("end", x.numel())
+    phases = between_stations(phase, unknowns.marked)
+    inner = [ca.SX.sym(f"point{i}", x.numel()) for i in range(1, len(phases))]
+    points = ca.SX.sym("start", x.numel()), *inner, ca.SX.sym("end", x.numel())
     count = unknowns.x.numel()
-    conditions = ribbon.residuals(points[0][:count], points[1][:count], unknowns.c)
+    first, *between, last = (point[:count] for point in points)
+    conditions = residuals(ribbon, first, last, unknowns.c, between)
     for name, expression in (start_conditions or {}).items():
-        here = [x, ribbon.position], [points[0], start]
+        passed = unknowns.marked.passed
+        here = [x, ribbon.position, passed], [points[0], start, ca.SX.zeros(passed.shape)]
         (conditions[name],) = ca.substitute([expression], *here)
     local, stress = local_stress(ribbon.law)
     estimated = ca.vertcat(stress.own, empty if estimate is None else estimate(stress))
@@ -107,7 +122,7 @@ def equilibrium(
         constants=unknowns.c,
         parameters=ribbon.parameters,
         start=start,
-        phases=(phase,),
+        phases=phases,
         points=points,
         conditions=conditions,
         state_names=(*ribbon.states, *more),
@@ -117,4 +132,5 @@ def equilibrium(
         estimate=estimated,
         algebraic_start=empty if algebraic_start is None else algebraic_start,
         conserved=ribbon.conserved,
+        stations=tuple(range(1, len(phases))),
     )

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, replace
 from functools import cached_property
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
@@ -20,6 +20,9 @@ from ribbonopt.mechanics.laws.catalogue import fields_of, numbers_of
 from ribbonopt.mechanics.loads.load import Load
 from ribbonopt.scene import Loads, Scene
 from ribbonopt.scene.units import Units, in_special_units, units_of
+
+if TYPE_CHECKING:
+    from ribbonopt.mechanics.stations import Station
 
 #: force and moment at the start where they are not unknowns but follow from costates
 RECOVERED = tuple(f"recovered.{name}" for name in ("nx", "ny", "nz", "mx", "my", "mz"))
@@ -45,6 +48,8 @@ class Posed:
         What acts along the ribbon.
     units : Units
         Units of the scene as it was given, in units Dw = L = 1.
+    stations : tuple of Station
+        What acts, and holds, at single places between the ends.
     """
 
     given: Scene
@@ -52,6 +57,7 @@ class Posed:
     conditions: tuple[Condition, ...]
     loads: tuple[Load, ...]
     units: Units = SPECIAL
+    stations: tuple[Station, ...] = ()
 
     @classmethod
     def of(cls, scene: Scene, units: Units | None = None) -> Posed:
@@ -63,7 +69,12 @@ class Posed:
             from ribbonopt.mechanics.loads.catalogue import loads_of  # few scenes have any
 
             loads = loads_of(special)
-        return cls(scene, special, conditions_of(special), loads, units)
+        stations: tuple[Station, ...] = ()
+        if special.loads.points or special.supports:
+            from ribbonopt.mechanics.loads.points import stations_of  # as above
+
+            stations = stations_of(special)
+        return cls(scene, special, conditions_of(special), loads, units, stations)
 
     def under(self, **changes: Any) -> Posed:
         """Return the same ribbon, at the same ends, under other settings of the special scene.
@@ -75,7 +86,7 @@ class Posed:
         conditions = self.conditions
         if special.boundary.loop is not None and special.formulation != self.scene.formulation:
             conditions = conditions_of(special)  # a loop closes otherwise where energy is minimised
-        return Posed(special, special, conditions, self.loads)
+        return Posed(special, special, conditions, self.loads, stations=self.stations)
 
     @cached_property
     def theta(self) -> dict[str, float]:
@@ -89,11 +100,31 @@ class Posed:
         values |= {f"parameters.{name}": value for name, value in scene.parameters.items()}
         for load in self.loads:
             values |= load.numbers()
+        for station in self.stations:
+            for action in station.actions:
+                values |= action.numbers()
         for condition in self.conditions:
             values |= condition.theta()
         if scene.formulation == "energy":
-            values |= dict.fromkeys(RECOVERED, 0.0)
+            values |= dict.fromkeys(self.recovered, 0.0)
         return values
+
+    @property
+    def recovered(self) -> tuple[str, ...]:
+        """Names of what follows from costates: n and m at the start, and all reactions."""
+        unknown = (name for station in self.stations for name in station.unknown)
+        return (*RECOVERED, *(f"recovered.{name}" for name in unknown))
+
+    @property
+    def loaded(self) -> bool:
+        """Whether anything acts on the ribbon between its ends."""
+        return bool(self.loads or self.stations)
+
+    @property
+    def places(self) -> Array:
+        """Fractions (k,) of the length at which the stations are."""
+        start, _ = self.scene.interval
+        return np.array([(station.at - start) / self.length for station in self.stations])
 
     @cached_property
     def values(self) -> Array:
@@ -108,7 +139,8 @@ class Posed:
             (type(c).__name__, *(v for v in vars(c).values() if isinstance(v, str)))
             for c in self.conditions
         )
-        loads = tuple(load.structure_key for load in self.loads)
+        loads: tuple[object, ...] = tuple(load.structure_key for load in self.loads)
+        loads += tuple(tuple(type(a) for a in station.actions) for station in self.stations)
         settings = type(scene.law), scene.formulation, scene.states, scene.transcription
         # In a plane, which conditions are left depends on what plane it is.
         plane = self.start[1][:, 1].round().tolist() if scene.states == "planar" else ()

@@ -3,6 +3,7 @@
 In a phase of kind +1 or -1 the law is that of one side of its switch (for Sadowsky: of one sheet),
 continued beyond it: analytic, so that every scheme keeps its order. A phase of kind 0 is a mixture
 of both sides. The lengths of the phases are unknown; the law says what holds where one begins.
+Where something acts or holds at a single place (a station) phases meet as well, of one kind.
 """
 
 from __future__ import annotations
@@ -16,6 +17,8 @@ from ribbonopt.mechanics.outputs import outputs, singular
 
 from .contract import BoundaryValueProblem, Phase
 from .equilibrium import Unknowns
+from .imposed import residuals
+from .pieces import passing, stations_among
 from .ribbon import Ribbon
 
 Kinds = tuple[int, ...]
@@ -26,21 +29,39 @@ def switched(ribbon: Ribbon, kinds: Kinds, *, free: bool = False) -> BoundaryVal
 
     A mixture from end to end fits the ends by design or by symmetry only: it has conditions to
     spare. `free`, they are left out, which leads there from afar; else they are met with slack.
+
+    Raises
+    ------
+    ModelError
+        If phases of one kind meet where no station is, or too few of them meet.
     """
+    stations = stations_among(kinds, len(ribbon.stations))
     unknowns = Unknowns.of(ribbon)
     start, end = ribbon.interval
     lengths = ca.SX.sym("length", len(kinds) - 1)
     each = [*ca.vertsplit(lengths), end - start - ca.sum1(lengths)]
     phases = tuple(
-        _phase(ribbon, unknowns, kind, length) for kind, length in zip(kinds, each, strict=True)
+        passing(
+            _phase(ribbon, unknowns, kind, length), unknowns.marked, sum(j <= i for j in stations)
+        )
+        for i, (kind, length) in enumerate(zip(kinds, each, strict=True))
     )
     points = tuple(ca.SX.sym(f"point{i}", unknowns.x.numel()) for i in range(len(kinds) + 1))
-    conditions = ribbon.residuals(points[0], points[-1], unknowns.c)
-    at = start
+    between = [points[i] for i in stations]
+    conditions = residuals(ribbon, points[0], points[-1], unknowns.c, between)
+    # A law knows nothing of stations: to it phases of one kind that meet there are one.
+    merged = tuple(kind for i, kind in enumerate(kinds) if i not in stations or i in _turns(kinds))
+    at, met = start, 0
     for i in range(1, len(kinds)):
         at = at + each[i - 1]
-        here = [unknowns.x, ribbon.position], [points[i], at]
-        for name, value in ribbon.law.entering(kinds, i, unknowns.stress).items():
+        met += i not in stations or i in _turns(kinds)
+        if i in stations:
+            place = ribbon.stations[stations.index(i)].place(ribbon.theta.__getitem__)
+            conditions[f"station {i}: its place"] = at - place
+            continue
+        marks = ca.SX(ca.DM([float(j <= i) for j in stations]))
+        here = [unknowns.x, ribbon.position, unknowns.marked.passed], [points[i], at, marks]
+        for name, value in ribbon.law.entering(merged, met, unknowns.stress).items():
             (conditions[f"switch {i}: {name}"],) = ca.substitute([value], *here)
     slack = ca.SX(0, 1)
     if len(kinds) == 1 and not free:
@@ -69,7 +90,13 @@ def switched(ribbon: Ribbon, kinds: Kinds, *, free: bool = False) -> BoundaryVal
         parameter_names=tuple(ribbon.theta),
         conserved=ribbon.conserved,
         slack=slack.numel(),
+        stations=stations,
     )
+
+
+def _turns(kinds: Kinds) -> list[int]:
+    """Return the meeting points at which the kind of phase changes."""
+    return [i for i in range(1, len(kinds)) if kinds[i] != kinds[i - 1]]
 
 
 def _with_slack(conditions: dict[str, ca.SX], count: int) -> tuple[dict[str, ca.SX], ca.SX]:
@@ -89,7 +116,7 @@ def _phase(ribbon: Ribbon, unknowns: Unknowns, kind: int, length: ca.SX) -> Phas
     u = law.strain(unknowns.stress)
     section = replace(unknowns.section, u=u)
     return Phase(
-        dynamics=ribbon.rates(section, u),
+        dynamics=unknowns.marked.rates(section, u),
         length=length,
         outputs=outputs(section, ribbon.law, u, ribbon.work(section.rod)),
         singular=singular(law, unknowns.stress),

@@ -49,6 +49,7 @@ from .model import (
     SolutionGuess,
     StrainGuess,
 )
+from .stations import InteriorSupport, PointLoad
 from .supports import Support, SupportName
 from .yamlio import (
     dump_scene,
@@ -76,6 +77,7 @@ __all__ = [
     "Helix",
     "HelixGuess",
     "Homotopy",
+    "InteriorSupport",
     "Ipopt",
     "Kirchhoff",
     "LabVector",
@@ -87,6 +89,7 @@ __all__ = [
     "Newton",
     "OwnLaw",
     "OwnLoad",
+    "PointLoad",
     "Quaternion",
     "Reference",
     "Regularized",

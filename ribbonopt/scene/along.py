@@ -8,7 +8,8 @@ of the scene: metres in SI.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, is_dataclass
+from dataclasses import MISSING, dataclass, fields, is_dataclass
+from functools import cache
 from typing import Annotated, Any, get_origin
 
 from .faults import KeyPath
@@ -64,6 +65,7 @@ def scaled(value: Any, unit: float, length: float) -> Any:
     return Scaled(value, unit, length) if isinstance(value, str | Table) else float(value) / unit
 
 
+@cache
 def is_along(annotation: Any) -> bool:
     """Whether numbers along the ribbon may stand where an annotation says what does."""
     return Table in classes_of(annotation).values()
@@ -72,9 +74,20 @@ def is_along(annotation: Any) -> bool:
 def numbers_along(scene: Any) -> Iterator[tuple[KeyPath, Any]]:
     """Yield what stands in a scene, with its path, wherever a number along the ribbon may."""
     cls: type = type(scene)
-    for root in ROOTS:
-        if (annotation := hints(cls).get(root)) is not None:
-            yield from _inside(getattr(scene, root), annotation, (root,))
+    for root, annotation, default in _roots(cls):
+        if (value := getattr(scene, root)) != default:  # most scenes have none
+            yield from _inside(value, annotation, (root,))
+
+
+@cache
+def _roots(cls: type) -> tuple[tuple[str, Any, Any], ...]:
+    """Return the fields where such numbers may stand: name, annotation, default."""
+    found = []
+    for member in (member for member in fields(cls) if member.name in ROOTS):
+        made = member.default_factory
+        default = member.default if made is MISSING else made()
+        found.append((member.name, hints(cls)[member.name], default))
+    return tuple(found)
 
 
 def _inside(value: Any, annotation: Any, path: KeyPath) -> Iterator[tuple[KeyPath, Any]]:

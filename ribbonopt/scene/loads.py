@@ -8,6 +8,7 @@ from typing import Annotated, Any, Protocol, runtime_checkable
 
 from .along import Along
 from .schema.bounds import InPython
+from .stations import PointLoad
 
 
 @runtime_checkable
@@ -38,14 +39,16 @@ AlongVector = tuple[Along, Along, Along] | AlongAxes
 
 @dataclass(frozen=True)
 class Loads:
-    """Loads per length, all along the ribbon: numbers, formulas of s, or tables.
+    """Loads along the ribbon, and at single places.
 
     `force` and `couple` are dead: per length, in the lab frame, they keep their direction while the
-    ribbon moves. `pressure` follows it: a force per length along the normal d1, in SI a pressure
-    in pascals times the width. `own` are declared in Python.
+    ribbon moves. `pressure` follows it: a force per length along the normal d1, in SI a pressure in
+    pascals times the width. All three are numbers, formulas of s, or tables. `points` act at single
+    arclengths; `own` are declared in Python.
     """
 
     force: AlongVector | None = None
     couple: AlongVector | None = None
     pressure: Along | None = None
+    points: tuple[PointLoad, ...] = ()
     own: tuple[Annotated[OwnLoad, InPython()], ...] = ()

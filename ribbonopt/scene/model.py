@@ -17,6 +17,7 @@ from .ends import Boundary, HalfTwists, LabVector, Loop, Triple, Value
 from .laws import Law
 from .loads import Loads
 from .schema.bounds import Bounds
+from .stations import InteriorSupport
 
 Numbers3 = tuple[float, float, float]
 Intervals = Annotated[int, Bounds(ge=1, most=limits.INTERVALS)]
@@ -212,4 +213,5 @@ class Scene:
     continuation: ContinuationStage | tuple[ContinuationStage, ...] | None = None
     loads: Loads = field(default_factory=Loads)
     gravity: Triple | LabVector | None = None
+    supports: tuple[InteriorSupport, ...] = ()
     width: Along | None = None

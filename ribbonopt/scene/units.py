@@ -22,6 +22,7 @@ from .laws import Kirchhoff, Law, OwnLaw
 from .loads import AlongAxes, AlongVector, Loads
 from .model import Guess, LoadGuess, Reference, Scene, StrainGuess
 from .quantities import dimension
+from .stations import InteriorSupport, PointLoad
 
 UNIT_LENGTH, UNIT_FORCE = "units.length", "units.force"
 SHORT, LONG = 1e-2, 10.0  # lengths of intervals that need no other unit
@@ -106,8 +107,9 @@ def in_special_units(scene: Scene, units: Units | None = None) -> Scene:
         interval=(start / units.length, end / units.length),
         parameters=parameters | own,
         boundary=_boundary(boundary, units, parameters),
-        loads=_loads(scene.loads, units),
+        loads=_loads(scene.loads, units, parameters),
         gravity=_gravity(scene, units),
+        supports=tuple(_support(support, units, parameters) for support in scene.supports),
         width=scaled(scene.width, 1.0, units.length),
         guess=_guess(scene.guess, units),
         reference=_reference(scene.reference, units),
@@ -130,7 +132,7 @@ def _boundary(boundary: Boundary, units: Units, parameters: Mapping[str, float])
     return replace(boundary, start=start, end=end)
 
 
-def _loads(loads: Loads, units: Units) -> Loads:
+def _loads(loads: Loads, units: Units, parameters: Mapping[str, float]) -> Loads:
     if loads == Loads():
         return loads
     per_length = units.force / units.length
@@ -139,6 +141,7 @@ def _loads(loads: Loads, units: Units) -> Loads:
         force=_along(loads.force, per_length, units.length),
         couple=_along(loads.couple, units.force, units.length),
         pressure=scaled(loads.pressure, per_length, units.length),
+        points=tuple(_point(point, units, parameters) for point in loads.points),
     )
 
 
@@ -163,6 +166,21 @@ def _gravity(scene: Scene, units: Units) -> Triple | LabVector | None:
         scene.gravity, units.force / units.length / mass, scene.parameters
     )
     return weight
+
+
+def _point(point: PointLoad, units: Units, parameters: Mapping[str, float]) -> PointLoad:
+    return PointLoad(
+        at=_over(point.at, units.length, parameters),
+        force=_over(point.force, units.force, parameters),
+        moment=_over(point.moment, units.moment, parameters),
+    )
+
+
+def _support(
+    support: InteriorSupport, units: Units, parameters: Mapping[str, float]
+) -> InteriorSupport:
+    at = _over(support.at, units.length, parameters)
+    return InteriorSupport(at, _over(support.position, units.length, parameters))
 
 
 def _end(end: End, units: Units, parameters: Mapping[str, float]) -> End:

@@ -83,10 +83,7 @@ def locate(path: str | os.PathLike[str], overrides: Sequence[str], key: str) -> 
 
 
 def loads_scene(text: str, source: str = "<string>", overrides: Sequence[str] = ()) -> Scene:
-    """Read a scene from YAML text; `source` names it in messages. See `load_scene`.
-
-    The folder of `source` is that of the tables which it names by their files.
-    """
+    """Read a scene from YAML text; `source` names it in messages, and the folder of its tables."""
     try:
         written = read(text)
     except YamlTextError as error:

@@ -58,13 +58,16 @@ def solution_of(
     sheets: tuple[int, ...] = (),
 ) -> Solution:
     """Return what a solver found for a posed scene at the parameters p (np,), not yet verified."""
+    w = report.w
     if report.status.converged and problem.recovered:
         p = _with_recovered(problem, nlp, report, p)
+        if problem.completed is not None:
+            w = _completed(problem, problem.completed, nlp, w, p)
     return solution_at(
         posed,
         problem,
         nlp,
-        report.w,
+        w,
         p,
         status=report.status,
         message=report.status.value,
@@ -87,3 +90,21 @@ def _with_recovered(
     result: Array = p.copy()
     result[where] = np.array(values).ravel()
     return result
+
+
+def _completed(
+    problem: BoundaryValueProblem, completed: ca.SX, nlp: NLP, w: Array, p: Array
+) -> Array:
+    """Unknowns w (nw,) with states that hold what was recovered."""
+    nodes, stages, constants = nlp.layout.unpack(w)
+    function = ca.Function("completed", [problem.state, problem.parameters], [completed])
+    theta, nx = p[: problem.parameters.numel()], problem.state.numel()
+
+    def put_into(states: Array) -> Array:
+        flat = states.reshape(-1, nx)
+        found = function.map(len(flat))(flat.T, np.repeat(theta[:, None], len(flat), axis=1))
+        return np.asarray(np.array(found).T.reshape(states.shape))
+
+    inside = stages.copy()
+    inside[..., :nx] = put_into(np.ascontiguousarray(stages[..., :nx]))
+    return nlp.layout.pack(put_into(nodes), inside, constants)

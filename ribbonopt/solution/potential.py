@@ -12,7 +12,7 @@ from ribbonopt.arrays import Array
 from ribbonopt.mechanics.ends.conditions import Component, Equation
 from ribbonopt.mechanics.ends.placement import LoadAlong
 from ribbonopt.problem import Posed
-from ribbonopt.problem.energy import end_without_potential
+from ribbonopt.problem.energy import end_without_potential, point_without_potential
 
 from .solution import Solution
 
@@ -22,6 +22,8 @@ def potential(solution: Solution) -> float | None:
     posed = solution.posed
     if any(load.without_potential for load in posed.loads):
         return None
+    if posed.stations and point_without_potential(posed.stations) is not None:
+        return None
     told = any(isinstance(c, Equation) and not c.kinematic for c in posed.conditions)
     if told or end_without_potential(posed.conditions) is not None:
         return None
@@ -30,11 +32,16 @@ def potential(solution: Solution) -> float | None:
 
 def known_potential(solution: Solution) -> float:
     """Return the same, without what has no potential."""
-    along, force = solution.integral("potential"), dead_force_of(solution.posed)
+    posed, units = solution.posed, solution.units
+    along, force = solution.integral("potential"), dead_force_of(posed)
+    if posed.stations:
+        r = solution.trajectory.outputs(posed.places)["r"]
+        for station, place in zip(posed.stations, r, strict=True):
+            along -= sum(action.work(place) for action in station.actions) * units.moment
     if not force.any():
         return along
     ends = solution.at_nodes["r"]
-    return along - float(force @ (ends[-1] - ends[0])) * solution.units.force
+    return along - float(force @ (ends[-1] - ends[0])) * units.force
 
 
 def dead_force_of(posed: Posed) -> Array:

@@ -117,9 +117,9 @@ class Solution:
 
     @property
     def switch_points(self) -> Array:
-        """Arclengths (k,) where one phase ends and the next begins."""
+        """Arclengths (k,) where the law switches from one phase to the next."""
         start, end = self.scene.interval
-        return start + (end - start) * self.trajectory.ends[1:-1]
+        return start + (end - start) * self.trajectory.ends[list(self.trajectory.turns)]
 
     def sample(self, s: Any, expression: str) -> Array:
         """Return a named output, or a formula of named outputs, at arclengths s.
@@ -198,7 +198,7 @@ class Solution:
         ]
         if not same or points[0] != points[1]:
             return None
-        rod = len(own.constants) - (len(mine.phases) - 1) - mine.slack
+        rod = len(own.constants) - mine.lengths - mine.slack
         return self.trajectory.approximate(fraction), own.constants[:rod]
 
     def fields(self, fraction: Array) -> RodFields:

@@ -45,6 +45,12 @@ class Trajectory:
         ends[-1] = 1.0
         return ends
 
+    @property
+    def turns(self) -> tuple[int, ...]:
+        """Which of `ends` are inside and no single places where something acts or holds."""
+        stations = self.problem.stations
+        return tuple(i for i in range(1, len(self.problem.phases)) if i not in stations)
+
     @cached_property
     def nodes(self) -> Array:
         """Fractions (N + 1,) of all nodes."""
@@ -74,12 +80,22 @@ class Trajectory:
         phase, local = self._local(fraction)
         v = np.empty((len(fraction), self.dense.blocks.layout.nv))
         nx = self.dense.blocks.layout.nx
+        v[:, :nx] = self.states(fraction)
         for i in range(len(self.problem.phases)):
             rows = phase == i
             if rows.any():
-                v[rows, :nx] = self.dense.states(i, local[rows])
                 v[rows, nx:] = self.dense.algebraic(i, local[rows])
         return self._named(v, fraction, phase)
+
+    def states(self, fraction: Array) -> Array:
+        """States (k, nx) at fractions."""
+        phase, local = self._local(fraction)
+        x = np.empty((len(fraction), self.dense.blocks.layout.nx))
+        for i in range(len(self.problem.phases)):
+            rows = phase == i
+            if rows.any():
+                x[rows] = self.dense.states(i, local[rows])
+        return x
 
     @cached_property
     def stages(self) -> tuple[Array, Array, Array, Phases]:

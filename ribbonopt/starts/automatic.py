@@ -191,7 +191,7 @@ class Automatic:
 def _bends(posed: Posed, chord: Chord) -> bool:
     """Whether something bends a straight ribbon between its ends, so that it is no start."""
     natural = capabilities(posed.scene).natural
-    return bool(posed.loads) or natural or compresses(posed, chord)
+    return posed.loaded or natural or compresses(posed, chord)
 
 
 def _is_bent(solution: Solution) -> bool:

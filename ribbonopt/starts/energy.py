@@ -20,4 +20,9 @@ def least_energy_of(posed: Posed, law: Law) -> Posed:
     """Return a scene under a law with a smooth energy, as this solve wants it."""
     settings = {"formulation": "energy", "states": "reduced", "solver": SOLVER}
     found = posed.under(law=law, transcription=MESH, **settings)
-    return replace(found, loads=tuple(one for one in found.loads if not one.without_potential))
+    loads = tuple(load for load in found.loads if not load.without_potential)
+    if not found.stations:
+        return replace(found, loads=loads)
+    from ribbonopt.mechanics.stations import conservative  # few scenes have any
+
+    return replace(found, loads=loads, stations=conservative(found.stations))

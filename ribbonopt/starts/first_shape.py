@@ -43,7 +43,7 @@ def shapes_for(posed: Posed, *, wound: bool = True) -> Iterator[Shape]:
     bow = 2 * np.sqrt(max(0.0, 1 - chord / length))
     turn = winding(posed.scene.boundary, posed.scene.parameters) if wound else None
     plain = Chord(start, end, length, winding=turn)
-    if chord > length * (1 - 1e-9) and (posed.loads or compresses(posed, plain)):
+    if chord > length * (1 - 1e-9) and (posed.loaded or compresses(posed, plain)):
         bow = SMALL_BOW
     if posed.loads and bow:
         # To the side where it has the lesser potential: a strip that hangs, not an arch.
@@ -62,7 +62,7 @@ def shapes_for(posed: Posed, *, wound: bool = True) -> Iterator[Shape]:
 
 def loaded(posed: Posed) -> bool:
     """Whether there are loads, or a force or moment prescribed to be other than zero."""
-    return bool(posed.loads) or any(
+    return posed.loaded or any(
         isinstance(c, Component) and not c.kinematic and c.value != 0 for c in posed.conditions
     )
 
@@ -82,7 +82,7 @@ def follower_loads(posed: Posed) -> FollowerLoads | IntegratedLoads | None:
     Loads that vanish are known in any frame, and so is a moment without a force.
     """
     conditions = posed.conditions
-    if posed.loads:
+    if posed.loaded:
         return None  # what acts along the ribbon is known at its start only
     start = [c for c in conditions if getattr(c, "end", None) == "start"]
     clamped = any(isinstance(c, Frame) for c in start) and len(start) == 4

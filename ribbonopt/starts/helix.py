@@ -51,7 +51,7 @@ def wound_evenly(posed: Posed, ribbon: Ribbon, winding: Array) -> Guess:
 def helix_between(posed: Posed, ribbon: Ribbon) -> Helix | None:
     """Return the helix of least energy that joins the clamps of a scene, or nearly, or None."""
     ends = clamps_of(posed)
-    if ends is None or posed.loads or not ribbon.uniform or capabilities(posed.scene).natural:
+    if ends is None or posed.loaded or not ribbon.uniform or capabilities(posed.scene).natural:
         return None
     (position, frame), (goal, last) = ends
     length = posed.length

@@ -85,6 +85,9 @@ def _grown(run: Tracking, course: Factors, relaxed: Array | None) -> bool:
 
 
 def _along(run: Tracking, *, without_potential: bool = False) -> float:
-    """Return the size of loads along the ribbon, as a force."""
+    """Return the size of loads between the ends, as a force."""
     loads = [load for load in run.posed.loads if bool(load.without_potential) is without_potential]
-    return run.posed.length * max((load.size_along() for load in loads), default=0.0)
+    along = run.posed.length * max((load.size_along() for load in loads), default=0.0)
+    stations = () if without_potential else run.posed.stations
+    points = (action.loads.values() for station in stations for action in station.actions)
+    return max(along, *(abs(v) for some in points for v in some), 0.0)

@@ -84,6 +84,9 @@ class Tracking:
                 share = self.followers if load.without_potential else self.loads
                 for name in load.numbers_to_scale():
                     attempt.p[names.index(name)] *= share
+            for action in (a for station in self.posed.stations for a in station.actions):
+                for name in action.loads:
+                    attempt.p[names.index(name)] *= self.loads
         return attempt
 
 

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from ribbonopt.arrays import Array
-from ribbonopt.checks.arcs import Arcs, leaps, sign_changes
+from ribbonopt.checks.arcs import Arcs, arcs_of, leaps, sign_changes
 from ribbonopt.mechanics.rotations import turns_about
 from ribbonopt.mechanics.section import RodFields
 from ribbonopt.problem import Posed
@@ -77,7 +77,7 @@ class Unfolded:
         """Arcs of this part, from those of the piece; None where the law leaps nowhere."""
         piece = self.piece
         if piece.sheets:
-            own = Arcs(piece.sheets, piece.trajectory.ends[1:-1])
+            own = arcs_of(piece)
         elif not leaps(piece):
             return None
         else:

@@ -55,6 +55,15 @@ class Mesh:
             phases.append(np.diff(inner) / (inner[-1] - inner[0]))
         return Mesh(tuple(phases))
 
+    def joined(self, switches: Array) -> Mesh:
+        """Return the same elements in one phase; phases meet at `switches` (k,), fractions."""
+        if len(self.phases) == 1:
+            return self
+        lengths = np.diff(np.concatenate([[0.0], switches, [1.0]]))
+        widths = [a * part for a, part in zip(lengths, self.phases, strict=True)]
+        whole = np.concatenate(widths)
+        return Mesh((whole / whole.sum(),))
+
     @property
     def elements(self) -> tuple[int, ...]:
         """Number of elements of each phase."""

@@ -40,7 +40,7 @@ def draw_surface(surface: Surface, camera: Camera) -> Drawing:
     back = FRONT if surface.one_sided else BACK
     length = surface.sheets[-1].piece.s[-1] - surface.sheets[0].piece.s[0]
     # A line lies in the faces that it borders: lifted by their radius it is painted after them.
-    across = 2 * surface.half_width / STRIPS
+    across = 2 * surface.widest / STRIPS
     sheared = across * max(float(np.abs(sheet.eta).max()) for sheet in surface.sheets)
     lift = 0.5 * float(np.hypot(length / ROWS + sheared, across))
     parts = []

@@ -13,6 +13,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
+from ribbonopt.mechanics.widths import widths
 from ribbonopt.solution.solution import Solution
 
 Array = NDArray[np.float64]
@@ -38,6 +39,8 @@ class Piece:
         Centre line and directors, lab frame.
     mirrored : bool
         Whether these rows follow by symmetry from those that were solved.
+    width : (k,) array, or 1
+        Of the ribbon, in units of its own.
     """
 
     s: Array
@@ -50,6 +53,12 @@ class Piece:
     d2: Array
     d3: Array
     mirrored: bool = False
+    width: Array | float = 1.0
+
+    @property
+    def widths(self) -> Array:
+        """The width in every row, (k,)."""
+        return np.broadcast_to(self.width, self.s.shape)
 
 
 def in_plane(pieces: tuple[Piece, ...]) -> float:
@@ -67,12 +76,12 @@ def sample_pieces(solution: Solution, rows: int = ROWS) -> tuple[Piece, ...]:
     scale = _scale(values)
     crossings = _crossings(solution, s, values, scale)
     if not crossings:
-        return (_piece(s, values, scale),)
+        return (_piece(solution, s, values, scale),)
     pieces = []
     for a, b in pairwise([start, *crossings, end]):
         if b - a > SHORTEST * length:
             s = _grid(a, b, max(9, round(rows * (b - a) / length)), INSET * length)
-            pieces.append(_piece(s, solution.outputs(s), scale))
+            pieces.append(_piece(solution, s, solution.outputs(s), scale))
     return tuple(pieces)
 
 
@@ -83,10 +92,11 @@ def _grid(a: float, b: float, rows: int, inset: float) -> Array:
     return np.concatenate([a + approach, even[1:-1], b - approach[::-1]])
 
 
-def _piece(s: Array, values: dict[str, Array], scale: float) -> Piece:
+def _piece(solution: Solution, s: Array, values: dict[str, Array], scale: float) -> Piece:
     u1, u2, u3 = (values[name] for name in ("u1", "u2", "u3"))
     r, d1, d2, d3 = (values[name] for name in ("r", "d1", "d2", "d3"))
-    return Piece(s, u1, u2, u3, _eta(u2, u3, scale), r, d1, d2, d3)
+    width = widths(solution.scene, s)
+    return Piece(s, u1, u2, u3, _eta(u2, u3, scale), r, d1, d2, d3, width=width)
 
 
 def _scale(values: dict[str, Array]) -> float:

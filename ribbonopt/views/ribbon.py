@@ -32,7 +32,8 @@ def plot_ribbon(
         What to draw.
     half_width
         Default: that of the ribbon, where the scene says it; else a twentieth of the length drawn,
-        or less so that no generatrices cross. The figure states it.
+        or less so that no generatrices cross. The figure states it. It is that where the width
+        along the ribbon is 1.
     complete
         Add, in a lighter tone, the rest of a band of which this solution is a piece by symmetry.
     """
@@ -127,7 +128,7 @@ def _triad(axes: Axes, camera: Camera, box: tuple[float, float, float, float], s
 
 def _caption(subject: Subject, surface: Surface) -> str:
     unit = " m" if subject.units.si else ""
-    width = f"{surface.half_width:.3g}{unit}"
+    width = f"{surface.half_width:.3g}{unit}" + (" w(s)" if surface.tapers else "")
     if surface.half_width == subject.half_width:
         width += ", the ribbon's own,"
     lines = [rf"drawn to the half-width {width} along generatrices $d_2 + \eta\, d_3$"]

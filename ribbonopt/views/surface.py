@@ -40,7 +40,7 @@ class Sheet:
     eta : (k,) array
         u3/u2 as drawn: within ETA_BOUND, and 0 where it leaps.
     half_width : float
-        Of the whole ribbon.
+        Of the whole ribbon, where its width is 1 in units of its own.
     """
 
     piece: Piece
@@ -50,17 +50,19 @@ class Sheet:
     def points(self, fraction: float) -> Array:
         """Points (k, 3) at a fraction of the half-width: -1 and 1 the edges, 0 the centre line."""
         b = self.piece.d2 + self.eta[:, None] * self.piece.d3
-        return np.asarray(self.piece.r + fraction * self.half_width * b)
+        across = fraction * self.half_width * self.piece.widths[:, None]
+        return np.asarray(self.piece.r + across * b)
 
 
 @dataclass(frozen=True)
 class Surface:
-    """A ribbon of constant half-width.
+    """A ribbon with its generatrices.
 
     Attributes
     ----------
     half_width : float
-        The length of a generatrix along d2, on either side of the centre line.
+        The length of a generatrix along d2, on either side of the centre line, where the width of
+        the ribbon is 1 in units of its own.
     sheets : tuple of Sheet
         In order of arclength.
     bounded : bool
@@ -76,6 +78,17 @@ class Surface:
     bounded: bool
     leaps: bool
     crossing: bool
+
+    @property
+    def widest(self) -> float:
+        """The largest half-width."""
+        return self.half_width * _widest(tuple(sheet.piece for sheet in self.sheets))
+
+    @property
+    def tapers(self) -> bool:
+        """Whether the width is not the same all along."""
+        pieces = [sheet.piece.widths for sheet in self.sheets]
+        return bool(max(w.max() for w in pieces) > min(w.min() for w in pieces))
 
     @property
     def closed(self) -> bool:
@@ -96,8 +109,9 @@ def sweep(pieces: tuple[Piece, ...], half_width: float | None = None) -> Surface
     pieces
         In order of arclength.
     half_width
-        Default: a twentieth of the length, or less (to a two-hundredth) so that no generatrices
-        cross and those that fan out where eta leaps leave room between.
+        Where the width is 1. Default: a twentieth of the length where it is largest, or less (to a
+        two-hundredth) so that no generatrices cross and those that fan out where eta leaps leave
+        room between.
 
     Raises
     ------
@@ -116,14 +130,19 @@ def sweep(pieces: tuple[Piece, ...], half_width: float | None = None) -> Surface
         where = [pieces[0].s[0], *(piece.s[-1] for piece in pieces)]
         apart = np.diff(np.array(where)[leaps])
         usual = float(np.median(apart)) if len(apart) else np.inf
-        w = min(WIDTH_SHARE * length, LEAP_SHARE * usual, REGULAR_SLOPE * regular)
-        w = max(w, LEAST_SHARE * length)  # eta may be steep where there is next to no strain
+        widest = _widest(pieces)
+        w = min(WIDTH_SHARE * length / widest, LEAP_SHARE * usual / widest, REGULAR_SLOPE * regular)
+        w = max(w, LEAST_SHARE * length / widest)  # eta may be steep where there is no strain
     sheets = tuple(
         Sheet(piece, _drawn_eta(piece, w, *ends), w)
         for piece, ends in zip(pieces, pairwise(leaps), strict=True)
     )
     bounded = any(bool((np.abs(p.eta) > ETA_BOUND + 1e-9).any()) for p in pieces)
     return Surface(w, sheets, bounded, any(leaps), w > regular)
+
+
+def _widest(pieces: tuple[Piece, ...]) -> float:
+    return max(float(piece.widths.max()) for piece in pieces)
 
 
 def _regular_half_width(pieces: tuple[Piece, ...]) -> float:
@@ -133,6 +152,7 @@ def _regular_half_width(pieces: tuple[Piece, ...]) -> float:
     for piece in pieces:
         rows = np.diff(piece.s) > FINE * length
         slope = np.abs(np.diff(_bounded(piece.eta))[rows]) / np.diff(piece.s)[rows]
+        slope = slope * piece.widths[1:][rows]
         steepest = max(steepest, float(slope.max()))
     return 1 / max(steepest, 1e-300)
 
@@ -165,6 +185,6 @@ def _drawn_eta(piece: Piece, w: float, leaps_before: bool, leaps_after: bool) ->
     eta = _bounded(piece.eta)
     for leaps, s in ((leaps_before, piece.s[0]), (leaps_after, piece.s[-1])):
         if leaps:
-            bound = LEAP_SLOPE * np.abs(piece.s - s) / w
+            bound = LEAP_SLOPE * np.abs(piece.s - s) / (w * piece.widths)
             eta = np.clip(eta, -bound, bound)
     return eta

@@ -36,6 +36,7 @@ def image(flip: Flip, piece: Piece) -> Piece:
         d2=-sign * flip.rotate(piece.d2)[::-1],
         d3=-flip.rotate(piece.d3)[::-1],
         mirrored=True,
+        width=piece.widths[::-1],
     )
 
 

@@ -59,3 +59,9 @@ def test_a_law_without_an_energy_says_so(user: Import) -> None:
     law = user("relaxing").Relaxing(GAIN)
     with pytest.raises(ModelError, match="the law relaxing has no energy"):
         solve(Scene("relaxing", law, GENERIC, formulation="energy"))
+
+
+def test_what_a_width_does_to_its_state_only_the_law_can_say(user: Import) -> None:
+    law = user("relaxing").Relaxing(GAIN)
+    with pytest.raises(ModelError, match=r"width: the law has states of its own \(eta\)"):
+        solve(Scene("relaxing", law, GENERIC, width="1 - s/2"))

@@ -2,6 +2,7 @@
 
 Unknowns z = (x(0), x(1), c) of the least states, whatever the scene's own: without loads they know
 that the force is one constant, so that a force prescribed at both ends is seen as prescribed twice.
+Where something acts or holds between the ends, the states there stand between x(1) and c.
 """
 
 from __future__ import annotations
@@ -13,6 +14,7 @@ import numpy as np
 
 from ribbonopt.arrays import Array
 from ribbonopt.mechanics.section import RodFields
+from ribbonopt.problem.imposed import residuals
 from ribbonopt.problem.posed import Posed
 from ribbonopt.problem.ribbon import Ribbon
 
@@ -47,9 +49,14 @@ class Linearized:
         """Number of states at an end: position, quaternion, then others."""
         return len(self.ribbon.states)
 
+    @property
+    def points(self) -> int:
+        """Number of points whose states are unknowns: the ends, and stations between them."""
+        return 2 + len(self.ribbon.stations)
+
     def parts(self, z: Array) -> tuple[Array, Array, Array]:
         """States (nx,) at the start and at the end, and constants (nc,)."""
-        return z[: self.nx], z[self.nx : 2 * self.nx], z[2 * self.nx :]
+        return z[: self.nx], z[self.nx : 2 * self.nx], z[self.points * self.nx :]
 
     def at(self, z: Array) -> tuple[Array, Array]:
         """Residuals (nb,) and Jacobian (nb, nz)."""
@@ -71,14 +78,18 @@ class Linearized:
 
         A Weyl sequence instead of `numpy.random`, whose import costs more than all of this module.
         """
-        values = 2 * np.modf(seed + np.arange(1, 37) * 0.6180339887498949)[0] - 1
-        frames = np.linalg.qr(values[:18].reshape(2, 3, 3))[0]
+        count = self.points
+        values = 2 * np.modf(seed + np.arange(1, 18 * count + 1) * 0.6180339887498949)[0] - 1
+        frames = np.linalg.qr(values[: 9 * count].reshape(count, 3, 3))[0]
         frames *= np.linalg.det(frames)[:, None, None]
-        r, n, m = values[18:].reshape(3, 2, 3)
+        r, n, m = values[9 * count :].reshape(3, count, 3)
         size = self.length
         fields = RodFields(size * r, frames, n / size**2, m / size)
         x, c = self.ribbon.model.pack(fields, self.reference)
-        own = np.resize(0.1 * values, (2, len(self.ribbon.law.states)))
+        own = np.resize(0.1 * values, (count, len(self.ribbon.law.states)))
+        # Unknown forces and moments at single places are none that the fields tell of.
+        unknown = [i for i, name in enumerate(self.ribbon.constants) if " of " in name]
+        c[unknown] = np.resize(values, len(unknown))
         return np.concatenate([np.hstack([x, own]).ravel(), c])
 
     def satisfied(self, seed: float) -> Array | None:
@@ -91,14 +102,14 @@ class Linearized:
         scale = self.scales(z)
         count, model = len(self.names), self.ribbon.model
         more = len(model.defect(self.parts(z)[1])[0])
-        residuals, jacobian = np.empty(count + more), np.zeros((count + more, len(z)))
+        off, jacobian = np.empty(count + more), np.zeros((count + more, len(z)))
         last = slice(self.nx, self.nx + len(model.states))
         for _ in range(STEPS):
-            residuals[:count], jacobian[:count] = self.at(z)
-            residuals[count:], jacobian[count:, last] = model.defect(z[last])
+            off[:count], jacobian[:count] = self.at(z)
+            off[count:], jacobian[count:, last] = model.defect(z[last])
             scaled = jacobian * scale
             rows = np.sqrt(np.einsum("ij,ij->i", scaled, scaled))
-            relative = residuals / np.where(rows > 0, rows, np.nan)
+            relative = off / np.where(rows > 0, rows, np.nan)
             worst = np.abs(relative).max()
             if not np.isfinite(worst):
                 return None
@@ -116,19 +127,20 @@ class Linearized:
         n, m = ([known.get(f"{v}{axis}", 0.0) for axis in "xyz"] for v in "nm")
         force = max(1 / self.length**2, float(np.linalg.norm(n)))
         moment = max(1 / self.length, float(np.linalg.norm(m)))
-        sizes = {"r": self.length, "n": force, "m": moment, "a": moment, "F": force}
+        sizes = {"r": self.length, "n": force, "F": force, "m": moment, "a": moment, "b": moment}
         model = self.ribbon.model
         state = [sizes.get(name[0], 1.0) for name in model.states]
         state += [1.0] * len(self.ribbon.law.states)
-        return np.array(2 * state + [sizes[name[0]] for name in model.constants])
+        return np.array(self.points * state + [sizes[name[0]] for name in model.constants])
 
 
 def linearize(ribbon: Ribbon, posed: Posed) -> Linearized:
     """Return the conditions of a ribbon on its least states."""
     least = ribbon.least
-    nx = len(least.states)
-    z = ca.SX.sym("z", 2 * nx + len(least.constants))
-    named = least.residuals(z[:nx], z[nx : 2 * nx], z[2 * nx :])
+    nx, count = len(least.states), 2 + len(least.stations)
+    z = ca.SX.sym("z", count * nx + len(least.constants))
+    start, end, *inner = ca.vertsplit(z[: count * nx], nx)
+    named = residuals(least, start, end, z[count * nx :], inner)
     conditions = ca.vertcat(*named.values())
     both = ca.densify(ca.horzcat(conditions, ca.jacobian(conditions, z)))
     function = ca.Function("conditions", [z, ribbon.parameters], [both])

@@ -30,7 +30,7 @@ def refuse_motions(conditions: Linearized, *, sliding: bool) -> None:
     Said only where two different ends that satisfy the conditions agree; nothing is said where
     none are found. `sliding` says whether that does harm.
     """
-    found, loaded = 0, bool(conditions.posed.loads)
+    found, loaded = 0, conditions.posed.loaded
     for seed in SEEDS:
         z = conditions.satisfied(seed)
         if z is None:
@@ -84,11 +84,11 @@ def one_sided(conditions: Linearized, z: Array) -> bool:
 
 def rigid(conditions: Linearized, z: Array) -> Array:
     """Return changes (nz, 6) of the ends z: translations by the length, then rotations."""
-    nx, (*ends, c) = conditions.nx, conditions.parts(z)
+    nx, count, c = conditions.nx, conditions.points, conditions.parts(z)[2]
     model, result = conditions.ribbon.model, np.zeros((len(z), 6))
-    for at, x in zip((0, nx), ends, strict=True):
+    for at in range(0, count * nx, nx):
         own = slice(at, at + len(model.states))
-        result[own], result[2 * nx :] = model.moved(x[: len(model.states)], c, conditions.reference)
+        result[own], result[count * nx :] = model.moved(z[own], c, conditions.reference)
     result[:, :3] *= conditions.length
     return result
 
@@ -110,4 +110,7 @@ def _allowed(conditions: Linearized) -> Array:
     motions = conditions.ribbon.model.motions
     for load in conditions.posed.loads:
         motions = motions @ load.symmetries(motions)
+    for station in conditions.posed.stations:
+        for action in station.actions:
+            motions = motions @ action.symmetries(motions)
     return motions

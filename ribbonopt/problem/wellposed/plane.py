@@ -43,15 +43,16 @@ def in_plane(ribbon: Ribbon, posed: Posed) -> Ribbon:
 
 def _across(ribbon: Ribbon, load: Load, z: Array, posed: Posed) -> float:
     """Part of a load that would take the ribbon out of its plane, at the states of one end."""
-    x, c = (ca.SX.sym("x", len(names)) for names in (ribbon.states, ribbon.constants))
-    rod, theta = ribbon.section(x, c).rod, ribbon.theta.__getitem__
+    x, constants = (ca.SX.sym("x", len(names)) for names in (ribbon.states, ribbon.constants))
+    rod, theta = ribbon.section(x, constants).rod, ribbon.theta.__getitem__
     force, couple = load.force(rod, theta), load.couple(rod, theta)
     parts = [ca.dot(force, rod.d2), ca.dot(couple, rod.d1), ca.dot(couple, rod.d3)]
-    inputs = [x, c, ribbon.parameters, ribbon.position]
+    inputs = [x, constants, ribbon.parameters, ribbon.position]
     function = ca.Function("across", inputs, [ca.densify(ca.vertcat(*parts))])
     count = x.numel()
+    c = z[len(z) - len(ribbon.constants) :]
     places = np.linspace(*posed.scene.interval, PLACES)
-    found = [function(z[:count], z[2 * count :], posed.values, s) for s in places]
+    found = [function(z[:count], c, posed.values, s) for s in places]
     return float(np.abs(np.array(found)).max())
 
 

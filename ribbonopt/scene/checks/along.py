@@ -5,15 +5,15 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator, Mapping
 from itertools import pairwise
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 from ribbonopt.scene.along import Along, Table
 from ribbonopt.scene.faults import KeyPath, Problem, dotted, shown
-from ribbonopt.scene.formulas.expressions import Node, evaluate
-from ribbonopt.scene.formulas.numeric import NumericEnv
-from ribbonopt.scene.formulas.parsing import FormulaError, parse_along
 from ribbonopt.scene.formulas.words import ARCLENGTH
 from ribbonopt.scene.limits import LARGEST, ROWS
+
+if TYPE_CHECKING:
+    from ribbonopt.scene.formulas.expressions import Node
 
 SAMPLES, BETWEEN = 101, 4  # points looked at, of the interval and of each piece of a table
 ROUNDING = 1e-9  # of the interval, by which a table may miss its ends
@@ -81,6 +81,9 @@ def _of_formula(
     parameters: Mapping[str, float],
     samples: Samples,
 ) -> Iterator[Problem]:
+    # Imported late: plain numbers need no grammar.
+    from ribbonopt.scene.formulas.parsing import FormulaError, parse_along
+
     try:
         node = parse_along(text, parameters)
     except FormulaError as error:
@@ -98,6 +101,9 @@ def _of_formula(
 
 def _value(node: Node, s: float, parameters: Mapping[str, float]) -> float:
     """Return the value at an arclength, nan where there is none."""
+    from ribbonopt.scene.formulas.expressions import evaluate
+    from ribbonopt.scene.formulas.numeric import NumericEnv
+
     try:
         value = evaluate(node, NumericEnv({**parameters, ARCLENGTH: s}))
     except (ArithmeticError, ValueError, TypeError):

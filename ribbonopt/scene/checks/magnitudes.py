@@ -64,6 +64,11 @@ _KINDS: dict[KeyPath, _Kind] = {
     ("loads", "force"): _PER_LENGTH,
     ("loads", "couple"): _COUPLE,
     ("loads", "pressure"): _PER_LENGTH,
+    ("loads", "points", "at"): _LENGTH,
+    ("loads", "points", "force"): _FORCE,
+    ("loads", "points", "moment"): _MOMENT,
+    ("supports", "at"): _LENGTH,
+    ("supports", "position"): _LENGTH,
     ("guess", "force"): _FORCE,
     ("guess", "moment"): _MOMENT,
     ("guess", "strains"): _STRAIN,
@@ -133,9 +138,10 @@ def in_units(scene: Scene, values: Mapping[KeyPath, float]) -> Iterator[Problem]
             yield Problem(("law", "B3"), message, f"{scene.law.B3:g}")
     for path, kind in _KINDS.items():
         unit = kind.unit_of(units)
-        for at, number in _numbers(_at(scene, path), path, values):
-            if abs(number) > kind.limit * unit:
-                yield Problem(at, _message(number, kind, unit, units), f"{number:g}")
+        for place, value in _at(scene, path):
+            for at, number in _numbers(value, place, values):
+                if abs(number) > kind.limit * unit:
+                    yield Problem(at, _message(number, kind, unit, units), f"{number:g}")
 
 
 def _length(length: float, units: Units) -> Iterator[Problem]:
@@ -156,11 +162,16 @@ def _message(number: float, kind: _Kind, unit: float, units: Units) -> str:
     return f"{worth}expected at most {kind.limit:g}{name} in size: {kind.reason}{advice}"
 
 
-def _at(value: Any, path: KeyPath) -> Any:
-    """Return what a path leads to; None where nothing is."""
-    for key in path:
-        value = getattr(value, str(key), None) if is_dataclass(value) else None
-    return value
+def _at(value: Any, path: KeyPath, before: KeyPath = ()) -> Iterator[tuple[KeyPath, Any]]:
+    """Yield what a path leads to, in each item of a list on the way, with its own path."""
+    if not path:
+        yield before, value
+    elif isinstance(value, tuple):
+        for index, item in enumerate(value):
+            yield from _at(item, path, (*before, index))
+    elif is_dataclass(value):
+        key, *rest = path
+        yield from _at(getattr(value, str(key), None), tuple(rest), (*before, key))
 
 
 def _numbers(

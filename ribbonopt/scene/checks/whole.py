@@ -13,8 +13,10 @@ from typing import Any, get_origin
 from ribbonopt.scene.along import is_along, numbers_along
 from ribbonopt.scene.ends import Boundary
 from ribbonopt.scene.faults import KeyPath, Problem, shown
+from ribbonopt.scene.loads import Loads
 from ribbonopt.scene.model import Guess, MoebiusGuess, RibbonSizes, Scene
 from ribbonopt.scene.schema.annotations import branches, hints, inside
+from ribbonopt.scene.stations import InteriorSupport
 from ribbonopt.scene.wording import written
 from ribbonopt.text import name_fault
 
@@ -31,6 +33,8 @@ def check(scene: Scene) -> list[Problem]:
         return problems  # what follows computes with these numbers
     problems = [*_name(scene.name), *_interval(scene.interval)]
     formulas = dict(_formulas(boundary, Boundary, ("boundary",)))
+    formulas |= _formulas(scene.loads, Loads, ("loads",))
+    formulas |= _formulas(scene.supports, tuple[InteriorSupport, ...], ("supports",))
     formulas |= _formulas(scene.guess, Guess, ("guess",))
     formulas |= _formulas(scene.gravity, hints(Scene)["gravity"], ("gravity",))
     values: dict[KeyPath, float] = {}
@@ -60,6 +64,10 @@ def check(scene: Scene) -> list[Problem]:
         problems += check_loop(boundary.loop, boundary, scene.guess)
     else:
         problems += check_supports(boundary, values)
+    if scene.loads.points or scene.supports:
+        from .stations import check_stations  # few scenes have any
+
+        problems += check_stations(scene, values)
     if isinstance(scene.switching, tuple):
         problems += _switching(scene.switching, scene.interval)
     if scene.ribbon is not None:

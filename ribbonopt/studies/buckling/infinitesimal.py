@@ -28,6 +28,7 @@ import numpy as np
 from ribbonopt.arrays import Array
 from ribbonopt.mechanics.laws.law import ConstitutiveLaw, Stress
 from ribbonopt.problem import BoundaryValueProblem, Phase, Ribbon
+from ribbonopt.problem.imposed import residuals
 
 Strain = Callable[[Stress], ca.SX]
 Kinds = tuple[int, ...]
@@ -100,7 +101,7 @@ class Deflected:
         change = ca.vertcat(start[nx:], end[nx:], gamma)
         here = ca.vertcat(start[:nx], end[:nx], c)
         found = {f"start of the straight state, {i + 1}": start[i] - x0[i] for i in range(nx)}
-        for name, value in self.ribbon.residuals(*ends, constants).items():
+        for name, value in residuals(self.ribbon, *ends, constants).items():
             linear = ca.jtimes(value, of, change)
             known = [of, self.ribbon.parameters], [here, theta]
             (found[name],) = ca.substitute([linear], *known)

@@ -1,0 +1,243 @@
+"""What acts or holds at single places between the ends: stations, and the unknowns they add.
+
+At a station the force n falls by the force P that acts there, and the moment m by the couple C:
+eqs. (2.6)-(2.7) with loads at a point. What P and C are, each action says: numbers of the scene, or
+unknown constants of the equilibrium with conditions of their own (a reaction, a load along a
+director). Lab frame, units Dw = L = 1.
+"""
+
+from __future__ import annotations
+
+from abc import ABC, abstractmethod
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+import casadi as ca
+import numpy as np
+
+from ribbonopt.arrays import Array
+
+from .loads.load import Theta
+from .rotations import cross_matrix
+from .section import Section
+
+Unknown = Callable[[str], ca.SX]  # the symbol of an unknown constant by its name
+
+AXES, DIRECTORS = ("x", "y", "z"), ("d1", "d2", "d3")
+SAME = 1e-12  # of the length: places of two actions at one station
+PARALLEL = 1e-9
+
+
+@dataclass(frozen=True, eq=False)
+class Action(ABC):
+    """Something that acts at one place; `path` is its name in the scene, `at` the arclength."""
+
+    path: str
+    at: float
+
+    #: why it has no potential, "" where it has one
+    without_potential = ""
+
+    @property
+    @abstractmethod
+    def unknown(self) -> tuple[str, ...]:
+        """Names of its unknown constants: n or m, the axis, and whose they are."""
+
+    @property
+    @abstractmethod
+    def loads(self) -> Mapping[str, float]:
+        """Numbers of what acts by parameter name, but for the place."""
+
+    def numbers(self) -> dict[str, float]:
+        """All its numbers by parameter name."""
+        return {f"{self.path}.at": self.at, **self.loads}
+
+    @property
+    def leaps(self) -> bool:
+        """Whether the moment leaps there, and with it the strains."""
+        return False
+
+    @abstractmethod
+    def force(self, theta: Theta, unknown: Unknown) -> ca.SX:
+        """Force (3,) on the ribbon."""
+
+    def couple(self, theta: Theta, unknown: Unknown) -> ca.SX:
+        """Couple (3,) on the ribbon."""
+        return ca.SX.zeros(3)
+
+    @abstractmethod
+    def residuals(self, rod: Section, theta: Theta, unknown: Unknown) -> dict[str, ca.SX]:
+        """Expressions that vanish where its conditions hold, by name: as many as unknowns."""
+
+    def symmetries(self, motions: Array) -> Array:
+        """Return combinations (k, j) of rigid motions (6, k) that leave it as it is."""
+        return np.eye(motions.shape[1])
+
+    def work(self, r: Array) -> float:
+        """Work of what acts on the position r (3,) of its place; zero where that has none."""
+        return 0.0
+
+
+@dataclass(frozen=True, eq=False)
+class DeadPoint(Action):
+    """A force and a couple in lab components; those not named are zero."""
+
+    forces: Mapping[str, float]
+    couples: Mapping[str, float]
+
+    unknown = ()
+
+    @property
+    def without_potential(self) -> str:  # type: ignore[override]
+        """A couple that does not turn with the ribbon has no potential in space."""
+        return "a moment that keeps its direction has no potential" if self.couples else ""
+
+    @property
+    def leaps(self) -> bool:
+        return bool(self.couples)
+
+    @property
+    def loads(self) -> dict[str, float]:
+        found = {f"{self.path}.force.{axis}": value for axis, value in self.forces.items()}
+        return found | {f"{self.path}.moment.{axis}": v for axis, v in self.couples.items()}
+
+    def force(self, theta: Theta, unknown: Unknown) -> ca.SX:
+        return self._vector("force", self.forces, theta)
+
+    def couple(self, theta: Theta, unknown: Unknown) -> ca.SX:
+        return self._vector("moment", self.couples, theta)
+
+    def residuals(self, rod: Section, theta: Theta, unknown: Unknown) -> dict[str, ca.SX]:
+        return {}
+
+    def symmetries(self, motions: Array) -> Array:
+        free = np.eye(motions.shape[1])
+        for given in (self.forces, self.couples):
+            vector = np.array([given.get(axis, 0.0) for axis in AXES])
+            if (size := float(np.linalg.norm(vector))) > 0:
+                changed = cross_matrix(vector / size) @ (motions @ free)[3:]
+                _, singular, right = np.linalg.svd(changed)
+                free = free @ right[int((singular > PARALLEL).sum()) :].T
+        return np.asarray(free)
+
+    def work(self, r: Array) -> float:
+        return float(sum(self.forces.get(axis, 0.0) * r[i] for i, axis in enumerate(AXES)))
+
+    def _vector(self, kind: str, given: Mapping[str, float], theta: Theta) -> ca.SX:
+        named = (theta(f"{self.path}.{kind}.{a}") if a in given else 0 for a in AXES)
+        return ca.vertcat(*(ca.SX(part) for part in named))
+
+
+@dataclass(frozen=True, eq=False)
+class FollowingPoint(Action):
+    """A force and a couple along the directors of the place, where they are unknown vectors."""
+
+    forces: Mapping[str, float]
+    couples: Mapping[str, float]
+
+    without_potential = "it follows the ribbon"
+
+    @property
+    def unknown(self) -> tuple[str, ...]:
+        kinds = [kind for kind, given in (("n", self.forces), ("m", self.couples)) if given]
+        return tuple(f"{kind}{axis} of {self.path}" for kind in kinds for axis in AXES)
+
+    @property
+    def leaps(self) -> bool:
+        return bool(self.couples)
+
+    @property
+    def loads(self) -> dict[str, float]:
+        found = {f"{self.path}.force.{d}": value for d, value in self.forces.items()}
+        return found | {f"{self.path}.moment.{d}": v for d, v in self.couples.items()}
+
+    def force(self, theta: Theta, unknown: Unknown) -> ca.SX:
+        return self._vector("n", unknown) if self.forces else ca.SX.zeros(3)
+
+    def couple(self, theta: Theta, unknown: Unknown) -> ca.SX:
+        return self._vector("m", unknown) if self.couples else ca.SX.zeros(3)
+
+    def residuals(self, rod: Section, theta: Theta, unknown: Unknown) -> dict[str, ca.SX]:
+        result: dict[str, ca.SX] = {}
+        for kind, name, given in (("n", "force", self.forces), ("m", "moment", self.couples)):
+            if given:
+                parts = [theta(f"{self.path}.{name}.{d}") * getattr(rod, d) for d in given]
+                off = self._vector(kind, unknown) - sum(parts[1:], parts[0])
+                result |= {f"{self.path}.{name} ({a})": off[i] for i, a in enumerate(AXES)}
+        return result
+
+    def _vector(self, kind: str, unknown: Unknown) -> ca.SX:
+        return ca.vertcat(*(unknown(f"{kind}{axis} of {self.path}") for axis in AXES))
+
+
+@dataclass(frozen=True, eq=False)
+class Held(Action):
+    """Components of the position that are held: the reaction along each is unknown."""
+
+    place: Mapping[str, float]
+
+    @property
+    def loads(self) -> dict[str, float]:
+        return {}
+
+    @property
+    def unknown(self) -> tuple[str, ...]:
+        return tuple(f"n{axis} of {self.path}" for axis in self.place)
+
+    def numbers(self) -> dict[str, float]:
+        held = {f"{self.path}.position.{axis}": value for axis, value in self.place.items()}
+        return {f"{self.path}.at": self.at, **held}
+
+    def force(self, theta: Theta, unknown: Unknown) -> ca.SX:
+        named = (unknown(f"n{a} of {self.path}") if a in self.place else ca.SX(0) for a in AXES)
+        return ca.vertcat(*named)
+
+    def residuals(self, rod: Section, theta: Theta, unknown: Unknown) -> dict[str, ca.SX]:
+        names = {axis: f"{self.path}.position.{axis}" for axis in self.place}
+        return {name: rod.r[AXES.index(axis)] - theta(name) for axis, name in names.items()}
+
+
+@dataclass(frozen=True, eq=False)
+class Station:
+    """All that acts at one place."""
+
+    actions: tuple[Action, ...]
+
+    @property
+    def at(self) -> float:
+        """Arclength of the place."""
+        return self.actions[0].at
+
+    def place(self, theta: Theta) -> ca.SX:
+        """Symbol of the arclength of the place."""
+        return theta(f"{self.actions[0].path}.at")
+
+    @property
+    def unknown(self) -> tuple[str, ...]:
+        """Names of all unknown constants."""
+        return tuple(name for action in self.actions for name in action.unknown)
+
+    def force(self, theta: Theta, unknown: Unknown) -> ca.SX:
+        """Force (3,) on the ribbon."""
+        return sum((a.force(theta, unknown) for a in self.actions), ca.SX.zeros(3))
+
+    def couple(self, theta: Theta, unknown: Unknown) -> ca.SX:
+        """Couple (3,) on the ribbon."""
+        return sum((a.couple(theta, unknown) for a in self.actions), ca.SX.zeros(3))
+
+
+def conservative(stations: tuple[Station, ...]) -> tuple[Station, ...]:
+    """Return the stations of all actions that have a potential."""
+    kept = (tuple(a for a in st.actions if not a.without_potential) for st in stations)
+    return tuple(Station(actions) for actions in kept if actions)
+
+
+def gathered(actions: list[Action], length: float) -> tuple[Station, ...]:
+    """Return the stations of actions, in the order of their places."""
+    stations: list[list[Action]] = []
+    for action in sorted(actions, key=lambda action: action.at):
+        if stations and action.at - stations[-1][0].at <= SAME * length:
+            stations[-1].append(action)
+        else:
+            stations.append([action])
+    return tuple(Station(tuple(some)) for some in stations)

@@ -1,0 +1,22 @@
+"""The width along a ribbon as numbers, for what is drawn and doubted of it."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ribbonopt.arrays import Array
+from ribbonopt.scene import Scene
+
+
+def widths(scene: Scene, s: Array) -> Array:
+    """Return the widths (k,) of a ribbon at arclengths (k,), in units of its own width.
+
+    Scene and arclengths are in the same units, whichever.
+    """
+    if scene.width is None:
+        return np.ones(len(s))
+    from .along import Field  # few scenes have a width of their own
+
+    field = Field("width", scene.width)
+    parameters = {f"parameters.{name}": value for name, value in scene.parameters.items()}
+    return field.sampled(s, parameters | field.numbers())
