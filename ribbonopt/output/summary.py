@@ -102,7 +102,8 @@ def _equilibrium(solution: Solution) -> dict[str, Any]:
 
 def _conserved(solution: Solution) -> dict[str, float]:
     """Return what loads leave constant, numbers only, at the start; nothing without loads."""
-    if not solution.posed.loads or not solution.status.converged:
+    posed = solution.posed
+    if not posed.loads or posed.stations or not solution.status.converged:
         return {}
     from ribbonopt.checks.conserved import conserved  # few scenes have loads
 

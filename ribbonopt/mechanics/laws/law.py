@@ -19,12 +19,27 @@ import casadi as ca
 from .implicit import ImplicitLaw
 
 
+class Acting(NamedTuple):
+    """Loads at a section: force and couple (3,) per length along the directors.
+
+    `rate` (3,) is the derivative of a couple that keeps its direction, along them too.
+    """
+
+    force: ca.SX
+    couple: ca.SX
+    rate: ca.SX
+
+
 class Stress(NamedTuple):
-    """What a law may read of a section: n, m (3,) along the directors, and its own states."""
+    """What a law may read of a section: n, m (3,) along the directors, and its own states.
+
+    `acting` are the loads along the ribbon, where a law with phases is to know of any.
+    """
 
     n: ca.SX
     m: ca.SX
     own: ca.SX
+    acting: Acting | None = None
 
     @classmethod
     def of_moment(cls, m: ca.SX) -> Stress:
