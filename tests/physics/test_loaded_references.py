@@ -1,18 +1,15 @@
 """Loads along the ribbon: numbers of two methods that share no equations, by every formulation."""
 
-from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
-from scipy.integrate import solve_ivp
 
-from ribbonopt import Continuation, dump_scene, save_solution
+from ribbonopt import Continuation, buckling_loads, dump_scene, save_solution
 from ribbonopt.accuracy.estimate import estimate_error
 from ribbonopt.checks.stability import negative_directions, why_not
-from ribbonopt.checks.validity import warnings_of
-from ribbonopt.errors import ModelError, SceneError
+from ribbonopt.errors import ModelError
 from ribbonopt.output.report import report
 from ribbonopt.output.summary import summarize
 from ribbonopt.pipeline.prepared import prepare, solve
@@ -87,6 +84,53 @@ def test_it_falls_over_at_its_critical_weight(load: str) -> None:
         found = solve(ribbon(force, law="{type: kirchhoff}", guess="{strains: [0, 0]}"))
         assert np.abs(found.sample(1.0, "r") - [0, 0, 1]).max() < 1e-12
         assert negative_directions(found) == negative
+
+
+@pytest.mark.parametrize("load", ["-q", "'-q*exp(0*s)'"])
+@pytest.mark.parametrize("law", ["{type: variational, delta: 0.1}", "{type: sadowsky}"])
+def test_its_critical_weight_is_that_of_bessel(law: str, load: str) -> None:
+    more = {"guess": "{strains: [0, 0]}", "parameters": "{q: 5}"}
+    (found,) = buckling_loads(
+        ribbon(f"{{force: {{z: {load}}}}}", law=law, **more), "parameters.q", 5, 10
+    )
+    assert found.value == pytest.approx(7.83734743894348, abs=1e-8)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("states", ["reduced", "planar"])
+def test_a_heavy_rod_leaves_the_vertical_there(states: str) -> None:
+    stage = "{parameter: parameters.q, to: 8.5, switch: true, largest: 0.5}"
+    more = {"guess": "{strains: [0, 0]}", "parameters": "{q: 7}", "continuation": stage}
+    scene = ribbon("{force: {z: -q}}", law="{type: kirchhoff}", states=states, **more)
+    rows = [one.row for one in Continuation(scene)]
+    (buckled,) = [row for row in rows if row["kind"] == "branch point"]
+    assert value_of(buckled) == pytest.approx(7.83734743894348, abs=1e-8)
+    sides = [
+        (row["branch"], value_of(row) > 7.84, row["negative"]) for row in rows if row is not buckled
+    ]
+    assert set(sides) == {(0, False, 0), (0, True, 1), *((b, up, 0) for b, up, _ in sides if b)}
+
+
+@pytest.mark.parametrize("form", ["inverted", "energy"])
+def test_the_work_of_loads_at_places_counts(form: str) -> None:
+    end = "{support: free, force: [-1, 0, 0]}"
+    found = solve(ribbon("{points: [{at: 0.5, force: [-2, 0, 0]}]}", end, form))
+    assert found.verified
+    covered(found, "potential", potential(found), -0.417310998215)
+
+
+@pytest.mark.slow
+def test_loads_of_all_kinds_by_all_formulations() -> None:
+    """Along the ribbon without a closed form, at places, and an energy to tell them together."""
+    point = "points: [{at: 0.5, force: [0, 3, 0]}, {at: 0.7, force: {x: -2}}]"
+    load = f"{{force: {{z: '-4*exp(s)'}}, {point}}}"
+    one, other = (solve(ribbon(load, CLAMP_C, form)) for form in ("inverted", "energy"))
+    for found in (one, other):
+        assert found.verified
+        assert negative_directions(found) == 0
+        assert summarize(found)["conserved"] == {}
+    np.testing.assert_allclose(one.n0, other.n0, atol=1e-8)
+    assert potential(one) == pytest.approx(potential(other), abs=1e-10)
 
 
 SPAN = "{support: clamped, position: [0, 0, 0.6], directors: identity}"
@@ -267,176 +311,12 @@ def test_large_followers_are_brought_on(load: str) -> None:
     assert not found.fell_back
 
 
-# A ring under pressure, quarter of it from its sharp end; L = 1 is that of the ring.
-
-RING = """
-name: ring
-law: {{type: kirchhoff}}
-states: {states}
-interval: [0, 1.5707963267948966]
-boundary:
-  start: {{position: {{y: 0, z: 0}}, directors: {{d1: [-1, 0, 0], d3: [0, 0, 1]}}, force: {{x: 0}}}}
-  end: {{position: {{x: 0}}, directors: {{d1: [0, 0, -1], d3: [-1, 0, 0]}}, force: {{z: 0}}}}
-loads: {{pressure: 2.8}}
-tolerance: 1e-11
-record: {{long: "dot(r, ex) at 0"}}
-continuation: {{parameter: loads.pressure, to: {p}, switch: true}}
-"""
-PRESSED = {
-    3.2: ((0.195539899228, 0.109338613551), (11.7751802244, 1.3447998081), -155.2118839684),
-    5: ((0.218300474065, 0.006996327050), (23.6380729447, -5.8837152254), -270.7473959323),
-}
-H = {3.2: -85.884449310, 5: 8.631850337}
-
-
-@pytest.mark.slow
-@pytest.mark.parametrize("p", PRESSED)
-def test_a_ring_is_pressed_flat(p: float) -> None:
-    points = list(Continuation(loads_scene(RING.format(p=p, states="planar"))))
-    (buckled,) = [one.row for one in points if one.row["kind"] == "branch point"]
-    assert value_of(buckled) == pytest.approx(3, abs=1e-8)
-    found = next(one for one in reversed(points) if one.row["long"] > 1.05).solution
-    assert value_of(points[-1].row) == p
-    axes, moments, force = PRESSED[p]
-    o, length = found.outputs(np.array([0, np.pi / 2])), 2 * np.pi
-    np.testing.assert_allclose([o["r"][0, 0], o["r"][1, 2]], length * np.array(axes), atol=1e-10)
-    np.testing.assert_allclose(o["m2"], np.array(moments) / length, atol=1e-10)
-    np.testing.assert_allclose(o["n3"][0], force / length**2, atol=1e-10)
-    np.testing.assert_allclose(o["H"], H[p] / length**2, atol=1e-10)
-    assert found.verification.drift["n^2/2 - p m2"] < 1e-12
-    assert found.verification.drift["H"] < 1e-12
-
-
 def test_a_strip_under_pressure_in_a_plane_has_one_more_invariant() -> None:
     found = solve(ribbon("{pressure: 6}", states="planar"))
     drift = found.verification.drift
     assert max(drift[name] for name in ("n^2/2 - p m2", "H")) < 1e-12
     # At the free end nothing is left.
     assert abs(summarize(found)["conserved"]["n^2/2 - p m2"]) < 1e-12
-
-
-@pytest.mark.slow
-def test_opposite_sides_touch(configs: Path) -> None:
-    points = list(Continuation(load_scene(configs / "ring_pressed.yaml")))
-    last = [one for one in points if min(one.row["gap"], one.row["long"]) < 0]
-    assert len(last) == 2  # one on each side of the pitchfork
-    for one in last:
-        near = sorted(
-            (other for other in points if other.row["branch"] == one.row["branch"]),
-            key=lambda other: abs(value_of(other.row) - value_of(one.row)),
-        )
-        other = near[1].row
-        name = "gap" if one.row["gap"] < 0 else "long"
-        slope = (one.row[name] - other[name]) / (value_of(one.row) - value_of(other))
-        touch = value_of(one.row) - one.row[name] / slope
-        assert touch == pytest.approx(5.2468869625, abs=3e-10)
-        assert any("self-contact is not modelled" in w for w in warnings_of(one.solution))
-
-
-# SI: gravity.
-
-SIZES = "length: 0.5, width: 0.02, thickness: 1e-4, youngs_modulus: 2e9, poisson_ratio: 0.3"
-RIGIDITY = 2e9 * 1e-12 / 12 / (1 - 0.3**2) * 0.02
-
-
-def test_gravity_is_the_weight_of_the_density() -> None:
-    # q = 5 of the reference, by a density that gives it.
-    density = 5 * RIGIDITY / 0.5**3 / (0.02 * 1e-4 * 9.81)
-    found = solve(film(density))
-    np.testing.assert_allclose(
-        found.sample(0.5, "r")[[0, 2]],
-        0.5 * np.array([-0.495905044622, 0.846657179954]),
-        atol=1e-10,
-    )
-    assert potential(found) == pytest.approx(-0.55803344042 * RIGIDITY / 0.5, rel=1e-9)
-    assert summarize(found)["conserved"]["H + f.r"] == pytest.approx(found.start["H"], rel=1e-12)
-
-
-@pytest.mark.parametrize(("form", "states"), [("inverted", "reduced"), ("energy", "reduced")])
-def test_gravity_pulls_at_the_width_there_is(form: str, states: str) -> None:
-    density = 5 * RIGIDITY / 0.5**3 / (0.02 * 1e-4 * 9.81)
-    found = solve(film(density, width="'1 - 1.4*s'", formulation=form, states=states))
-    tip = 0.5 * np.array([-0.326452366854, 0.936274162831])
-    np.testing.assert_allclose(found.sample(0.5, "r")[[0, 2]], tip, atol=1e-10)
-
-
-def film(density: float, **more: str) -> Scene:
-    rest = "".join(f"{key}: {value}\n" for key, value in more.items())
-    return loads_scene(
-        f"""
-name: film
-law: {{type: sadowsky}}
-ribbon: {{{SIZES}, density: {density}}}
-gravity: [-9.81, 0, 0]
-boundary:
-  start: {{support: clamped, position: [0, 0, 0], directors: identity}}
-  end: {{support: free}}
-transcription: {{type: collocation, degree: 8, intervals: 16}}
-{rest}
-"""
-    )
-
-
-@pytest.mark.slow
-def test_the_hanging_film_is_integrated_again(solved: Callable[..., Solution]) -> None:
-    found = solved("hanging_film")
-    sizes = found.scene.ribbon
-    assert sizes is not None and sizes.density is not None
-    D = sizes.youngs_modulus * sizes.thickness**3 / 12 / (1 - sizes.poisson_ratio**2)
-    Dw = D * sizes.width
-    f = np.array([0, 0, -9.81 * sizes.density * sizes.width * sizes.thickness])
-
-    def rates(s: float, y: Array, sign: float) -> Array:
-        d1, d2, d3, n, m = y.reshape(6, 3)[1:]
-        m2, m3 = m @ d2 / Dw, m @ d3 / Dw
-        M = np.hypot(m2, m3)
-        p = M + sign * m2
-        u = sign * p**2 / (4 * M) * d2 + m3 * p / (4 * M) * d3
-        return np.concatenate([d3, *(np.cross(u, d) for d in (d1, d2, d3)), -f, np.cross(n, d3)])
-
-    names = ("r", "d1", "d2", "d3", "n", "m")
-    y = np.concatenate([found.start[name] for name in names])
-    places = [0.0, *found.switch_points, 0.3]
-    for a, b, sign in zip(places[:-1], places[1:], found.sheets, strict=True):
-        y = solve_ivp(rates, (a, b), y, args=(sign,), method="DOP853", rtol=1e-12, atol=1e-15).y[
-            :, -1
-        ]
-    last = found.outputs(np.array([0.3]))
-    np.testing.assert_allclose(y[:12], np.concatenate([last[k][0] for k in names[:4]]), atol=1e-6)
-
-
-@pytest.mark.parametrize("par", ["gravity.x", "ribbon.density"])
-def test_gravity_is_continued(par: str) -> None:
-    density = RIGIDITY / 0.5**3 / (0.02 * 1e-4 * 9.81)
-    to = -5 * 9.81 if par == "gravity.x" else 5 * density
-    *_, last = Continuation(film(density, continuation=f"{{parameter: {par}, to: {to}}}"))
-    tip = last.solution.sample(0.5, "r")[[0, 2]]
-    np.testing.assert_allclose(tip, 0.5 * np.array([-0.495905044622, 0.846657179954]), atol=1e-7)
-
-
-@pytest.mark.parametrize(
-    ("text", "match"),
-    [
-        ("gravity: [0, 0, -9.81]", r"gravity: .*needs to know the ribbon, in metres"),
-        (f"gravity: [0, 0, -9.81]\nribbon: {{{SIZES}}}", r"gravity: .*needs the density"),
-        (f"ribbon: {{{SIZES}, density: -3}}", r"ribbon\.density"),
-        (f"gravity: [0, 0, 1e29]\nribbon: {{{SIZES}, density: 1e9}}", r"gravity\.2: .*is a weight"),
-        ("gravity: {down: 9.81}", r"gravity\.down"),
-        (f"gravity: {{z: unknown}}\nribbon: {{{SIZES}, density: 1}}", r"gravity\.z: .*unknown"),
-        ("loads: {pressure: [1, 2, 3]}", r"loads\.pressure"),
-        ("loads: {pressure: 1e20}", r"loads\.pressure: .*expected at most"),
-        ("loads: {couple: [0, 0, 1e16]}", r"loads\.couple\.2: .*expected at most"),
-        ("loads: {couple: {z: '1/s'}}", r"loads\.couple\.z: .*has no finite real value at s = 0"),
-        ("loads: {force: {z: {s: [0, 0.5], values: [1, 1]}}}", r"loads\.force\.z\.s: .*covers s"),
-        ("loads: {force: {z: 'weight*s'}}", r"loads\.force\.z: .*weight"),
-    ],
-)
-def test_bad_loads_are_refused_with_one_message(text: str, match: str) -> None:
-    scene = "name: a\nlaw: {type: sadowsky}\nboundary: {start: {support: clamped, position: "
-    scene += "[0, 0, 0], directors: identity}, end: {support: free}}\n"
-    with pytest.raises(SceneError, match=match) as caught:
-        loads_scene(scene + text)
-    assert "problems" not in str(caught.value)
 
 
 def test_a_load_that_leaves_the_plane_somewhere_is_refused() -> None:
