@@ -8,15 +8,14 @@ import casadi as ca
 
 from ribbonopt.arrays import Array
 
-from .laws.law import Acting, Stress
+from .laws.law import Stress
 
 
 @dataclass(frozen=True, eq=False)
 class Section:
     """One cross section: lab-frame vectors (3,), arclength, and the law's own states (k,).
 
-    `stepped` is the force (3,) of what acts at single places up to here, if anything does; `acting`
-    are the loads along the ribbon, here in the lab frame, where the law asks for them.
+    `stepped` is the force (3,) of what acts at single places up to here, if anything does.
     """
 
     r: ca.SX
@@ -28,7 +27,6 @@ class Section:
     s: ca.SX
     own: ca.SX
     stepped: ca.SX | None = None
-    acting: Acting | None = None
 
     def along(self, vector: ca.SX) -> ca.SX:
         """Components (3,) of a lab vector along the directors."""
@@ -37,9 +35,7 @@ class Section:
     @property
     def stress(self) -> Stress:
         """What a law may read of this section."""
-        acting = self.acting
-        found = None if acting is None else Acting(*(self.along(part) for part in acting))
-        return Stress(self.along(self.n), self.along(self.m), self.own, found)
+        return Stress(self.along(self.n), self.along(self.m), self.own)
 
 
 @dataclass(frozen=True, eq=False)

@@ -15,7 +15,7 @@ import casadi as ca
 
 from ribbonopt.mechanics.ends.conditions import Condition, CrossSection
 from ribbonopt.mechanics.laws.catalogue import relation_of
-from ribbonopt.mechanics.laws.law import Acting, ConstitutiveLaw, Stress
+from ribbonopt.mechanics.laws.law import ConstitutiveLaw, Stress
 from ribbonopt.mechanics.loads.load import Load
 from ribbonopt.mechanics.model import RodModel, full_model, least_model
 from ribbonopt.mechanics.section import Section
@@ -148,9 +148,7 @@ class Ribbon:
         r, d1, d2, d3, n, m, own, u, *stepped = self.section_function(
             x, c, self.parameters, s, *more
         )
-        rod = Section(r, d1, d2, d3, n, m, s, own, stepped[0] if stepped else None)
-        if self.loads and self.law.kinked:
-            rod = replace(rod, acting=self._acting(rod))
+        rod = Section(r, d1, d2, d3, n, m, s, own, *stepped)
         return CrossSection(self.model, x[:count], rod, u)
 
     @cached_property
@@ -174,15 +172,6 @@ class Ribbon:
         """Return dx/ds of the states of model and law for strains u (3,)."""
         model = self.model.rates(section.x, section.rod, u)
         return ca.vertcat(model, self.law.rates(section.rod.stress, u))
-
-    def _acting(self, rod: Section) -> Acting:
-        """Return the loads at a section, lab frame."""
-        theta, s = self.theta.__getitem__, self.position
-        force = sum((load.force(rod, theta) for load in self.loads), ca.SX.zeros(3))
-        couple = sum((load.couple(rod, theta) for load in self.loads), ca.SX.zeros(3))
-        known = [load.couple(replace(rod, s=s), theta) for load in self.loads if load.dead]
-        rate = ca.jacobian(sum(known, ca.SX.zeros(3)), s)
-        return Acting(force, couple, ca.substitute(ca.densify(rate), s, rod.s))
 
     def work(self, rod: Section) -> ca.SX:
         """Return the work f . r per length of the loads that have a potential."""

@@ -19,27 +19,18 @@ import casadi as ca
 from .implicit import ImplicitLaw
 
 
-class Acting(NamedTuple):
-    """Loads at a section: force and couple (3,) per length along the directors.
-
-    `rate` (3,) is the derivative of a couple that keeps its direction, along them too.
-    """
-
-    force: ca.SX
-    couple: ca.SX
-    rate: ca.SX
-
-
 class Stress(NamedTuple):
     """What a law may read of a section: n, m (3,) along the directors, and its own states.
 
-    `acting` are the loads along the ribbon, where a law with phases is to know of any.
+    Where a phase may be a mixture also force and couple (3,) per length along the directors, None
+    without loads: they move n1 and m2, which it keeps.
     """
 
     n: ca.SX
     m: ca.SX
     own: ca.SX
-    acting: Acting | None = None
+    load: ca.SX | None = None
+    couple: ca.SX | None = None
 
     @classmethod
     def of_moment(cls, m: ca.SX) -> Stress:

@@ -133,6 +133,8 @@ class SingleSheetLaw(RibbonLaw):
 class MixtureLaw(ConstitutiveLaw):
     """Arcs of both sheets, epsilon = 0: m2 = 0, u3 = m3 / 4, u2 = (2 n2 u3 - f1) / K.
 
+    Under a couple c per length n1 + c2 + m1 u3 is what is kept, and u2 has - 2 u3 c1 - m1 c3 / 4.
+
     The strain u2 keeps m2 at zero along the arc; no moment gives it. With a term in m2 (zero along
     the arc) it keeps n1 + m1 u3 where it is even off the arc, so that m2 is linear in s there and
     zero along the arc if that and m2 are zero at one point of it.
@@ -140,7 +142,11 @@ class MixtureLaw(ConstitutiveLaw):
 
     def strain(self, stress: Stress) -> ca.SX:
         u3 = stress.m[2] / 4
-        turning = (2 * stress.n[1] + u3 * stress.m[1]) * u3 - _pulled(stress)
+        turning = (2 * stress.n[1] + u3 * stress.m[1]) * u3
+        if stress.load is not None:
+            turning -= stress.load[0]
+        if stress.couple is not None:
+            turning -= 2 * u3 * stress.couple[0] + stress.m[0] * stress.couple[2] / 4
         return ca.vertcat(0, turning / mixture_stiffness(stress), u3)
 
     def moment(self, u: ca.SX) -> ca.SX:
@@ -157,17 +163,10 @@ class MixtureLaw(ConstitutiveLaw):
 
 
 def mixture_drift(stress: Stress) -> ca.SX:
-    """Minus the rate of m2 along a mixture: n1 + m1 u3 + c2, a constant, zero where it is one."""
-    drift = stress.n[0] + stress.m[0] * stress.m[2] / 4
-    return drift if stress.acting is None else drift + stress.acting.couple[1]
-
-
-def _pulled(stress: Stress) -> ca.SX | float:
-    """Return by how much loads change n1 + m1 u3 + c2 per length in a mixture, but for u2."""
-    if stress.acting is None:
-        return 0.0
-    (f1, _, _), (c1, _, c3), (_, rate, _) = map(ca.vertsplit, stress.acting)
-    return f1 + c1 * stress.m[2] / 2 + stress.m[0] * c3 / 4 - rate
+    """Minus the rate of m2 along a mixture: n1 + c2 + m1 u3, a constant, zero where it is one."""
+    if stress.couple is not None:
+        return mixture_drift(stress._replace(couple=None)) + stress.couple[1]
+    return stress.n[0] + stress.m[0] * stress.m[2] / 4
 
 
 def mixture_stiffness(stress: Stress) -> ca.SX:

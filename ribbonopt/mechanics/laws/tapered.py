@@ -14,7 +14,7 @@ import casadi as ca
 from ribbonopt.errors import ModelError
 
 from .implicit import ImplicitLaw
-from .law import Acting, ConstitutiveLaw, Relaxed, Singular, Stress, Switch
+from .law import ConstitutiveLaw, Relaxed, Singular, Stress, Switch
 
 _DECLARED = (
     "components",
@@ -107,12 +107,11 @@ class TaperedLaw(ConstitutiveLaw):
 
     def _unit(self, stress: Stress) -> Stress:
         """Return the stress of the unit width that gives these strains."""
-        n, m, acting = stress.n, stress.m, stress.acting
+        n, m, own, *loads = stress
         if self.mixture:
             n = ca.vertcat(n[0], n[1] - m[0] * self.slope / (2 * self.width), n[2])
-        if acting is not None:
-            acting = Acting(*(part / self.width for part in acting))
-        return Stress(n / self.width, m / self.width, stress.own, acting)
+        load, couple = (None if of is None else of / self.width for of in loads)
+        return Stress(n / self.width, m / self.width, own, load, couple)
 
     def _times(self, density: ca.SX | None) -> ca.SX | None:
         return None if density is None else self.width * density
