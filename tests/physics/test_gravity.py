@@ -91,3 +91,31 @@ def test_gravity_is_continued(par: str) -> None:
     *_, last = Continuation(film(density, continuation=f"{{parameter: {par}, to: {to}}}"))
     tip = last.solution.sample(0.5, "r")[[0, 2]]
     np.testing.assert_allclose(tip, 0.5 * np.array([-0.495905044622, 0.846657179954]), atol=1e-7)
+
+
+CLAMPS = """
+name: clamps
+law: {{type: sadowsky}}
+interval: [0, {length}]
+{rest}
+boundary:
+  start: {{support: clamped, position: [0, 0, 0], directors: identity}}
+  end: {{support: clamped, position: {end}, directors: {{rotation_vector: [0, 2.4, 0.6]}}}}
+loads:
+  pressure: "{p} * (1 + s/{length})"
+  couple: [0, {c}, "{c} * cos(s/{length})"]
+  force: {{z: {{s: [0, {middle}, {length}], values: [0, {f}, {p}]}}}}
+transcription: {{type: collocation, degree: 8, intervals: 16}}
+"""
+
+
+def test_loads_that_vary_are_the_same_in_any_units() -> None:
+    F, M = RIGIDITY / 0.5**2, RIGIDITY / 0.5
+    si = {"length": 0.5, "middle": 0.2, "end": "[0.34, 0.075, 0.155]", "p": 2 * F / 0.5}
+    si |= {"c": 1.5 * F, "f": 4 * F / 0.5, "rest": f"ribbon: {{{SIZES}}}"}
+    plain = {"length": 1, "middle": 0.4, "end": "[0.68, 0.15, 0.31]", "p": 2, "c": 1.5, "f": 4}
+    one, other = (solve(loads_scene(CLAMPS.format(**{"rest": ""} | some))) for some in (si, plain))
+    assert one.verified
+    assert other.verified
+    np.testing.assert_allclose(one.n0 / F, other.n0, atol=1e-10)
+    np.testing.assert_allclose(one.m0 / M, other.m0, atol=1e-10)
