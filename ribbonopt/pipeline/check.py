@@ -30,7 +30,7 @@ def check_scene(scene: Scene) -> dict[str, Any]:
         from ribbonopt.problem.wellposed.reach import refuse_far_goals  # few scenes are continued
 
         refuse_far_goals(scene)
-    nlp, _ = structure.on((scene.transcription.intervals,))
+    nlp, _ = structure.on(structure.mesh(None).elements)
     return {
         "name": scene.name,
         "unknowns": unknown_counts(structure.ribbon),

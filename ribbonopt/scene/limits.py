@@ -40,6 +40,8 @@ COUNTED = 1_000  # special points of one kind at which a stage may end
 ITEMS = 10_000
 ROWS = 200  # of a table along the ribbon: each costs operations at every point of a mesh
 ITEMS_OF = {"also": 100, "switching": 100, "turns": 1_000, "continuation": 100, "record": 1_000}
+#: each is a phase of its own, with equations of its own
+ITEMS_OF |= {"points": 100, "supports": 100}
 
 RIBBONS = 1_000_000  # of a study, all of which are put in order before the first is solved
 VALUES = 10**12  # of one key of a study, which are made one by one

@@ -29,4 +29,6 @@ def listed(words: Iterable[str], last: str = "and") -> str:
 
 
 def _plain(value: Any) -> str:
+    if is_dataclass(value) or isinstance(value, tuple):
+        return written(value)
     return f"{value:.12g}" if isinstance(value, float) else str(value)

@@ -18,10 +18,14 @@ def conditions_of(scene: Scene) -> tuple[Condition, ...]:
     boundary, parameters = scene.boundary, scene.parameters
     result: list[Condition] = []
     if boundary.loop is not None:
+        from ribbonopt.mechanics.laws.asymmetry import changed_by_sliding
+
         from .loops import loop_conditions  # only where a scene has one
 
-        energy = scene.formulation == "energy"
-        result += loop_conditions(boundary.loop, boundary.start, parameters, closed=energy)
+        closed = boundary.loop.piece == "whole" and (
+            scene.formulation == "energy" or changed_by_sliding(scene)
+        )
+        result += loop_conditions(boundary.loop, boundary.start, parameters, closed=closed)
     else:
         for name in ENDS:
             result += _at_end(name, getattr(boundary, name), parameters)

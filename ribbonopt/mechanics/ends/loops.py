@@ -2,8 +2,8 @@
 
 Whole loop: position and frame return, with d1 and d2 reversed for an odd number k of half twists.
 A loop can slide along itself; n1(0) = 0 in place of one component of the gap removes that (6.2),
-and by symmetry the gap then closes. (Where the energy is minimised sliding does no harm, and all
-of the gap is prescribed.)
+and by symmetry the gap then closes. (Where the energy is minimised sliding does no harm, and where
+a loop is not the same all along, or loaded, nothing slides: all of the gap is prescribed.)
 
 Half: flip symmetry about d1 at the start and, half way, about the same line, along which there is
 d2 (k odd) or d1 (k even); the half loop of section 5 for k = 1.

@@ -45,6 +45,11 @@ def law_class(name: str) -> type[ConstitutiveLaw]:
     return found
 
 
+def always_the_same(law: Law) -> bool:
+    """Whether a law by itself is the same all along the ribbon, and has no natural strains."""
+    return not isinstance(law, OwnLaw) and law_class(law.type).natural is False
+
+
 def numbers_of(law: Law) -> dict[str, float]:
     """Return the numbers of a scene's law by name; of triples, along directors, as B.d1."""
     named: dict[str, Any] = {}

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from itertools import pairwise
 from typing import TYPE_CHECKING, NamedTuple
 
@@ -16,6 +16,9 @@ if TYPE_CHECKING:
     from ribbonopt.scene.formulas.expressions import Node
 
 SAMPLES, BETWEEN = 101, 4  # points looked at, of the interval and of each piece of a table
+PEAKS, CLOSER, ROUNDS, LAST = 5, 9, 20, 6  # largest ones looked at, points of each of its rounds
+STILL = 4  # rounds
+STILL_GROWS = 1.2  # in the last rounds, 4^-6 as wide: at a pole, however weak, not at a maximum
 ROUNDING = 1e-9  # of the interval, by which a table may miss its ends
 
 Interval = tuple[float, float]
@@ -91,12 +94,53 @@ def _of_formula(
         return
     values = [Sample(_value(node, s, parameters), s) for s in _spread(*interval, SAMPLES)]
     odd = next((s for value, s in values if not abs(value) <= LARGEST), None)
+    if odd is None and len({value for value, _ in values}) > 1:
+        found, odd = _between(values, lambda s: _value(node, s, parameters))
+        values += found
     if odd is None:
         samples[path] = values
         return
     start, end = interval
     message = f"has no finite real value at s = {odd:.6g}, expected one from {start:g} to {end:g}"
     yield Problem(path, message, shown(text))
+
+
+def _between(
+    values: Sequence[Sample], value: Callable[[float], float]
+) -> tuple[list[Sample], float | None]:
+    """Look between samples for the least value, and for what is larger than all that was seen.
+
+    Returns
+    -------
+    list of Sample
+        What was found on the way.
+    float or None
+        An arclength where there is no finite value, at which sizes grow without end, if any.
+    """
+    inner = range(len(values))
+    sizes = [abs(sample.value) for sample in values]
+    peaks = [i for i in inner if sizes[i] >= max(sizes[max(i - 1, 0) : i + 2])]
+    peaks = sorted(peaks, key=lambda i: -sizes[i])[:PEAKS]
+    ways = [(i, 1) for i in peaks] + [(min(inner, key=lambda i: values[i].value), -1)]
+    found: list[Sample] = []
+    for i, way in ways:
+        best, largest = values[i], list[float]()
+        a, b = values[max(i - 1, 0)].s, values[min(i + 1, len(values) - 1)].s
+        for _ in range(ROUNDS):
+            tried = [Sample(value(s), s) for s in _spread(a, b, CLOSER)]
+            odd = next((s for number, s in tried if not abs(number) <= LARGEST), None)
+            if odd is not None:
+                return found, odd
+            best = max(best, *tried, key=lambda t: abs(t.value) if way > 0 else -t.value)
+            largest.append(abs(best.value))
+            if len(set(largest[-STILL:])) == 1 < STILL <= len(largest):
+                break  # nothing more comes
+            reach = (b - a) / (CLOSER - 1)
+            a, b = max(best.s - reach, values[0].s), min(best.s + reach, values[-1].s)
+        if way > 0 and len(largest) == ROUNDS and largest[-1] > STILL_GROWS * largest[-1 - LAST]:
+            return found, best.s
+        found.append(best)
+    return found, None
 
 
 def _value(node: Node, s: float, parameters: Mapping[str, float]) -> float:

@@ -26,7 +26,7 @@ def check_stations(scene: Scene, values: Mapping[KeyPath, float]) -> Iterator[Pr
         at = number_at(item.at, (*path, "at"), values)
         if at is None:
             continue
-        if not start < at < end:
+        if not start <= at <= end:
             message = f"is outside the ribbon, whose interval is [{start:g}, {end:g}]"
             yield Problem((*path, "at"), f"{message}; expected an arclength inside", f"{at:g}")
         elif min(at - start, end - at) < near:

@@ -28,7 +28,7 @@ from .expressions import (
     Vector,
     VectorComponent,
 )
-from .words import AXES, CONSTANTS, FUNCTIONS, SIGNS
+from .words import ARCLENGTH, AXES, CONSTANTS, FUNCTIONS, SIGNS
 
 _LONGEST = 500
 _DEEPEST = 50
@@ -162,7 +162,9 @@ class Parser:
         if name in AT_ENDS and self.quantities:
             self._refuse(node, f"{name!r} needs an end: {name}(start) or {name}(end)")
         if name in AT_ENDS and not self.names.keys() & AT_ENDS:
-            self._refuse(node, f"{name!r} is not known here; a value is numbers and parameters")
+            along = ", and s along the ribbon" if ARCLENGTH in self.names else ""
+            message = f"{name!r} is not known here; a value is numbers and parameters{along}"
+            self._refuse(node, message)
         if name in FUNCTIONS:
             self._refuse(node, f"{name!r} is a function; write {name}(...)")
         self._unknown(node, "name", name, [*self.names, *AXES, *CONSTANTS])

@@ -26,17 +26,19 @@ from .annotations import (
     written_keys,
 )
 from .bounds import Bounds
+from .foreign import elsewhere, unmodelled
 
 _KEY_OF_MAPPING = "[key]"
 
 
 class _Place(NamedTuple):
-    """Where an error is: its path, and the annotations of the value and of what holds it."""
+    """Where an error is: its path, the annotations of the value and what holds it, the class."""
 
     path: KeyPath
     annotation: Any
     owner: Any
     union: Any
+    root: type
 
 
 def explain(cls: type, errors: Iterable[ErrorDetails]) -> list[Problem]:
@@ -54,11 +56,12 @@ def explain(cls: type, errors: Iterable[ErrorDetails]) -> list[Problem]:
     for place, error in placed:
         if error["type"] == "unexpected_keyword_argument":
             excused.update((*place.path[:-1], name) for name in _meant(place))
-    return [
+    problems = [
         _problem(place, error)
         for place, error in placed
         if not (error["type"] == "missing" and place.path in excused)
     ]
+    return list(dict.fromkeys(problems))  # a list that is too short lacks each item
 
 
 def _place(cls: type, error: ErrorDetails) -> _Place:
@@ -73,11 +76,11 @@ def _place(cls: type, error: ErrorDetails) -> _Place:
         elif step != _KEY_OF_MAPPING:
             owner, annotation = annotation, inside(annotation, step)
             path = (*path, step)
-    return _Place(path, annotation, owner, union)
+    return _Place(path, annotation, owner, union, cls)
 
 
 def _problem(place: _Place, error: ErrorDetails) -> Problem:
-    path, annotation, owner, union = place
+    path, annotation, owner, union, _ = place
     value, kind = error["input"], error["type"]
     if kind == "invalid_key" or error["loc"][-1:] == (_KEY_OF_MAPPING,):
         return Problem(path, "expected text as the key", shown(value))
@@ -217,6 +220,8 @@ def _unknown_key(place: _Place) -> str:
     key, known = str(place.path[-1]), written_keys(place.owner)
     if _rivals(place):
         return f"cannot stand beside {', '.join(known)}; keep one of the two"
+    if message := unmodelled(key) or elsewhere(key, place.path, place.root):
+        return message
     message = f"unknown key{suggestion(key, known)} (known keys: {', '.join(known)})"
     classes = classes_of(place.union)
     if place.owner in classes.values():
