@@ -8,8 +8,10 @@ import numpy as np
 
 from ribbonopt.mechanics.ends.frames import DIRECTORS, components, frame_of
 from ribbonopt.mechanics.ends.loops import end_turn
+from ribbonopt.mechanics.laws.asymmetry import changed_by_flip
+from ribbonopt.mechanics.laws.catalogue import always_the_same
 from ribbonopt.problem import Posed
-from ribbonopt.scene import Boundary, Loop, Scene
+from ribbonopt.scene import Boundary, Loads, Loop, Scene
 
 CLOSE = 1e-9
 
@@ -56,14 +58,20 @@ def closed_posed(posed: Posed) -> Posed:
 
 
 def fundamental_scene(scene: Scene) -> Scene | None:
-    """Return the fundamental piece of the declared band that a scene is more of, or None."""
+    """Return the fundamental piece of the declared band that a scene is more of, or None.
+
+    It is uniform and nothing acts on it, for symmetry's sake: a band that is not so starts from it.
+    """
     loop = scene.boundary.loop
     if loop is None or loop.piece == "fundamental" or abs(loop.half_twists) < 2:
         return None
     pieces = loop.fundamental.pieces // loop.pieces
     length = (scene.interval[1] - scene.interval[0]) / pieces
     boundary = Boundary(loop=loop.fundamental)
-    return replace(scene, boundary=boundary, interval=(0.0, length), guess="auto")
+    piece = replace(scene, boundary=boundary, interval=(0.0, length), guess="auto")
+    piece = replace(piece, loads=Loads(), gravity=None, supports=(), natural=None, width=None)
+    own = always_the_same(scene.law) or not changed_by_flip(piece, Posed.of(piece).theta)
+    return piece if own else None
 
 
 def _ends_across(

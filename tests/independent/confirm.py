@@ -195,7 +195,7 @@ def switched(
 ) -> tuple[float, str]:
     """T where the sheet changes, which is zero there."""
     i = int(np.abs(phases - s).argmin())
-    if kinds[i - 1] == kinds[i]:
+    if kinds[i - 1] == kinds[i] or EITHER in kinds[i - 1 : i + 1]:
         return 0.0, ""  # a station
     T = strip.turn(y, np.full(7, s)) / moment
     growth = max(1.0, float(np.abs(T[1:] - T[0]).max() / OFF))

@@ -23,7 +23,8 @@ def conditions_of(scene: Scene) -> tuple[Condition, ...]:
         from .loops import loop_conditions  # only where a scene has one
 
         closed = boundary.loop.piece == "whole" and (
-            scene.formulation == "energy" or changed_by_sliding(scene)
+            scene.formulation == "energy"
+            or changed_by_sliding(scene, odd=boundary.loop.half_twists % 2 == 1)
         )
         result += loop_conditions(boundary.loop, boundary.start, parameters, closed=closed)
     else:

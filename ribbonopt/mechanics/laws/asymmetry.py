@@ -57,14 +57,14 @@ def changed_by_flip(scene: Scene, theta: Mapping[str, float]) -> str:
     return ""
 
 
-def changed_by_sliding(scene: Scene) -> bool:
+def changed_by_sliding(scene: Scene, odd: bool) -> bool:
     """Whether a whole loop that has slid along itself is another ribbon, or otherwise loaded.
 
-    Its law or width varies along it, or is another behind an odd number of half twists, which
-    reverse d1 and d2; or something acts on it but a uniform pressure that they do not reverse.
+    Its law or width varies along it, or is another behind an odd number of half twists (`odd`),
+    which reverse d1 and d2; or something acts on it but a uniform pressure that they do not
+    reverse.
     """
-    loads, loop, (start, end) = scene.loads, scene.boundary.loop, scene.interval
-    odd = loop is not None and loop.half_twists % 2 == 1
+    loads, (start, end) = scene.loads, scene.interval
     if scene.gravity is not None or scene.supports or loads.points or loads.own:
         return True
     if loads.force is not None or loads.couple is not None:

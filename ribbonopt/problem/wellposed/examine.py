@@ -140,6 +140,10 @@ def refuse_unreachable(posed: Posed) -> None:
             "turn d3 along it",
             status="unreachable",
         )
+    if scene.supports:
+        from .between import refuse_taut  # few scenes have any
+
+        refuse_taut(scene)
 
 
 def refuse_idle_settings(posed: Posed, ribbon: Ribbon, problem: BoundaryValueProblem) -> None:

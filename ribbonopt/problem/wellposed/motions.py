@@ -15,6 +15,7 @@ from __future__ import annotations
 import numpy as np
 
 from ribbonopt.arrays import Array
+from ribbonopt.mechanics.laws.asymmetry import changed_by_sliding
 from ribbonopt.mechanics.rotations import matrix_of, product
 
 from .linearized import Linearized
@@ -39,7 +40,8 @@ def refuse_motions(conditions: Linearized, *, sliding: bool) -> None:
         motions = rigid(conditions, z) @ allowed
         free = allowed @ unopposed(conditions, z, motions)
         slides = False
-        if sliding and not free.size and not loaded and one_sided(conditions, z):
+        may = sliding and not free.size and not loaded and one_sided(conditions, z)
+        if may and not changed_by_sliding(conditions.posed.scene, odd=True):
             # Where the start is held, a rigid motion takes it back to its place.
             motions = np.hstack([motions, along_itself(conditions, z)])
             slides = unopposed(conditions, z, motions).size > 0
