@@ -18,6 +18,8 @@ def test_every_numeric_field_is_attacked() -> None:
     paths = {".".join(field.path) for field in numeric_fields(Scene)}
     assert {"law.epsilon", "interval.1", "parameters.a", "ribbon.thickness", "starts"} <= paths
     assert {"boundary.loop.half_twists", "continuation.0.values.0", "guess.helix.turns"} <= paths
+    assert {"loads.force.x", "loads.points.0.at", "supports.0.position.y", "gravity.2"} <= paths
+    assert {"natural.curvature", "width.values.0", "law.B.1", "ribbon.density"} <= paths
     assert len(paths) > 150
 
 
