@@ -19,6 +19,7 @@ from ribbonopt.arrays import Array
 from ribbonopt.checks.arcs import NEGLIGIBLE
 from ribbonopt.checks.phase_words import phase_words, switch_of
 from ribbonopt.mechanics.outputs import SLOPE, sheet_slopes
+from ribbonopt.problem.pieces import stations_among
 from ribbonopt.solution.solution import Solution
 
 EMPTY = 1e-6  # of the length: at its ends the switch of such a phase says no more than that
@@ -56,6 +57,7 @@ def margins(solution: Solution) -> dict[Change, float]:
     """Return the margins of a solution in phases, relative to its largest moment or its length."""
     kinds, found = solution.sheets, {}
     last, lengths = len(kinds) - 1, np.diff(solution.trajectory.ends)
+    stations = stations_among(kinds, len(solution.posed.stations))
     for i, kind in enumerate(kinds):
         if last and _may_go(kinds, i):
             ends = {0: What.GONE_AT_START, last: What.GONE_AT_END}
@@ -71,7 +73,7 @@ def margins(solution: Solution) -> dict[Change, float]:
         lowest = [value for _, value in minima(solution, i, sigma, value)]
         if lowest:
             found[Change(What.BORN_INSIDE, i)] = min(lowest)
-        if i < last and kinds[i + 1]:
+        if i < last and kinds[i + 1] and i + 1 not in stations:
             found[Change(What.BORN_BETWEEN, i)] = kinds[i + 1] * _slope_at_end(solution, i)
     return found
 
@@ -173,7 +175,8 @@ def orientation(kinds: tuple[int, ...]) -> float:
     sides of the law takes the place of a condition of either sign.
     """
     pairs = pairwise(kinds)
-    sign = float(np.prod([after for before, after in pairs if before and after]))
+    switches = ((a, b) for a, b in pairs if a and b and a != b)  # two of one kind meet at stations
+    sign = float(np.prod([after for _, after in switches]))
     around = zip(kinds[:-2], kinds[1:-1], kinds[2:], strict=True)
     return sign * float(np.prod([a * b for a, mixture, b in around if not mixture]))
 
