@@ -101,6 +101,10 @@ class DeadLoad(Load):
 
 def line_of(samples: Array) -> Line:
     """Return the direction (3,) that vectors (k, 3) share, zero if all vanish; None if none."""
+    if len(samples) == 1:
+        (only,) = samples
+        size = float(np.sqrt(only @ only))
+        return np.asarray(only / size) if size > 0 else np.zeros(3)
     _, singular, right = np.linalg.svd(samples)
     if not singular.any():
         return np.zeros(3)
