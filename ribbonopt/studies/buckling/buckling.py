@@ -13,14 +13,17 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from functools import cached_property
 
+import casadi as ca
 import numpy as np
 
 from ribbonopt.arrays import Array
 from ribbonopt.checks.zero_moment import SHORTEST, share_without_moment, unbent_share
 from ribbonopt.errors import ModelError, SceneError
+from ribbonopt.mechanics.laws.catalogue import relation_of
+from ribbonopt.mechanics.laws.law import ConstitutiveLaw
 from ribbonopt.pipeline.prepared import Prepared, prepare
 from ribbonopt.problem import Posed, Ribbon, formulate
-from ribbonopt.scene import Scene
+from ribbonopt.scene import Scene, Variational
 from ribbonopt.scene.lens import value_at, with_value
 from ribbonopt.solution.solution import Solution
 
@@ -28,11 +31,12 @@ from .found import Buckling
 from .infinitesimal import Deflected
 from .mode import Mode
 from .modes import Search
-from .rod import RodBuckling, pure_stiffnesses
+from .rod import RodBuckling, pure_compliances
 from .twin import has_twin, twin_of, twin_scene
 
 AFFINE = 1e-10  # of the straight state's numbers: how far from affine in the load they may be
 NEARER = 1e-3  # of the distance of two loads that an affine line is drawn through, the next time
+SMOOTH = 0.03  # delta of the smooth law that stands for one with a kink
 SETTLED = 1e-11  # change of the load, relative to the range, that ends this
 TURNS = 8
 
@@ -108,9 +112,9 @@ class _States:
             return None
         if a is None or b is None:
             return None
-        stiffnesses = pure_stiffnesses(self.ribbon, self.least(low).values)
-        rod = RodBuckling(Deflected(self.ribbon), stiffnesses, a, b)
-        search, result = Search(rod), []
+        compliances = pure_compliances(self.ribbon, self.least(low).values)
+        rod = RodBuckling(Deflected(self.ribbon), compliances, a, b)
+        search, result = Search(rod, self.smooth), []
         for load, start in rod.loads():
             mode = search.mode(load, start)
             found = None if mode is None else self.settled(search, mode, low, high)
@@ -133,7 +137,7 @@ class _States:
             a, b = self.at(low), self.at(high)
             if a is None or b is None:
                 return None
-            search = Search(replace(search.rod, a=a, b=b))
+            search = replace(search, rod=replace(search.rod, a=a, b=b))
             again = search.moved(mode, taken)
             if again is None:
                 return None
@@ -157,7 +161,28 @@ class _States:
         least = self.least(value)
         ends = found.fields(np.array([0.0, 1.0]))
         x, c = self.ribbon.model.pack(ends, least.start[0])
+        reactions = self.reactions(found)
+        for i, name in enumerate(self.ribbon.constants):
+            c[i] = reactions.get(name, c[i])
         return np.concatenate([x[0], c, least.values])
+
+    def reactions(self, solution: Solution) -> dict[str, float]:
+        """Unknown constants of the stations of a solution, by name."""
+        problem, dense = solution.problem, solution.dense
+        known = dict(zip(problem.constant_names, dense.constants, strict=False))
+        for name, value in zip(problem.parameter_names, dense.theta, strict=True):
+            known[name.removeprefix("recovered.")] = float(value)
+        return {name: known[name] for st in self.ribbon.stations for name in st.unknown}
+
+    @cached_property
+    def smooth(self) -> ConstitutiveLaw:
+        """The law of the ribbon, or a smooth one that stands for one with a kink."""
+        if not self.ribbon.law.kinked:
+            return self.ribbon.law
+        scene = self.least(value_at(self.straight.scene, self.parameter)).scene
+        theta = {**self.ribbon.theta, "law.delta": ca.SX(SMOOTH)}
+        scene = replace(scene, law=Variational(delta=SMOOTH))
+        return relation_of(scene, theta.__getitem__, self.ribbon.position)
 
     @cached_property
     def _rod(self) -> Prepared | None:
