@@ -17,6 +17,7 @@ from ribbonopt.guess import Guess
 from ribbonopt.guess.balanced import Balanced
 from ribbonopt.guess.named import ShapeGuess
 from ribbonopt.problem import Ribbon
+from ribbonopt.problem.imposed import margins_function
 from ribbonopt.scene import Scene
 from ribbonopt.solution.solution import Solution
 from ribbonopt.transcription.buffered import Mapped
@@ -247,7 +248,7 @@ def phase_problems(
 
 def _margins(ribbon: Ribbon) -> dict[int, tuple[tuple[str, ...], int, Mapped]]:
     """Names of the margins of every kind of phase, how many are none of zeros, and all values."""
-    found = {kind: ribbon.margins_function(kind) for kind in (-1, 0, 1)}
+    found = {kind: margins_function(ribbon, kind) for kind in (-1, 0, 1)}
     return {
         kind: (names, count, Mapped(function)) for kind, (names, count, function) in found.items()
     }

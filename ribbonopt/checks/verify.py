@@ -15,6 +15,7 @@ from ribbonopt.accuracy.estimate import SAFETY, Analysis, analyse
 from ribbonopt.accuracy.gaps import LEAST
 from ribbonopt.arrays import Array
 from ribbonopt.problem import Ribbon
+from ribbonopt.problem.imposed import verdicts_function
 from ribbonopt.solution.solution import Solution
 from ribbonopt.solution.verification import NO_LENGTH, Verification, unverified
 from ribbonopt.transcription.buffered import Buffered
@@ -153,7 +154,7 @@ def _worst_condition(solution: Solution, ribbon: Ribbon) -> tuple[str, float]:
 
 def _verdicts(ribbon: Ribbon) -> tuple[tuple[str, ...], Buffered]:
     """Names of what to verify, and their values on numpy arrays."""
-    names, function = ribbon.verdicts_function
+    names, function = verdicts_function(ribbon)
     return names, Buffered(function)
 
 

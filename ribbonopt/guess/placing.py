@@ -11,6 +11,7 @@ from ribbonopt.mechanics.ends.conditions import Component, Direction, EndName, F
 from ribbonopt.mechanics.rotations import matrix_of, turns_about
 from ribbonopt.mechanics.section import RodFields
 from ribbonopt.problem import Posed, Ribbon
+from ribbonopt.problem.imposed import residuals
 from ribbonopt.problem.posed import Place
 
 KINEMATIC = 7  # states of position and unit quaternion, before all others
@@ -53,7 +54,7 @@ def _met(ribbon: Ribbon, theta: Array, fields: RodFields) -> tuple[Place, Place]
     x = ca.SX.sym("x", 2 * count)
     ends = ca.vertcat(x[:count], rest), ca.vertcat(x[count:], rest)
     constants = ca.SX.zeros(len(least.constants))
-    named = least.residuals(*ends, constants, kinematic_only=True)
+    named = residuals(least, *ends, constants, kinematic_only=True)
     end_unit = ca.sumsqr(x[count + 3 :]) - 1
     residual = ca.vertcat(*named.values(), end_unit)
     inputs = [x, ca.vertcat(*ribbon.theta.values())]

@@ -30,6 +30,7 @@ from ribbonopt.mechanics.rotations import product
 from .contract import BoundaryValueProblem, Phase
 from .equilibrium import local_stress
 from .held import held_between
+from .imposed import residuals
 from .posed import RECOVERED, Posed
 from .ribbon import Ribbon
 
@@ -78,7 +79,7 @@ def minimum(ribbon: Ribbon) -> BoundaryValueProblem:
     costate = ca.SX.sym("costate", x.numel())
     at_start = ca.substitute(beyond, ribbon.position, start)
     first, last = (point[:count] for point in points)
-    conditions = ribbon.residuals(first, last, loads, kinematic_only=True)
+    conditions = residuals(ribbon, first, last, loads, kinematic_only=True)
     conditions |= held.conditions(*points)
     found = (
         *_loads(points[0], costate, at_start + held.force(costate), ribbon),

@@ -12,6 +12,7 @@ from ribbonopt.mechanics.laws.law import ConstitutiveLaw, Stress
 from ribbonopt.mechanics.outputs import outputs, singular
 
 from .contract import BoundaryValueProblem, Phase
+from .imposed import residuals
 from .pieces import between_stations
 from .ribbon import Ribbon
 
@@ -107,7 +108,7 @@ def equilibrium(
     points = ca.SX.sym("start", x.numel()), *inner, ca.SX.sym("end", x.numel())
     count = unknowns.x.numel()
     first, *between, last = (point[:count] for point in points)
-    conditions = ribbon.residuals(first, last, unknowns.c, between)
+    conditions = residuals(ribbon, first, last, unknowns.c, between)
     for name, expression in (start_conditions or {}).items():
         passed = unknowns.marked.passed
         here = [x, ribbon.position, passed], [points[0], start, ca.SX.zeros(passed.shape)]

@@ -6,14 +6,14 @@ the same structure is another theta, not another problem.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Mapping
 from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import casadi as ca
 
-from ribbonopt.mechanics.ends.conditions import Condition, Context, CrossSection, EndName
+from ribbonopt.mechanics.ends.conditions import Condition, CrossSection
 from ribbonopt.mechanics.laws.catalogue import relation_of
 from ribbonopt.mechanics.laws.law import ConstitutiveLaw, Stress
 from ribbonopt.mechanics.loads.load import Load
@@ -173,90 +173,6 @@ class Ribbon:
         model = self.model.rates(section.x, section.rod, u)
         return ca.vertcat(model, self.law.rates(section.rod.stress, u))
 
-    def residuals(
-        self,
-        start: ca.SX,
-        end: ca.SX,
-        c: ca.SX,
-        inner: Sequence[ca.SX] = (),
-        *,
-        kinematic_only: bool = False,
-    ) -> dict[str, ca.SX]:
-        """All conditions by name, those that give states of model and law their meaning included.
-
-        `inner` are the states at the stations, if what acts and holds there is to be imposed;
-        `kinematic_only` leaves out what is prescribed of loads.
-        """
-        context = self.context(start, end, c)
-        sections = context.ends
-        own = self.model.start_conditions(sections["start"].x)
-        meaning = {f"start: {name}": value for name, value in own.items()}
-        laws = [self._of_law(name, section) for name, section in sections.items()]
-        chosen = [c for c in self.conditions if c.kinematic or not kinematic_only]
-        at_stations = self._at_stations(inner, c)
-        ends = (condition.residuals(context) for condition in chosen)
-        found = _merge(meaning, *laws, *at_stations, *ends)
-        return {name: value for name, value in found.items() if name not in self.idle}
-
-    def _of_law(self, end: EndName, section: CrossSection) -> dict[str, ca.SX]:
-        """Return the law's own conditions at an end, by name."""
-        rod = section.rod
-        found = self.law.end_conditions(end, rod.stress).items()
-        return {f"{end}: {name}": ca.substitute(v, self.position, rod.s) for name, v in found}
-
-    def _at_stations(self, inner: Sequence[ca.SX], c: ca.SX) -> list[dict[str, ca.SX]]:
-        """Return the conditions at the stations, whose states are given."""
-        theta, found = self.theta.__getitem__, []
-        unknown = dict(zip(self.constants, ca.vertsplit(c), strict=True)) if inner else {}
-
-        def symbol(name: str) -> ca.SX:
-            return unknown.get(name, ca.SX(0))  # in a plane some of it is not there
-
-        for x, station in zip(inner, self.stations if inner else (), strict=True):
-            rod = self.section(x, c, station.place(theta)).rod
-            found += [action.residuals(rod, theta, symbol) for action in station.actions]
-        return found
-
-    def verdicts(
-        self, start: ca.SX, end: ca.SX, c: ca.SX, inner: Sequence[ca.SX] = ()
-    ) -> dict[str, ca.SX]:
-        """Return what to verify on a solution, by name; `inner` as in `residuals`."""
-        context = self.context(start, end, c)
-        ends = (condition.verdicts(context) for condition in self.conditions)
-        return _merge(*ends, *self._at_stations(inner, c))
-
-    @cached_property
-    def verdicts_function(self) -> tuple[tuple[str, ...], ca.Function]:
-        """Names, and function (start, end, c, theta, states at stations) of what to verify."""
-        start, end = (ca.SX.sym(name, len(self.states)) for name in ("start", "end"))
-        inner = ca.SX.sym("inner", len(self.states), len(self.stations))
-        c = ca.SX.sym("c", len(self.constants))
-        verdicts = self.verdicts(start, end, c, ca.horzsplit(inner) if self.stations else ())
-        inputs = [start, end, c, self.parameters]
-        inputs += [ca.vec(inner)] if self.stations else []
-        return tuple(verdicts), ca.Function("verdicts", inputs, [ca.vertcat(*verdicts.values())])
-
-    def margins_function(self, kind: int) -> tuple[tuple[str, ...], int, ca.Function]:
-        """Names, how many are margins, and function (x, c, theta, s) along a phase of a kind.
-
-        Its values (k,) are the margins of the law, then minus the sizes of what must be zero.
-        """
-        x, c = ca.SX.sym("x", len(self.states)), ca.SX.sym("c", len(self.constants))
-        stress = self.section(x, c).rod.stress
-        margins = self.law.margins(kind, stress, self.law.branch(kind).strain(stress))
-        zeros = self.law.zeros(kind, stress)
-        values = *margins.values(), *(-ca.fabs(value) for value in zeros.values())
-        inputs = [x, c, self.parameters, self.position]
-        function = ca.Function("margins", inputs, [ca.densify(ca.vertcat(*values))])
-        return (*margins, *zeros), len(margins), function
-
-    def context(self, start: ca.SX, end: ca.SX, c: ca.SX) -> Context:
-        """Both ends, for conditions."""
-        names: tuple[EndName, EndName] = ("start", "end")
-        states = zip(names, (start, end), self.interval, strict=True)
-        sections = {name: self.section(x, c, s) for name, x, s in states}
-        return Context(sections, self.theta.__getitem__)
-
 
 def _model_of(posed: Posed, theta: Mapping[str, ca.SX]) -> RodModel:
     """Return the model that a scene names by `states`."""
@@ -267,15 +183,3 @@ def _model_of(posed: Posed, theta: Mapping[str, ca.SX]) -> RodModel:
 
         return planar_model(*parts, Plane.of(posed.start[1]), stations)
     return full_model(*parts, stations) if states == "full" else least_model(*parts, stations)
-
-
-def _merge(*parts: Mapping[str, ca.SX]) -> dict[str, ca.SX]:
-    """Join named expressions; a name that returns is numbered, so that none is lost."""
-    result: dict[str, ca.SX] = {}
-    for part in parts:
-        for name, value in part.items():
-            key, count = name, 2
-            while key in result:
-                key, count = f"{name} ({count})", count + 1
-            result[key] = value
-    return result

@@ -17,6 +17,7 @@ from ribbonopt.mechanics.outputs import outputs, singular
 
 from .contract import BoundaryValueProblem, Phase
 from .equilibrium import Unknowns
+from .imposed import residuals
 from .pieces import passing, stations_among
 from .ribbon import Ribbon
 
@@ -47,7 +48,7 @@ def switched(ribbon: Ribbon, kinds: Kinds, *, free: bool = False) -> BoundaryVal
     )
     points = tuple(ca.SX.sym(f"point{i}", unknowns.x.numel()) for i in range(len(kinds) + 1))
     between = [points[i] for i in stations]
-    conditions = ribbon.residuals(points[0], points[-1], unknowns.c, between)
+    conditions = residuals(ribbon, points[0], points[-1], unknowns.c, between)
     # A law knows nothing of stations: to it phases of one kind that meet there are one.
     merged = tuple(kind for i, kind in enumerate(kinds) if i not in stations or i in _turns(kinds))
     at, met = start, 0

@@ -14,6 +14,7 @@ import numpy as np
 
 from ribbonopt.arrays import Array
 from ribbonopt.mechanics.section import RodFields
+from ribbonopt.problem.imposed import residuals
 from ribbonopt.problem.posed import Posed
 from ribbonopt.problem.ribbon import Ribbon
 
@@ -101,14 +102,14 @@ class Linearized:
         scale = self.scales(z)
         count, model = len(self.names), self.ribbon.model
         more = len(model.defect(self.parts(z)[1])[0])
-        residuals, jacobian = np.empty(count + more), np.zeros((count + more, len(z)))
+        off, jacobian = np.empty(count + more), np.zeros((count + more, len(z)))
         last = slice(self.nx, self.nx + len(model.states))
         for _ in range(STEPS):
-            residuals[:count], jacobian[:count] = self.at(z)
-            residuals[count:], jacobian[count:, last] = model.defect(z[last])
+            off[:count], jacobian[:count] = self.at(z)
+            off[count:], jacobian[count:, last] = model.defect(z[last])
             scaled = jacobian * scale
             rows = np.sqrt(np.einsum("ij,ij->i", scaled, scaled))
-            relative = residuals / np.where(rows > 0, rows, np.nan)
+            relative = off / np.where(rows > 0, rows, np.nan)
             worst = np.abs(relative).max()
             if not np.isfinite(worst):
                 return None
@@ -139,7 +140,7 @@ def linearize(ribbon: Ribbon, posed: Posed) -> Linearized:
     nx, count = len(least.states), 2 + len(least.stations)
     z = ca.SX.sym("z", count * nx + len(least.constants))
     start, end, *inner = ca.vertsplit(z[: count * nx], nx)
-    named = least.residuals(start, end, z[count * nx :], inner)
+    named = residuals(least, start, end, z[count * nx :], inner)
     conditions = ca.vertcat(*named.values())
     both = ca.densify(ca.horzcat(conditions, ca.jacobian(conditions, z)))
     function = ca.Function("conditions", [z, ribbon.parameters], [both])

@@ -24,6 +24,7 @@ import casadi as ca
 
 from ribbonopt.mechanics.laws.law import Stress
 from ribbonopt.problem import Ribbon
+from ribbonopt.problem.imposed import residuals
 
 Strain = Callable[[Stress], ca.SX]
 
@@ -104,8 +105,8 @@ class Deflected:
         here = ca.vertcat(*(point[:nx] for point in points), c)
         straight = [points[0][i] - x0[i] for i in range(nx)]
         found = {f"start of the straight state, {i + 1}": v for i, v in enumerate(straight)}
-        residuals = self.ribbon.residuals(at[0], at[-1], constants, at[1:-1])
-        for name, value in residuals.items():
+        imposed = residuals(self.ribbon, at[0], at[-1], constants, at[1:-1])
+        for name, value in imposed.items():
             linear = ca.jtimes(value, of, change)
             known = [of, self.ribbon.parameters], [here, theta]
             (found[name],) = ca.substitute([linear], *known)

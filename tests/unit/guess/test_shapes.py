@@ -19,6 +19,7 @@ from ribbonopt.guess.shapes import Chord, Helical, Perturbed, Shape, TwistedCirc
 from ribbonopt.mechanics.section import RodFields
 from ribbonopt.pipeline.prepared import solve
 from ribbonopt.problem import Posed, Ribbon
+from ribbonopt.problem.imposed import context
 from ribbonopt.scene import (
     AnyVector,
     ArcGuess,
@@ -321,9 +322,9 @@ def worst(this: Scene, r: Array, frames: Array) -> float:
     zero = np.zeros((2, 3))
     x, _ = ribbon.model.pack(RodFields(r, frames, zero, zero), np.zeros(3))
     a, b = ca.SX.sym("a", 7), ca.SX.sym("b", 7)
-    context = ribbon.context(a, b, ca.SX.zeros(6))
+    ends = context(ribbon, a, b, ca.SX.zeros(6))
     verdicts = [
-        value for c in ribbon.conditions if c.kinematic for value in c.verdicts(context).values()
+        value for c in ribbon.conditions if c.kinematic for value in c.verdicts(ends).values()
     ]
     inputs = [a, b, ca.vertcat(*ribbon.theta.values())]
     function = ca.Function("verdicts", inputs, [ca.vertcat(*verdicts)])

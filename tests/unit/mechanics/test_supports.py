@@ -20,6 +20,7 @@ from ribbonopt.mechanics.ends.placement import LoadAlong, OnLine
 from ribbonopt.mechanics.section import RodFields
 from ribbonopt.pipeline.prepared import solve
 from ribbonopt.problem import Posed, Ribbon
+from ribbonopt.problem.imposed import residuals, verdicts
 from ribbonopt.scene import (
     AnyVector,
     Boundary,
@@ -156,13 +157,13 @@ def functions(support: SupportName, at: int, seed: int, states: str) -> tuple[An
     ribbon = Ribbon.of(posed)
     size, constants = len(ribbon.model.states), len(ribbon.model.constants)
     start, end, c = (ca.SX.sym(name, k) for name, k in (("a", size), ("b", size), ("c", constants)))
-    named = ribbon.residuals(start, end, c)
-    kinematic = ribbon.residuals(start, end, c, kinematic_only=True)
+    named = residuals(ribbon, start, end, c)
+    kinematic = residuals(ribbon, start, end, c, kinematic_only=True)
     names = [name for name in named if not name.startswith("start: ")]
     values = ca.vertcat(*(named[name] for name in names))
-    verdicts = ca.vertcat(*ribbon.verdicts(start, end, c).values())
+    judged = ca.vertcat(*verdicts(ribbon, start, end, c).values())
     theta = ca.vertcat(*ribbon.theta.values())
-    function = ca.Function("residuals", [start, end, c, theta], [values, verdicts])
+    function = ca.Function("residuals", [start, end, c, theta], [values, judged])
     numbers = posed.values
     reference = posed.start[0]
 
