@@ -35,7 +35,7 @@ def finished(
     found, note, prepared = trial.solution, "", equations.prepared
     tolerance = found.scene.tolerance
     search = prepared.search(found.posed)
-    if not found.sheets and search.phases_help and search.changes_sign(found):
+    if not found.sheets and search.phases_help and search.better_in_phases(found):
         found = prepared.solve(found.posed, guess=found, fallback=False)
     elif equations.unbent(found):  # no error can be told of it
         found = verified(found, prepared.ribbon)
