@@ -123,9 +123,13 @@ def null_direction(equations: Equations[S], point: Point[S]) -> Array:
             found, _ = near(equations, solution, unknowns, ahead)
         except np.linalg.LinAlgError:  # singular to the last digit
             continue
-        # Singular to rounding, or nearly: what any side gives is the null direction.
-        direction = found.kernel()
-        break
+        # Singular to rounding, or nearly: what any side gives is the null direction, times so much
+        # that its square may be no number.
+        kernel = found.kernel()
+        largest = float(np.abs(kernel).max())
+        if np.isfinite(largest):
+            direction = kernel / largest
+            break
     direction = (
         direction
         - metric.product(equations.reduced(point.solution, direction), ahead) * point.tangent
