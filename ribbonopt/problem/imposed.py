@@ -10,6 +10,8 @@ from collections.abc import Mapping, Sequence
 import casadi as ca
 
 from ribbonopt.mechanics.ends.conditions import Context, CrossSection, EndName
+from ribbonopt.mechanics.laws.law import Stress
+from ribbonopt.mechanics.section import Section
 
 from .ribbon import Ribbon
 
@@ -75,13 +77,26 @@ def margins_function(ribbon: Ribbon, kind: int) -> tuple[tuple[str, ...], int, c
     Its values (k,) are the margins of the law, then minus the sizes of what must be zero.
     """
     x, c = ca.SX.sym("x", len(ribbon.states)), ca.SX.sym("c", len(ribbon.constants))
-    stress = ribbon.section(x, c).rod.stress
+    stress = loaded_stress(ribbon, ribbon.section(x, c).rod)
     margins = ribbon.law.margins(kind, stress, ribbon.law.branch(kind).strain(stress))
     zeros = ribbon.law.zeros(kind, stress)
     values = *margins.values(), *(-ca.fabs(value) for value in zeros.values())
     inputs = [x, c, ribbon.parameters, ribbon.position]
     function = ca.Function("margins", inputs, [ca.densify(ca.vertcat(*values))])
     return (*margins, *zeros), len(margins), function
+
+
+def loaded_stress(ribbon: Ribbon, rod: Section) -> Stress:
+    """Return what a law may read of a section, loads too, which move what mixtures keep."""
+    if not ribbon.loads:
+        return rod.stress
+    theta = ribbon.theta.__getitem__
+    force = sum((load.force(rod, theta) for load in ribbon.loads), ca.SX.zeros(3))
+    couple = sum((load.couple(rod, theta) for load in ribbon.loads), ca.SX.zeros(3))
+    # c2 changes as the couple does, beside what the director's turning changes.
+    varying = ca.dot(ca.jacobian(couple, ribbon.position), rod.d2)
+    load = rod.along(force) - ca.vertcat(varying, 0, 0)
+    return rod.stress._replace(load=load, couple=rod.along(couple))
 
 
 def context(ribbon: Ribbon, start: ca.SX, end: ca.SX, c: ca.SX) -> Context:

@@ -17,7 +17,7 @@ from ribbonopt.mechanics.outputs import outputs, singular
 
 from .contract import BoundaryValueProblem, Phase
 from .equilibrium import Unknowns
-from .imposed import residuals
+from .imposed import loaded_stress, residuals
 from .pieces import passing, stations_among
 from .ribbon import Ribbon
 
@@ -37,6 +37,7 @@ def switched(ribbon: Ribbon, kinds: Kinds, *, free: bool = False) -> BoundaryVal
     """
     stations = stations_among(kinds, len(ribbon.stations))
     unknowns = Unknowns.of(ribbon)
+    unknowns = replace(unknowns, stress=loaded_stress(ribbon, unknowns.section.rod))
     start, end = ribbon.interval
     lengths = ca.SX.sym("length", len(kinds) - 1)
     each = [*ca.vertsplit(lengths), end - start - ca.sum1(lengths)]

@@ -20,11 +20,17 @@ from .implicit import ImplicitLaw
 
 
 class Stress(NamedTuple):
-    """What a law may read of a section: n, m (3,) along the directors, and its own states."""
+    """What a law may read of a section: n, m (3,) along the directors, and its own states.
+
+    Where a phase may be a mixture also force and couple (3,) per length along the directors, None
+    without loads: they move n1 and m2, which it keeps.
+    """
 
     n: ca.SX
     m: ca.SX
     own: ca.SX
+    load: ca.SX | None = None
+    couple: ca.SX | None = None
 
     @classmethod
     def of_moment(cls, m: ca.SX) -> Stress:

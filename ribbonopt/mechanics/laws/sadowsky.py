@@ -131,7 +131,9 @@ class SingleSheetLaw(RibbonLaw):
 
 
 class MixtureLaw(ConstitutiveLaw):
-    """Arcs of both sheets, epsilon = 0: m2 = 0, u3 = m3 / 4, u2 = 2 n2 u3 / K.
+    """Arcs of both sheets, epsilon = 0: m2 = 0, u3 = m3 / 4, u2 = (2 n2 u3 - f1) / K.
+
+    Under a couple c per length n1 + c2 + m1 u3 is what is kept, and u2 has - 2 u3 c1 - m1 c3 / 4.
 
     The strain u2 keeps m2 at zero along the arc; no moment gives it. With a term in m2 (zero along
     the arc) it keeps n1 + m1 u3 where it is even off the arc, so that m2 is linear in s there and
@@ -141,6 +143,10 @@ class MixtureLaw(ConstitutiveLaw):
     def strain(self, stress: Stress) -> ca.SX:
         u3 = stress.m[2] / 4
         turning = (2 * stress.n[1] + u3 * stress.m[1]) * u3
+        if stress.load is not None:
+            turning -= stress.load[0]
+        if stress.couple is not None:
+            turning -= 2 * u3 * stress.couple[0] + stress.m[0] * stress.couple[2] / 4
         return ca.vertcat(0, turning / mixture_stiffness(stress), u3)
 
     def moment(self, u: ca.SX) -> ca.SX:
@@ -157,7 +163,9 @@ class MixtureLaw(ConstitutiveLaw):
 
 
 def mixture_drift(stress: Stress) -> ca.SX:
-    """Minus the rate of m2 along a mixture: n1 + m1 u3, a constant, zero where it is one."""
+    """Minus the rate of m2 along a mixture: n1 + c2 + m1 u3, a constant, zero where it is one."""
+    if stress.couple is not None:
+        return mixture_drift(stress._replace(couple=None)) + stress.couple[1]
     return stress.n[0] + stress.m[0] * stress.m[2] / 4
 
 

@@ -107,10 +107,11 @@ class TaperedLaw(ConstitutiveLaw):
 
     def _unit(self, stress: Stress) -> Stress:
         """Return the stress of the unit width that gives these strains."""
-        n, m, own = stress
+        n, m, own, *loads = stress
         if self.mixture:
             n = ca.vertcat(n[0], n[1] - m[0] * self.slope / (2 * self.width), n[2])
-        return Stress(n / self.width, m / self.width, own)
+        load, couple = (None if of is None else of / self.width for of in loads)
+        return Stress(n / self.width, m / self.width, own, load, couple)
 
     def _times(self, density: ca.SX | None) -> ca.SX | None:
         return None if density is None else self.width * density
