@@ -13,15 +13,15 @@ from ribbonopt.solution.solution import Solution
 from .arcs import NEGLIGIBLE, ROUNDED
 
 
-def ends_beyond_switch(solution: Solution) -> bool:
-    """Whether at an end of the ribbon rounding takes the law to the side where the ribbon is not.
+def ends_on_switch(solution: Solution) -> bool:
+    """Whether at an end of the ribbon, to rounding, the law's switch is zero and strains leap.
 
-    There its switch is zero, to rounding, and its strains leap.
+    At the start, whose strains are told with a bar; at the end only where rounding takes the law to
+    the side where the ribbon is not.
     """
     nodes, stages = solution.at_nodes, solution.at_stages
     scale = float(np.abs(stages["m"]).max())
-    value, leap, beside = (
-        v[[0, -1]] for v in (nodes["switching"], nodes["leap"], stages["switching"])
-    )
+    value, beside = (v[[0, -1]] for v in (nodes["switching"], stages["switching"]))
     zero = (np.abs(value) <= ROUNDED * scale) & (np.abs(beside) > NEGLIGIBLE * scale)
-    return bool((zero & (leap > NEGLIGIBLE * scale) & (value * np.sign(beside) <= 0)).any())
+    counts = np.array([True, value[1] * np.sign(beside[1]) <= 0])
+    return bool((zero & (nodes["leap"][[0, -1]] > NEGLIGIBLE * scale) & counts).any())

@@ -1,0 +1,226 @@
+"""Buckling under loads along a ribbon and at single places: columns, strips on edge.
+
+Truth: zeros of Bessel functions, and the linearised equations written out here, by DOP853. A strip
+along z bears f(s) = -m1 of loads along its width y; an infinitesimal deflection with the turn w3
+about its axis has m2 = f w3, w3' = u3*, m3' = -f u2*, without moment where nothing acts beyond.
+"""
+
+import itertools
+from collections.abc import Callable
+from typing import Any
+
+import mpmath as mp
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+from scipy.optimize import brentq
+
+from ribbonopt.checks.stability import negative_directions
+from ribbonopt.output.summary import summarize
+from ribbonopt.pipeline.prepared import prepare
+from ribbonopt.scene import Scene, loads_scene
+from ribbonopt.scene.lens import with_value
+from ribbonopt.studies.buckling.buckling import buckling_loads
+from ribbonopt.studies.continuation.continuation import Continuation
+from ribbonopt.studies.continuation.recorded import value_of
+from ribbonopt.studies.continuation.walk.points import BRANCH_POINT, BUCKLING, POINT
+
+SCENE = """
+name: buckling
+law: {{type: {law}}}
+parameters: {{q: {q}}}
+boundary:
+  start: {{support: clamped, position: [0, 0, 0], directors: identity}}
+  end: {{support: free}}
+tolerance: 1e-9
+record: {{side: "dot(r, ex) at 1"}}
+{more}
+"""
+DOWN = "loads: {force: {z: -q}}"  # a column that bears its own weight
+ON_EDGE = "loads: {force: {y: q}}"  # a strip that bears its own weight along its width
+PLANAR = "states: planar\n"
+
+
+def scene(law: str, *more: str, q: float = 1.0) -> Scene:
+    return loads_scene(SCENE.format(law=law, q=q, more="\n".join(more)))
+
+
+def first_load(scene: Scene, end: float) -> float:
+    first, *_ = buckling_loads(scene, "parameters.q", 1, end)
+    return first.value
+
+
+def greenhill() -> float:
+    """Load q L^3 / B at which a clamped column buckles by its own weight."""
+    return 9 / 4 * float(mp.findroot(lambda x: mp.besselj(mp.mpf(-1) / 3, x), 1.87)) ** 2
+
+
+def on_edge(P: float, arm: Callable[[float], float], power: int, ends: list[float]) -> float:
+    """w3 at the clamp, by Sadowsky's law, of a strip of width w(s) that bears f = P arm(s).
+
+    `ends` are places between which arm is smooth, the first of them where it is zero, as
+    (distance from there)^power / power.
+    """
+
+    def rates(s: float, y: np.ndarray) -> list[float]:
+        f = P * arm(s)
+        m2, m3 = f * y[0] / width(s), y[1] / width(s)
+        M = np.hypot(m2, m3)
+        return [m3 * (m2 + M) / (4 * M), -f * (m2 + M) ** 2 / (4 * M)]
+
+    t, there = 1e-4, width(ends[0])
+    y = np.array([1.0, P**2 / power**2 / there * t ** (2 * power + 1) / (2 * power + 1)])
+    for a, b in zip([ends[0] - t, *ends[1:-1]], ends[1:], strict=True):
+        y = solve_ivp(rates, (a, b), y, "DOP853", rtol=1e-12, atol=1e-15).y[:, -1]
+    return float(y[0])
+
+
+def width(s: float) -> float:
+    return 1.0
+
+
+# Strips on edge.
+
+
+@pytest.mark.parametrize("law", ["sadowsky", "variational, delta: 0.1"])
+def test_a_force_at_a_single_place_buckles_what_is_before_it(law: str) -> None:
+    """As a tip load does a shorter strip: P a^2 is the same for all a."""
+    at_tip = loads_scene(
+        SCENE.format(law=law, q=1, more="").replace(
+            "support: free", "support: free, force: {x: 0, y: q, z: 0}"
+        )
+    )
+    found = first_load(scene(law, "loads: {points: [{at: 0.3, force: {y: q}}]}"), 100)
+    assert 0.3**2 * found == pytest.approx(first_load(at_tip, 8), abs=1e-9)
+
+
+def test_own_weight_and_a_force_at_a_single_place() -> None:
+    def arm(s: float) -> float:
+        return (1 - s) ** 2 / 2 + max(0.37 - s, 0.0)
+
+    this = scene("sadowsky", "loads: {force: {y: q}, points: [{at: 0.37, force: {y: q}}]}")
+    expected = brentq(on_edge, 15, 16.5, (arm, 2, [1, 0.37, 0]), xtol=1e-12)
+    assert first_load(this, 20) == pytest.approx(expected, abs=5e-9)
+
+
+def test_a_tapered_strip_under_its_own_weight(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setitem(globals(), "width", lambda s: 1 - 0.9 * s)
+    expected = brentq(on_edge, 16, 17.5, (lambda s: (1 - s) ** 2 / 2, 2, [1, 0]), xtol=1e-12)
+    found = first_load(scene("sadowsky", ON_EDGE, "width: 1 - 0.9*s"), 20)
+    assert found == pytest.approx(expected, abs=1e-8)
+
+
+@pytest.mark.parametrize(
+    ("load", "printed"),
+    [(ON_EDGE, 22.0167761285), ("loads: {points: [{at: 1, force: {y: q}}]}", 6.8988862429)],
+    ids=["own weight", "tip load"],
+)
+def test_a_buckled_strip_is_that_of_shooting(load: str, printed: float) -> None:
+    """The quaternion of the tip has q3 = 0.08 there (shooting of order 8, SCIENCE-NEXT 7)."""
+    text = SCENE.format(law="sadowsky", q=1, more="" if "points" in load else load)
+    if "points" in load:
+        text = text.replace("support: free", "support: free, force: {x: 0, y: q, z: 0}")
+    this = loads_scene(text)
+    (mode,) = buckling_loads(this, "parameters.q", 0.8 * printed, 1.2 * printed)
+    there = with_value(this, "parameters.q", printed)
+    found = prepare(there).solve(guess=mode.guess(0.2), fallback=False)
+    assert found.verified
+    d1, d2, d3 = (found.sample(1.0, name) for name in ("d1", "d2", "d3"))
+    q0 = np.sqrt(1 + d1[0] + d2[1] + d3[2]) / 2
+    assert abs(d1[1] - d2[0]) / (4 * q0) == pytest.approx(0.08, abs=1e-8)
+    assert negative_directions(found) == 0
+
+
+def test_the_clamp_of_a_strip_on_edge_has_the_strains_of_its_side() -> None:
+    """m2 = 0 there, where Sadowsky's strains leap from -|m3| / 4 to |m3| / 4."""
+    this = scene("sadowsky", ON_EDGE)
+    (mode,) = buckling_loads(this, "parameters.q", 20, 22)
+    prepared = prepare(this)
+    for side, q in itertools.product((1, -1), (21.55, 22.3, 23.1, 26.0)):
+        there = with_value(this, "parameters.q", q)
+        found = prepared.solve(there, guess=mode.guess(0.3 * side), fallback=False)
+        assert found.verified
+        m2, m3, u2 = (found.sample([0.0, 1e-3], name) for name in ("m2", "m3", "u2"))
+        assert abs(m2[0]) < 1e-12 * abs(m3[0])
+        assert u2[0] == pytest.approx(np.sign(m2[1]) * abs(m3[0]) / 4, rel=1e-9)
+        assert summarize(found)["error_estimate"]["u0"] < 1e-8
+
+
+# Columns.
+
+
+@pytest.mark.parametrize("states", ["", PLANAR], ids=["space", "planar"])
+def test_a_heavy_column_has_the_load_of_bessel_functions(states: str) -> None:
+    found = first_load(scene("sadowsky", DOWN, states), 10)
+    assert found == pytest.approx(greenhill(), abs=1e-9)
+
+
+@pytest.mark.parametrize(
+    ("law", "states"),
+    [("kirchhoff", PLANAR), ("kirchhoff, B2: 1, B3: 1", "")],
+    ids=["planar", "space"],
+)
+def test_a_heavy_column_loses_its_stability_where_a_branch_crosses(law: str, states: str) -> None:
+    stage = "continuation: {parameter: parameters.q, from: 7, to: 9, largest: 1, switch: true}"
+    points = list(Continuation(scene(law, DOWN, states, stage, q=7)))
+    (crossing,) = [point for point in points if point.kind == BRANCH_POINT]
+    assert value_of(crossing.row) == pytest.approx(greenhill(), abs=1e-9)
+    straight = [p.row for p in points if p.branch == 0 and p.kind == POINT]
+    for row in straight:
+        assert row["negative"] == (value_of(row) > greenhill())
+    buckled = [p.row for p in points if p.branch]
+    assert {row["negative"] for row in buckled} == {0}
+    ends = sorted(row["side"] for row in buckled if value_of(row) == 9)
+    assert ends[0] == pytest.approx(-ends[1], rel=1e-7)
+
+
+@pytest.mark.parametrize("law", ["kirchhoff", "sadowsky"])
+def test_a_buckled_column_is_that_of_shooting(law: str) -> None:
+    """At q = 12, as SCIENCE-NEXT prints it."""
+    stage = "continuation: {parameter: parameters.q, from: 7.5, to: 12, largest: 2, switch: true}"
+    points = list(Continuation(scene(law, DOWN, PLANAR, stage, q=7.5)))
+    kinds = {point.kind for point in points} - {POINT}
+    assert kinds == {BRANCH_POINT if law == "kirchhoff" else BUCKLING}
+    ends = [p.solution for p in points if p.branch and value_of(p.row) == 12]
+    assert len(ends) == 2
+    for found in ends:
+        x, _, z = found.sample(1.0, "r")
+        assert abs(x) == pytest.approx(0.849526933032, abs=2e-11)
+        assert z == pytest.approx(0.162135277437, abs=2e-11)
+        assert abs(found.sample(0.0, "m2")) == pytest.approx(4.48427846387, abs=2e-10)
+
+
+def test_a_column_on_a_support_between_its_ends() -> None:
+    """x' = w, w' = m, m' = -q (1 - s) w - R before the support, where x = 0."""
+
+    def determinant(q: float) -> float:
+        def rates(s: float, y: np.ndarray, R: float) -> list[float]:
+            return [y[1], y[2], -q * (1 - s) * y[1] - R]
+
+        exact: dict[str, Any] = {"method": "DOP853", "rtol": 1e-12, "atol": 1e-14}
+        columns = []
+        for m, R in ((1.0, 0.0), (0.0, 1.0)):
+            before = solve_ivp(rates, (0, 0.6), [0, 0, m], args=(R,), **exact).y[:, -1]
+            behind = solve_ivp(rates, (0.6, 1), before, args=(0.0,), **exact).y[:, -1]
+            columns.append([before[0], behind[2]])
+        return float(np.linalg.det(columns))
+
+    this = scene("sadowsky", DOWN, PLANAR, "supports: [{at: 0.6, position: {x: 0}}]")
+    expected = brentq(determinant, 40, 42, xtol=1e-12)
+    assert first_load(this, 60) == pytest.approx(expected, abs=5e-9)
+
+
+# A rod on edge.
+
+
+def test_a_heavy_rod_on_edge_buckles_where_bessel_functions_say() -> None:
+    """w3'' = -(q t^2 / 2)^2 w3 / (B2 B3): J_{-1/6}(q / (6 sqrt(B2 B3))) = 0."""
+    exact = 6 * float(mp.findroot(lambda x: mp.besselj(mp.mpf(-1) / 6, x), 2.1))
+    assert exact == pytest.approx(12.85376332, abs=5e-9)
+    stage = "continuation: {parameter: parameters.q, from: 12, to: 24, largest: 4, switch: false}"
+    points = list(Continuation(scene("kirchhoff, B2: 2, B3: 1.3", ON_EDGE, stage, q=12)))
+    (crossing,) = [point for point in points if point.kind == BRANCH_POINT]
+    load = exact * np.sqrt(2 * 1.3)
+    assert value_of(crossing.row) == pytest.approx(load, abs=1e-8)
+    for row in (p.row for p in points if p.kind == POINT):
+        assert row["negative"] == (value_of(row) > load)
