@@ -205,9 +205,22 @@ def test_a_column_on_a_support_between_its_ends() -> None:
             columns.append([before[0], behind[2]])
         return float(np.linalg.det(columns))
 
-    this = scene("sadowsky", DOWN, PLANAR, "supports: [{at: 0.6, position: {x: 0}}]")
     expected = brentq(determinant, 40, 42, xtol=1e-12)
-    assert first_load(this, 60) == pytest.approx(expected, abs=5e-9)
+    support = "supports: [{at: 0.6, position: {x: 0}}]"
+    for more in (PLANAR, PLANAR + "formulation: energy"):
+        found = first_load(scene("sadowsky", DOWN, support, more), 60)
+        assert found == pytest.approx(expected, abs=5e-9)
+
+
+def test_a_place_and_a_width_may_be_what_moves() -> None:
+    """A force 30 at the place a: 30 a^2 is the load of a tip; beyond w = 1 - q s there is none."""
+    at = "loads: {points: [{at: q, force: {y: 30}}]}"
+    (moved,) = buckling_loads(scene("sadowsky", at, q=0.3), "parameters.q", 0.3, 0.6)
+    assert 30 * moved.value**2 == pytest.approx(6.729347255, abs=2e-9)
+    tapered = scene("sadowsky", "loads: {force: {y: 20}}", "width: 1 - q*s", q=0.1)
+    (found,) = buckling_loads(tapered, "parameters.q", 0.1, 0.9)
+    same = scene("sadowsky", ON_EDGE, f"width: 1 - {found.value!r}*s")
+    assert first_load(same, 24) == pytest.approx(20, abs=1e-8)
 
 
 # A rod on edge.

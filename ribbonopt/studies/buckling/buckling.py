@@ -39,6 +39,7 @@ NEARER = 1e-3  # of the distance of two loads that an affine line is drawn throu
 SMOOTH = 0.03  # delta of the smooth law that stands for one with a kink
 SETTLED = 1e-11  # change of the load, relative to the range, that ends this
 TURNS = 8
+BEYOND = (1.0, 1 / 4, 1 / 16, 0.0)  # of an end of the range: how far beyond it rods are looked at
 
 
 def buckling_loads(scene: Scene, parameter: str, start: float, end: float) -> tuple[Buckling, ...]:
@@ -66,7 +67,8 @@ def buckling_loads(scene: Scene, parameter: str, start: float, end: float) -> tu
     ModelError
         If the ribbon at the start is not such a state, or its law has states of its own.
     """
-    first = replace(with_value(scene, parameter, start), continuation=None)
+    # Another formulation has the same straight states; one that minimises may not find them.
+    first = with_value(replace(scene, formulation="inverted", continuation=None), parameter, start)
     prepared = prepare(first)
     return buckling_from(prepared, prepared.solve(), parameter, start, end)
 
@@ -88,10 +90,15 @@ def buckling_from(
             "law",
         )
     states = _States(prepared, straight, parameter)
-    # A ribbon is softer than the rod that has its stiffnesses, at most by two.
+    # A ribbon is softer than the rod that has its stiffnesses, at most by two: a rod may buckle
+    # beyond the range, as far as there are straight ones.
     low, high = min(start, end), max(start, end)
-    reach = min(low, 2 * low), max(high, 2 * high)
-    found = states.between(*reach) or (states.between(low, high) if reach != (low, high) else None)
+    found = None
+    for share in BEYOND:
+        reach = low + min(0.0, share * low), high + max(0.0, share * high)
+        found = states.between(*reach)
+        if found is not None:
+            break
     inside = [one for one in found or () if low <= one.value <= high]
     return tuple(sorted(inside, key=lambda one: abs(one.value - start)))
 
@@ -114,6 +121,8 @@ class _States:
             return None
         compliances = pure_compliances(self.ribbon, self.least(low).values)
         rod = RodBuckling(Deflected(self.ribbon), compliances, a, b)
+        if not rod.sound:
+            return None
         search, result = Search(rod, self.smooth), []
         for load, start in rod.loads():
             mode = search.mode(load, start)

@@ -60,6 +60,22 @@ class RodBuckling:
     a: Array
     b: Array
 
+    @property
+    def sound(self) -> bool:
+        """Whether it is one all along at both loads: it is not where a width is not positive."""
+        ribbon = self.deflected.ribbon
+        found = ca.densify(self.compliances[list(ribbon.law.components)])
+        function = ca.Function("compliances", [ribbon.parameters, ribbon.position], [found])
+        for load, numbers in ((0.0, self.a), (1.0, self.b)):
+            places = np.array(self._places(load, self.a, self.b)).ravel()
+            theta = numbers[-len(ribbon.theta) :]
+            values = [
+                np.array(function(theta, s)) for s in np.linspace(places[0], places[-1], STEPS + 1)
+            ]
+            if not np.min(values) > 0:
+                return False
+        return True
+
     def loads(self) -> Iterator[tuple[float, Array]]:
         """Yield loads p from 0 to 1 with the mode [xi; gamma] (nx + nc,) at the start."""
         grid = np.linspace(0.0, 1.0, SCAN + 1)
