@@ -26,6 +26,7 @@ from ribbonopt.solvers.protocols import Factors
 
 from .gaps import LEAST, RESOLVED, gaps_at_nodes, gaps_between
 from .layers import Layers, clear_of, layers, overlooked
+from .spin import spins
 
 UNIT = 3e-16  # local error by rounding alone
 SAFETY = 4.0  # bar over estimate: what the next better scheme itself may miss
@@ -133,7 +134,8 @@ def _analysed(solution: Solution, near: Factors | None, keep: bool) -> Analysis:
     blocks, w, p = finer.blocks, finer.w, finer.p
     if near is None:
         residuals, derivatives = blocks.linearize(w, p)
-        factors: Factors = CondensedSystem(blocks, derivatives, p, only=None if keep else residuals)
+        only, neutral = None if keep else residuals, spins(solution)
+        factors: Factors = CondensedSystem(blocks, derivatives, p, only, neutral)
         growth = blocks.growth(derivatives, p).reshape(-1, split).sum(axis=1)
     else:
         residuals, factors, keep, growth = blocks.residuals(w, p), near, True, dense.growth

@@ -83,7 +83,10 @@ class Structure:
             nlp = transcription_of(scene).transcribe(self.problem, elements)
             refuse_unaffordable(nlp, sparse=not nlp.square or isinstance(scene.solver, Ipopt))
             options = {f.name: getattr(scene.solver, f.name) for f in fields(scene.solver)}
-            self._programs[elements] = nlp, solver_named(options.pop("type"), nlp, options)
+            self._programs[elements] = (
+                nlp,
+                solver_named(options.pop("type"), nlp, options, neutral=self.problem.neutral),
+            )
         return self._programs[elements]
 
     def build(self) -> None:

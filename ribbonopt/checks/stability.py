@@ -14,6 +14,7 @@ from typing import TypeVar
 
 import numpy as np
 
+from ribbonopt.accuracy.spin import SPIN, spins
 from ribbonopt.mechanics.laws.catalogue import capabilities
 from ribbonopt.problem import BoundaryValueProblem, Ribbon
 from ribbonopt.problem.energy import refusal
@@ -38,13 +39,22 @@ class SecondVariation:
     """Second variation of the energy on the directions that keep the conditions.
 
     `negative` is the number of its clearly negative eigenvalues, those below -`neutral`. `error` is
-    that of eigenvalues, over the largest, which is about `largest`. Units Dw = L = 1.
+    that of eigenvalues, over the largest, which is about `largest`. Units Dw = L = 1. `spins` says
+    that one is zero since an isotropic rod spins, which is neither for nor against it.
     """
 
     negative: int
     neutral: float
     error: float
     largest: float
+    spins: bool = False
+
+    @property
+    def verdict(self) -> str:
+        """What it says, in words."""
+        count = f"{self.negative} negative direction{'s' if self.negative > 1 else ''}"
+        found = f"unstable: {count}" if self.negative else "stable"
+        return f"{found}; neutral: {SPIN}" if self.spins else found
 
 
 def negative_directions(solution: Solution) -> int | None:
@@ -58,7 +68,8 @@ def negative_range(solution: Solution) -> tuple[int, int] | None:
     found, variation = second_variation(solution), variation_of(solution)
     if isinstance(found, str) or isinstance(variation, str):
         return None
-    return found.negative, factored(variation.form, -found.neutral).negative
+    most = factored(variation.form, -found.neutral).negative - found.spins
+    return found.negative, max(found.negative, most)
 
 
 def why_not(solution: Solution) -> str:
@@ -76,18 +87,18 @@ def second_variation(solution: Solution) -> SecondVariation | str:
         return NO_EQUILIBRIUM
     known = solution.trajectory.found
     if SecondVariation not in known:
-        known[SecondVariation] = _judged(variation_of(solution))
+        known[SecondVariation] = _judged(variation_of(solution), solution)
     found: SecondVariation | str = known[SecondVariation]
     return found
 
 
-def _judged(variation: Variation | str) -> SecondVariation | str:
+def _judged(variation: Variation | str, solution: Solution) -> SecondVariation | str:
     if isinstance(variation, str):
         return variation
     largest, error = variation.largest, variation.error
     neutral = max(error, ROUNDING) * largest
     negative = factored(variation.form, neutral).negative
-    return SecondVariation(negative, neutral, error, largest)
+    return SecondVariation(negative, neutral, error, largest, spins(solution))
 
 
 def variation_of(solution: Solution) -> Variation | str:

@@ -12,6 +12,7 @@ import math
 
 import numpy as np
 
+from ribbonopt.accuracy.spin import spin_problems
 from ribbonopt.arrays import Array
 from ribbonopt.mechanics.laws.catalogue import is_developable
 from ribbonopt.mechanics.widths import widths
@@ -41,6 +42,7 @@ def warnings_of(solution: Solution) -> list[str]:
         result += _generatrices(solution, s, width) if converged else []
     if converged:
         result += zero_moment_problems(solution)
+        result += spin_problems(solution)
         result += [*planar_problems(solution), *contact_problems(solution)]
     return result
 

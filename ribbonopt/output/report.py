@@ -15,7 +15,7 @@ SMALL = 1e-3  # largest component of what is written with powers of ten
 def report(summary: Mapping[str, Any]) -> str:
     """Return the report of a summary; digits beyond the estimated error are left out."""
     s = summary
-    law = ", ".join(f"{k} = {v:g}" for k, v in s["law"].items() if k != "type")
+    law = ", ".join(f"{k} = {_plain(v)}" for k, v in s["law"].items() if k != "type")
     head = f"{s['name']}: {s['status'].replace('_', ' ')}"
     lines = [
         head + (", verified" if s["verified"] else f"\n  {s['message']}"),
@@ -131,6 +131,13 @@ def _drifts(drift: Mapping[str, float | None]) -> str:
     # Under loads less is conserved; without convergence nothing is known.
     known = {k: v for k, v in drift.items() if v is not None} or drift
     return ", ".join(f"{words[k]} {_short(v)}" for k, v in known.items())
+
+
+def _plain(value: float | Sequence[float]) -> str:
+    """Write a number of the scene, or a vector of them."""
+    if isinstance(value, Sequence):
+        return f"({', '.join(map(_plain, value))})"
+    return f"{value:g}"
 
 
 def _steps(path: Sequence[Mapping[str, Any]]) -> str:

@@ -58,7 +58,7 @@ class SavedSummary:
     transcription: str | None = None
     scheme: str | None = None
     solver: str | None = None
-    law: dict[str, str | float | None] | None = None
+    law: dict[str, str | float | tuple[float, ...] | None] | None = None
     parameters: dict[str, float] | None = None
     interval: tuple[float, float] | None = None
     loads_from: str | None = None

@@ -95,6 +95,8 @@ class BoundaryValueProblem:
         k at each of the points, for conditions; empty if no condition contains it.
     conserved : tuple of str
         Outputs that are constant along the solution, and yet not by construction.
+    neutral : bool
+        Whether one direction may lead from solution to solution, so that they are not isolated.
     stations : tuple of int
         Which of the points are at known places, where something acts or holds.
     """
@@ -122,6 +124,7 @@ class BoundaryValueProblem:
     known_at: tuple[ca.SX, ...] = ()
     known_names: tuple[str, ...] = ()
     conserved: tuple[str, ...] = ()
+    neutral: bool = False
     stations: tuple[int, ...] = ()
     _kept: dict[Callable[..., Any], Any] = field(default_factory=dict, init=False, repr=False)
 

@@ -132,5 +132,6 @@ def equilibrium(
         estimate=estimated,
         algebraic_start=empty if algebraic_start is None else algebraic_start,
         conserved=ribbon.conserved,
+        neutral=ribbon.law.spins,
         stations=tuple(range(1, len(phases))),
     )

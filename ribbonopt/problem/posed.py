@@ -16,6 +16,7 @@ import numpy as np
 from ribbonopt.arrays import Array
 from ribbonopt.mechanics.ends.boundary import conditions_of, start_frame, start_position
 from ribbonopt.mechanics.ends.conditions import Condition
+from ribbonopt.mechanics.laws.asymmetry import changed_by_flip, leaves_plane
 from ribbonopt.mechanics.laws.catalogue import fields_of, numbers_of
 from ribbonopt.mechanics.loads.load import Load
 from ribbonopt.scene import Loads, Scene
@@ -142,10 +143,14 @@ class Posed:
         loads: tuple[object, ...] = tuple(type(load) for load in self.loads)
         loads += tuple(tuple(type(a) for a in station.actions) for station in self.stations)
         settings = type(scene.law), scene.formulation, scene.states, scene.transcription
-        # In a plane, which conditions are left depends on what plane it is.
-        plane = self.start[1][:, 1].round().tolist() if scene.states == "planar" else ()
+        # In a plane, which conditions are left depends on what plane it is; natural strains tell
+        # whether there is one, and whether a piece of a loop stands for all of it.
+        plane: tuple[object, ...] = ()
+        if scene.states == "planar":
+            plane = *self.start[1][:, 1].round().tolist(), leaves_plane(scene, self.theta)
+        plane = *plane, changed_by_flip(scene, self.theta)
         along = tuple(field.structure for field in fields_of(scene))
-        rest = tuple(self.theta), conditions, along, loads, scene.boundary.also, tuple(plane)
+        rest = tuple(self.theta), conditions, along, loads, scene.boundary.also, plane
         return (*settings, scene.solver, *rest)
 
     @cached_property

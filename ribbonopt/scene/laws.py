@@ -8,9 +8,10 @@ for (`OwnLaw`).
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Annotated, Any, ClassVar, Literal, Protocol, runtime_checkable
 
+from .faults import KeyPath
 from .schema.bounds import Bounds, InPython
 
 
@@ -21,6 +22,47 @@ class Kirchhoff:
     type: Literal["kirchhoff"] = "kirchhoff"
     B2: Annotated[float, Bounds(gt=0)] = 1.0
     B3: Annotated[float, Bounds(gt=0)] = 2.0
+
+    @property
+    def stiffnesses(self) -> dict[KeyPath, float]:
+        """Stiffnesses by path: first that about d2, the unit of all where it is far from 1."""
+        return {("B2",): self.B2, ("B3",): self.B3}
+
+    def in_units(self, stiffness: float, strain: float) -> Kirchhoff:
+        """Return the same law, its numbers divided by these units."""
+        return replace(self, B2=self.B2 / stiffness, B3=self.B3 / stiffness)
+
+
+Three = tuple[float, float, float]
+Stiffness = Annotated[float, Bounds(gt=0)]
+
+
+@dataclass(frozen=True)
+class Rod:
+    """Linear rod that bends about d1 too: m_i = B_i (u_i - k_i), along d1, d2, d3.
+
+    `B` are stiffnesses (units of Dw): bending about d1 and d2, twist. `natural` are the strains
+    k_i without stress (1 / L). Their paths are law.B.d1, law.natural.d3 and so on.
+    """
+
+    type: Literal["rod"] = "rod"
+    B: tuple[Stiffness, Stiffness, Stiffness] = (1.0, 1.0, 1.0)
+    natural: Three = (0.0, 0.0, 0.0)
+
+    @property
+    def stiffnesses(self) -> dict[KeyPath, float]:
+        """Stiffnesses by path: first that about d2, the unit of all where it is far from 1."""
+        return {("B", i): self.B[i] for i in (1, 2, 0)}
+
+    def in_units(self, stiffness: float, strain: float) -> Rod:
+        """Return the same law, its numbers divided by these units."""
+        (B1, B2, B3), (k1, k2, k3) = self.B, self.natural
+        B = B1 / stiffness, B2 / stiffness, B3 / stiffness
+        return replace(self, B=B, natural=(k1 / strain, k2 / strain, k3 / strain))
+
+
+#: laws that have stiffnesses of their own; those of all others are Dw
+Stiff = Kirchhoff | Rod
 
 
 @dataclass(frozen=True)
@@ -85,6 +127,7 @@ class OwnLaw(Protocol):
 
 Law = (
     Kirchhoff
+    | Rod
     | Sadowsky
     | SingleSheet
     | Regularized

@@ -1,7 +1,8 @@
 """Single numbers of a scene by dotted path: which there are, what they are, and to replace one.
 
-A path leads through fields and parameters by name, through vectors by x, y, z and through the
-interval by start, end (through any list by index as well), such as `boundary.end.position.x`. Only
+A path leads through fields and parameters by name, through vectors by x, y, z, through the triples
+of a law, which are along directors, by d1, d2, d3, and through the interval by start, end (through
+any list by index as well), such as `boundary.end.position.x` or `law.natural.d3`. Only
 numbers of the ribbon that may vary continuously are offered: no whole numbers, no settings of the
 computation.
 """
@@ -35,6 +36,7 @@ _ROOTS: tuple[KeyPath, ...] = (
     ("width",),
 )
 _ITEMS = {2: ("start", "end"), 3: ("x", "y", "z")}
+_OF_LAWS = {3: ("d1", "d2", "d3")}
 _MOST_LISTED = 8
 _WORD = re.compile(r"[A-Za-z_]\w*")
 
@@ -128,7 +130,7 @@ def _part(scene: Scene, keys: KeyPath) -> _Part | None:
     for key in keys:
         if value is None:
             break
-        step = _step(value, str(key))
+        step = _step(value, str(key), steps)
         if step is None:
             return None
         holder, steps = value, (*steps, step)
@@ -137,7 +139,7 @@ def _part(scene: Scene, keys: KeyPath) -> _Part | None:
     return _Part(steps, value, _varies(holder, steps[-1]), tabled)
 
 
-def _step(holder: Any, key: str) -> str | int | None:
+def _step(holder: Any, key: str, path: KeyPath) -> str | int | None:
     """Return the name or index that a key means inside a value; None where it means nothing."""
     if is_dataclass(holder):
         return key if any(member.name == key for member in fields(holder)) else None
@@ -145,15 +147,16 @@ def _step(holder: Any, key: str) -> str | int | None:
         return key if key in holder else None
     if not isinstance(holder, tuple | list):
         return None
-    names = _names(holder)
+    names = _names(holder, path)
     if key in names:
         return names.index(key)
     return int(key) if key in map(str, range(len(holder))) else None
 
 
-def _names(items: Any) -> tuple[str, ...]:
-    """Return the names of the items of a list."""
-    named = () if any(map(is_dataclass, items)) else _ITEMS.get(len(items), ())
+def _names(items: Any, path: KeyPath) -> tuple[str, ...]:
+    """Return the names of the items of a list at a path."""
+    known = _OF_LAWS if path[:1] == ("law",) else _ITEMS
+    named = () if any(map(is_dataclass, items)) else known.get(len(items), ())
     return named or tuple(map(str, range(len(items))))
 
 
@@ -187,7 +190,7 @@ def _numbers(value: Any, varies: bool, path: KeyPath) -> Iterator[str]:
             if "." not in name:  # the names of units are no path
                 yield from _numbers(item, True, (*path, name))
     elif isinstance(value, tuple | list):
-        for name, item in zip(_names(value), value, strict=True):
+        for name, item in zip(_names(value, path), value, strict=True):
             yield from _numbers(item, True, (*path, name))
     elif varies and _is_real(value):
         yield dotted(path)

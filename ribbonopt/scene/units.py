@@ -18,7 +18,7 @@ from typing import Any
 
 from .along import scaled
 from .ends import Boundary, End
-from .laws import Kirchhoff, Law, OwnLaw
+from .laws import Law, OwnLaw, Stiff
 from .loads import Loads
 from .model import Guess, LoadGuess, Reference, Scene, StrainGuess
 from .quantities import dimension
@@ -70,7 +70,9 @@ def units_of(scene: Scene) -> Units:
     their numbers in units Dw = L = 1, whatever the sizes.
     """
     ribbon, law = scene.ribbon, scene.law
-    stiffness = _unit(law.B2, SOFT, STIFF) if isinstance(law, Kirchhoff) else 1.0
+    stiffness = 1.0
+    if isinstance(law, Stiff):
+        stiffness = _unit(next(iter(law.stiffnesses.values())), SOFT, STIFF)
     if ribbon is None:
         start, end = scene.interval
         told = bool(scene.loads.own) or isinstance(law, OwnLaw)
@@ -103,7 +105,7 @@ def in_special_units(scene: Scene, units: Units | None = None) -> Scene:
     own = {UNIT_LENGTH: units.length, UNIT_FORCE: units.force} if boundary.also else {}
     return replace(
         scene,
-        law=_law(scene.law, units.stiffness),
+        law=_law(scene.law, units),
         interval=(start / units.length, end / units.length),
         parameters=parameters | own,
         boundary=_boundary(boundary, units, parameters),
@@ -119,11 +121,9 @@ def in_special_units(scene: Scene, units: Units | None = None) -> Scene:
     )
 
 
-def _law(law: Law, stiffness: float) -> Law:
-    """Return a law of stiffnesses divided by a unit: those that have none are as they are."""
-    if stiffness == 1 or not isinstance(law, Kirchhoff):
-        return law
-    return replace(law, B2=law.B2 / stiffness, B3=law.B3 / stiffness)
+def _law(law: Law, units: Units) -> Law:
+    """Return a law in units of its own stiffness: those that have none are as they are."""
+    return law.in_units(units.stiffness, units.strain) if isinstance(law, Stiff) else law
 
 
 def _boundary(boundary: Boundary, units: Units, parameters: Mapping[str, float]) -> Boundary:

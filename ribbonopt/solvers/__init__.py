@@ -29,13 +29,17 @@ __all__ = [
 ]
 
 
-def solver_named(name: str, nlp: NLP, settings: dict[str, Any]) -> Solver:
-    """Return the solver of a name (auto, ipopt, newton) on an NLP, with its settings."""
+def solver_named(name: str, nlp: NLP, settings: dict[str, Any], *, neutral: bool = False) -> Solver:
+    """Return the solver of a name (auto, ipopt, newton) on an NLP, with its settings.
+
+    `neutral` as `NewtonSolver` has it.
+    """
     if name == "ipopt":
         from .ipopt import IpoptSolver
 
         return IpoptSolver(nlp, **settings)
-    return NewtonSolver(nlp, **settings) if name == "newton" else AutoSolver(nlp, **settings)
+    kind = NewtonSolver if name == "newton" else AutoSolver
+    return kind(nlp, **settings, neutral=neutral)
 
 
 def __getattr__(name: str) -> Any:

@@ -22,14 +22,15 @@ if TYPE_CHECKING:
 
 @dataclass(frozen=True, eq=False)
 class AutoSolver:
-    """Newton, then IPOPT from the same guess if Newton did not converge."""
+    """Newton, then IPOPT from the same guess if Newton did not converge; `neutral` as Newton's."""
 
     nlp: NLP
+    neutral: bool = False
 
     @cached_property
     def newton(self) -> NewtonSolver:
         """First choice for square programs."""
-        return NewtonSolver(self.nlp)
+        return NewtonSolver(self.nlp, neutral=self.neutral)
 
     @cached_property
     def ipopt(self) -> IpoptSolver:

@@ -26,6 +26,7 @@ if TYPE_CHECKING:
     from ribbonopt.transcription.structure import Blocks
 
 DENSE = 80  # nodes of a phase are no longer reduced when their unknowns number less than this
+NEUTRAL, NEARLY = 1e-8, 1e-4  # singular value that counts as none, over the largest and the next
 
 
 @dataclass(frozen=True, eq=False)
@@ -77,9 +78,17 @@ class CondensedSystem:
     """Factored Newton matrix of a square problem; `solve` gives the Newton step."""
 
     def __init__(
-        self, blocks: Blocks, derivatives: Derivatives, p: Array, only: Residuals | None = None
+        self,
+        blocks: Blocks,
+        derivatives: Derivatives,
+        p: Array,
+        only: Residuals | None = None,
+        neutral: bool = False,
     ) -> None:
-        """Factor; quicker if it is for the stages' part of the residuals `only`."""
+        """Factor; quicker if it is for the stages' part of the residuals `only`.
+
+        Where one `neutral` direction may change nothing, and does, steps leave it alone.
+        """
         lay = self._layout = blocks.layout
         self._elements = blocks.eliminate(derivatives, p, only)
         A, B, C = self._elements.relations
@@ -90,7 +99,8 @@ class CondensedSystem:
         # Nodes that remain in each phase; neighbouring phases share one.
         self._ends = np.cumsum([0, *(len(a) for a, _, _ in rest)])
         A, B, C = (np.concatenate(part) for part in zip(*rest, strict=True))
-        self._final_inverse = np.linalg.inv(self._final(A, B, C, derivatives.conditions))
+        final = self._final(A, B, C, derivatives.conditions)
+        self._final_inverse = _across_neutral(final) if neutral else np.linalg.inv(final)
 
     def solve(self, residuals: Residuals) -> Array:
         """Newton step (nw,): minus the inverse of the Jacobian times the residuals."""
@@ -145,6 +155,16 @@ class CondensedSystem:
         final[count * nx :, points] = conditions[:, : len(points)]
         final[count * nx :, width:] = conditions[:, len(points) :]
         return final
+
+
+def _across_neutral(matrix: Array) -> Array:
+    """Return the inverse of a matrix (n, n), less its smallest singular value if that is none."""
+    if np.linalg.cond(matrix, 1) < 1 / NEUTRAL:
+        return np.asarray(np.linalg.inv(matrix))
+    left, singular, right = np.linalg.svd(matrix)
+    if singular[-1] > NEARLY * singular[-2]:
+        return np.asarray(np.linalg.inv(matrix))
+    return np.asarray((right[:-1].T / singular[:-1]) @ left[:, :-1].T)
 
 
 def _factor_chain(A: Array, B: Array, C: Array) -> tuple[_Chain, tuple[Array, Array, Array]]:

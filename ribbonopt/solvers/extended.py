@@ -41,12 +41,15 @@ class Line:
         Half the distance of the positions that derivatives by l are taken from.
     count : int
         Number k of positions.
+    neutral : bool
+        Whether one direction is known to change nothing, so that steps shall leave it alone.
     """
 
     blocks: Blocks
     parameters: Callable[..., Array]
     step: float
     count: int = 1
+    neutral: bool = False
 
     def split(self, extended: Array) -> tuple[Array, Array]:
         """Return w and the positions (k,) of [w, l]."""
@@ -150,7 +153,7 @@ class ExtendedSystem:
     def factor(self, derivatives: Derivatives, p: Array) -> CondensedSystem:
         """Factors of the Jacobian; LinAlgError where it is singular."""
         # Of p the elimination reads the widths, which do not depend on l.
-        return CondensedSystem(self.line.bordered, derivatives, p)
+        return CondensedSystem(self.line.bordered, derivatives, p, neutral=self.line.neutral)
 
     def vector(self, w: Array, p: Array) -> Array:
         """Residuals in the order of the program's constraints, the row's last."""
@@ -212,8 +215,10 @@ def local(
         np.zeros_like(residuals.conditions),
     )
     # Whatever is solved for later has its right-hand side in the conditions alone.
-    factors = CondensedSystem(line.bordered, derivatives, p, only=none)
+    factors = CondensedSystem(line.bordered, derivatives, p, none, line.neutral)
     last = none.conditions.copy()
     last[-1] = 1.0
     direction = factors.solve(replace(none, conditions=-last))
-    return Local(factors, none, direction, *factors.determinant)
+    # A neutral direction leaves the determinant zero all along: it tells nothing.
+    told = (0.0, 0.0) if line.neutral else factors.determinant
+    return Local(factors, none, direction, *told)

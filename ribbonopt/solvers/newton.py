@@ -32,17 +32,23 @@ ROUNDING = 1e3 * np.finfo(float).eps
 
 @dataclass(frozen=True, eq=False)
 class NewtonSolver:
-    """Newton's method on one square NLP; `tolerance` is relative to 1 + |w|, entry by entry."""
+    """Newton's method on one square NLP; `tolerance` is relative to 1 + |w|, entry by entry.
+
+    Where a direction may be `neutral`, which leads from solution to solution, steps leave it alone.
+    """
 
     nlp: NLP
     tolerance: float = 1e-13
     max_iterations: int = 50
+    neutral: bool = False
 
     @cached_property
     def system(self) -> System:
         """How this NLP is evaluated and factored, built at first use and kept."""
         structure = self.nlp.structure
-        return SparseSystem(self.nlp) if structure is None else ElementSystem(structure)
+        return (
+            SparseSystem(self.nlp) if structure is None else ElementSystem(structure, self.neutral)
+        )
 
     def build(self) -> None:
         """Build the system now rather than at the first solve."""

@@ -23,6 +23,7 @@ class ElementSystem:
     """A chain of elements, factored element by element (`ribbonopt.solvers.condense`)."""
 
     blocks: Blocks
+    neutral: bool = False
 
     def build(self) -> None:
         """Build the functions now rather than at the first evaluation."""
@@ -38,7 +39,7 @@ class ElementSystem:
 
     def factor(self, derivatives: Derivatives, p: Array) -> CondensedSystem:
         """Factors of the Jacobian; LinAlgError where it is singular."""
-        return CondensedSystem(self.blocks, derivatives, p)
+        return CondensedSystem(self.blocks, derivatives, p, neutral=self.neutral)
 
     def vector(self, w: Array, p: Array) -> Array:
         """Residuals in the order of the NLP's constraints."""

@@ -7,12 +7,13 @@ at an end shows its own side only, and they crowd there, where regularised laws 
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ribbonopt.mechanics.laws.catalogue import capabilities
 from ribbonopt.mechanics.widths import widths
 from ribbonopt.solution.solution import Solution
 
@@ -34,7 +35,7 @@ class Piece:
     s, u1, u2, u3 : (k,) arrays
         Arclength and strains.
     eta : (k,) array
-        u3/u2, and 0 where the ribbon is straight, planar or purely twisted.
+        u3/u2, and 0 where the ribbon is straight, planar or purely twisted, and of a rod with u1.
     r, d1, d2, d3 : (k, 3) arrays
         Centre line and directors, lab frame.
     mirrored : bool
@@ -67,6 +68,11 @@ def in_plane(pieces: tuple[Piece, ...]) -> float:
     return largest[0] / max(*largest, np.finfo(float).tiny)
 
 
+def is_rod(solution: Solution) -> bool:
+    """Whether the law leaves u1 free: such a rod is drawn as a strip along d2, whatever u1 is."""
+    return 0 in capabilities(solution.scene).components
+
+
 def sample_pieces(solution: Solution, rows: int = ROWS) -> tuple[Piece, ...]:
     """Sample a solution along its interval, about `rows` rows in all."""
     start, end = solution.scene.interval
@@ -74,6 +80,8 @@ def sample_pieces(solution: Solution, rows: int = ROWS) -> tuple[Piece, ...]:
     s = _grid(start, end, rows, INSET * length)
     values = solution.outputs(s)
     scale = _scale(values)
+    if is_rod(solution):
+        return (replace(_piece(solution, s, values, scale), eta=np.zeros(len(s))),)
     crossings = _crossings(solution, s, values, scale)
     if not crossings:
         return (_piece(solution, s, values, scale),)

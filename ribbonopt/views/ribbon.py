@@ -32,8 +32,8 @@ def plot_ribbon(
         What to draw.
     half_width
         Default: that of the ribbon, where the scene says it; else a twentieth of the length drawn,
-        or less so that no generatrices cross. The figure states it. It is that where the width
-        along the ribbon is 1.
+        or less so that no generatrices cross; an eightieth of a rod. The figure states it. It is
+        that where the width along the ribbon is 1.
     complete
         Add, in a lighter tone, the rest of a band of which this solution is a piece by symmetry.
     """
@@ -41,16 +41,9 @@ def plot_ribbon(
 
 
 def draw_ribbon(subject: Subject, half_width: float | None = None) -> Figure:
-    """Draw a ribbon.
-
-    Raises
-    ------
-    ViewError
-        Where it has no generatrices.
-    """
-    subject.demand_generatrices()
+    """Draw a ribbon; a rod with u1 as a strip along d2, which is straight across."""
     pieces = subject.pieces
-    surface = sweep(pieces, subject.half_width if half_width is None else half_width)
+    surface = sweep(pieces, subject.drawn if half_width is None else half_width)
     line = np.concatenate([p.r for p in pieces])
     camera = place_camera(line, np.concatenate([p.d1 for p in pieces]))
     drawing = draw_surface(surface, camera)
@@ -131,7 +124,8 @@ def _caption(subject: Subject, surface: Surface) -> str:
     width = f"{surface.half_width:.3g}{unit}" + (" w(s)" if surface.tapers else "")
     if surface.half_width == subject.half_width:
         width += ", the ribbon's own,"
-    lines = [rf"drawn to the half-width {width} along generatrices $d_2 + \eta\, d_3$"]
+    across = "$d_2$" if subject.rod else r"generatrices $d_2 + \eta\, d_3$"
+    lines = [f"drawn to the half-width {width} along {across}"]
     notes = []
     if subject.mirrored:
         notes.append(f"{subject.rest} (light)")

@@ -39,7 +39,7 @@ LINES: Mapping[str, tuple[str, str]] = {
 
 
 def plot_strains(solution: Solution, complete: bool = True) -> Figure:
-    """Plot u2, u3 and eta against s; u1, u2 and u3 where u1 is not zero.
+    """Plot u2, u3 and eta against s; u1, u2 and u3 where u1 is free.
 
     Parameters
     ----------
@@ -54,7 +54,7 @@ def plot_strains(solution: Solution, complete: bool = True) -> Figure:
 def draw_strains(subject: Subject) -> Figure:
     """Plot strains; lines break where a piece ends."""
     figure = blank(7.2, 5.0)
-    if subject.bends_in_plane:
+    if subject.rod:
         axes = figure.add_subplot()
         _plot(axes, subject, ("u1", "u2", "u3"))
         _label(axes, axes, subject, r"strains $u_1,\ u_2,\ u_3$")

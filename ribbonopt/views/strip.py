@@ -26,23 +26,15 @@ MOST = 6  # pictures in a row
 
 
 def plot_strip(ribbons: Sequence[Solution], captions: Sequence[str]) -> Figure:
-    """Draw ribbons in rows, to one scale, in one view of one frame; bands whole.
-
-    Raises
-    ------
-    ViewError
-        Where one has no generatrices.
-    """
+    """Draw ribbons in rows, to one scale, in one view of one frame; bands whole."""
     subjects = [subject_of(solution, complete=True) for solution in ribbons]
-    for subject in subjects:
-        subject.demand_generatrices()
     lines = [np.concatenate([p.r for p in subject.pieces]) for subject in subjects]
     camera = place_camera(
         np.concatenate([line - line.mean(axis=0) for line in lines]),
         np.concatenate([p.d1 for subject in subjects for p in subject.pieces]),
     )
     usual = min(sweep(subject.pieces).half_width for subject in subjects)
-    drawings = [draw_surface(sweep(s.pieces, s.half_width or usual), camera) for s in subjects]
+    drawings = [draw_surface(sweep(s.pieces, s.drawn or usual), camera) for s in subjects]
     corners = np.concatenate([drawing.corners.reshape(-1, 2) for drawing in drawings])
     (left, low), (right, high) = corners.min(axis=0), corners.max(axis=0)
     size = max(right - left, (high - low) / 2)

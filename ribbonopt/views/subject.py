@@ -3,18 +3,17 @@
 from __future__ import annotations
 
 from dataclasses import dataclass, field
-from functools import cached_property
 
 from ribbonopt.checks.topology import closure
 from ribbonopt.errors import ViewError
 from ribbonopt.scene.units import Units
 from ribbonopt.solution.solution import Solution
 
-from .pieces import ROWS, Piece, in_plane, sample_pieces
+from .pieces import ROWS, Piece, in_plane, is_rod, sample_pieces
 from .symmetry import continued
 
+ROD_SHARE = 1 / 80  # half-width of the strip that a rod is drawn as, of the length
 FEWEST_ROWS = 81  # of a piece among many
-NEGLIGIBLE = 1e-9  # of the largest strain: below it u1 counts as zero
 
 
 @dataclass(frozen=True)
@@ -35,6 +34,8 @@ class Subject:
         Of all of it.
     half_width : float or None
         Of the ribbon, where the scene says it.
+    rod : bool
+        Whether u1 is free, so that there are no generatrices.
     """
 
     name: str
@@ -44,6 +45,7 @@ class Subject:
     units: Units = field(default_factory=Units)
     half_width: float | None = None
     count: int = 1
+    rod: bool = False
 
     @property
     def pieces(self) -> tuple[Piece, ...]:
@@ -61,18 +63,20 @@ class Subject:
         """Length of what is shown."""
         return self.end - self.interval[0]
 
-    @cached_property
-    def bends_in_plane(self) -> bool:
-        """Whether u1 is not zero: a rod, without generatrices."""
-        return in_plane(self.solved) > NEGLIGIBLE
-
     def demand_generatrices(self) -> None:
         """Raise a ViewError where there are none."""
-        if self.bends_in_plane:
+        if self.rod:
             raise ViewError(
-                f"{self.name} bends in its own plane (u1 is up to {in_plane(self.solved):.2g} of "
-                "the largest strain): it is no ribbon with generatrices; its strains can be drawn"
+                f"{self.name} may bend in its own plane (u1 is up to {in_plane(self.solved):.2g} "
+                "of the largest strain): it is no ribbon with generatrices; its strains and a "
+                "strip along d2 can be drawn"
             )
+
+    @property
+    def drawn(self) -> float | None:
+        """Half-width to draw it to: its own, or that of a thin strip for a rod, else None."""
+        thin = ROD_SHARE * self.length if self.rod else None
+        return thin if self.half_width is None else self.half_width
 
     @property
     def rest(self) -> str:
@@ -101,4 +105,5 @@ def subject_of(solution: Solution, complete: bool) -> Subject:
         units=solution.units,
         half_width=None if ribbon is None else ribbon.width / 2,
         count=count,
+        rod=is_rod(solution),
     )

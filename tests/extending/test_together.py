@@ -33,10 +33,9 @@ def test_together(user: Import, tmp_path: Path) -> None:
     assert [text.partition(":")[0] for text in left_out] == [
         "scene.yaml",
         "plane.png",
-        "ribbon.png",
     ]
     assert "'roller' is declared in Python" in left_out[0]
     standard = {name for export in STANDARD for name in export.files} - {"scene.yaml"}
-    written = {*standard, "exports.json", "centre.txt", "strains.png"}
+    written = {*standard, "exports.json", "centre.txt", "strains.png", "ribbon.png"}
     assert {path.name for path in tmp_path.iterdir()} == written
     np.testing.assert_allclose(np.loadtxt(tmp_path / "centre.txt")[-1], ends["r"][1])

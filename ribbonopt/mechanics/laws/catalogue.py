@@ -8,11 +8,11 @@ M > 1e-51; at m = 0 strains and derivatives are finite.
 from __future__ import annotations
 
 import math
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import fields
 from importlib import import_module
 from numbers import Real
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Any
 
 import casadi as ca
 
@@ -25,9 +25,10 @@ if TYPE_CHECKING:
     from ribbonopt.mechanics.along import Field
 
 #: laws by the name a scene gives them: module and class, which is imported when a scene asks for
-#: it; the fields of the class are those of the scene's
+#: it; the class takes what the scene's has, in order
 LAWS: Mapping[str, tuple[str, str]] = {
     "kirchhoff": ("kirchhoff", "KirchhoffLaw"),
+    "rod": ("rod", "RodLaw"),
     "sadowsky": ("sadowsky", "SadowskyLaw"),
     "single_sheet": ("sadowsky", "SingleSheetLaw"),
     "regularized": ("blended", "RegularizedLaw"),
@@ -44,8 +45,14 @@ def law_class(name: str) -> type[ConstitutiveLaw]:
 
 
 def numbers_of(law: Law) -> dict[str, float]:
-    """Return the numbers of a scene's law by name."""
-    named = {f.name: getattr(law, f.name) for f in fields(law) if f.name != "type"}
+    """Return the numbers of a scene's law by name; of triples, along directors, as B.d1."""
+    named: dict[str, Any] = {}
+    for f in fields(law):
+        value = getattr(law, f.name)
+        if isinstance(value, tuple):
+            named |= {f"{f.name}.d{i}": item for i, item in enumerate(value, start=1)}
+        elif f.name != "type":
+            named[f.name] = value
     for name, value in named.items():
         if not (isinstance(value, Real) and math.isfinite(value)):
             raise ModelError(f"law.{name}: found {value!r}, expected a number", f"law.{name}")
@@ -66,7 +73,7 @@ def law_of(law: Law, numbers: Mapping[str, ca.SX], position: ca.SX) -> Constitut
         Symbol of the arclength s, on which numbers may depend.
     """
     if not isinstance(law, OwnLaw):
-        return law_class(law.type)(**numbers)
+        return law_class(law.type)(*_arguments(law, numbers))
     found = law.constitutive(numbers, position)
     if not isinstance(found, ConstitutiveLaw):
         raise ModelError(
@@ -75,6 +82,13 @@ def law_of(law: Law, numbers: Mapping[str, ca.SX], position: ca.SX) -> Constitut
             "law",
         )
     return found
+
+
+def _arguments(law: Law, numbers: Mapping[str, ca.SX]) -> Iterator[ca.SX]:
+    """Yield what the class of a law takes, in the order of the scene's fields; triples as (3,)."""
+    for name in (f.name for f in fields(law) if f.name != "type"):
+        triple = isinstance(getattr(law, name), tuple)
+        yield ca.vertcat(*(numbers[f"{name}.d{i}"] for i in (1, 2, 3))) if triple else numbers[name]
 
 
 def relation_of(scene: Scene, theta: Callable[[str], ca.SX], position: ca.SX) -> ConstitutiveLaw:
@@ -102,8 +116,9 @@ def fields_of(scene: Scene) -> tuple[Field, ...]:
 
 
 def capabilities(scene: Scene) -> ConstitutiveLaw:
-    """Return the relation of a scene with symbols of its own, to be asked what it has."""
-    return relation_of(scene, ca.SX.sym, ca.SX.sym("s"))
+    """Return the relation of a scene, its law in numbers, to be asked what it has."""
+    known = {f"law.{name}": ca.SX(value) for name, value in numbers_of(scene.law).items()}
+    return relation_of(scene, lambda name: known.get(name, ca.SX.sym(name)), ca.SX.sym("s"))
 
 
 def is_linear(law: Law) -> bool:

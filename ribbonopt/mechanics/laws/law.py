@@ -92,6 +92,8 @@ class ConstitutiveLaw(ABC):
     linear_at_zero: bool = False
     #: strains without stress are not zero, so that no straight ribbon is without stress
     natural: bool = False
+    #: turning all sections by one angle about d3 changes nothing, or may: a rod that spins freely
+    spins: bool = False
     #: strains have a kink or a jump where `switching` changes sign; `branch` continues either side
     kinked: bool = False
     #: `moment` is exact and a closed form, cheap to differentiate; else it serves guesses only

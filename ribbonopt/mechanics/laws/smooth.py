@@ -2,14 +2,16 @@
 
 For ribbons the variational law, delta decreasing from a rod's; for rods much softer or stiffer in
 twist than in bending, other rods, from a ratio of stiffnesses that is easy. Sharpness is a number
-from 1, easy, towards 0: delta, or the smaller stiffness over the larger.
+from 1, easy, towards 0: delta, or the smallest stiffness over the next: a third that is larger
+still, infinite for Kirchhoff's rod, does no harm.
 """
 
 from __future__ import annotations
 
 from dataclasses import replace
 
-from ribbonopt.scene import Kirchhoff, Law, Variational
+from ribbonopt.scene import Kirchhoff, Law, Rod, Variational
+from ribbonopt.scene.laws import Stiff
 
 from .catalogue import is_linear
 
@@ -24,7 +26,7 @@ def first_law(law: Law, delta: float) -> Law:
     Of rods that are too uneven a more even one. Otherwise the variational law, at `delta` or, where
     that is the law, at its own if larger.
     """
-    if isinstance(law, Kirchhoff):
+    if isinstance(law, Stiff):
         return sharpened(law, EVEN) if _ratio(law) < UNEVEN else law
     if is_linear(law):
         return law
@@ -35,13 +37,13 @@ def sharpness(law: Law, other: float) -> float:
     """Return delta of a smooth law, the ratio of an uneven rod, `other` of any other law."""
     if isinstance(law, Variational):
         return law.delta
-    return _ratio(law) if isinstance(law, Kirchhoff) and in_family(law) else other
+    return _ratio(law) if isinstance(law, Stiff) and in_family(law) else other
 
 
 def in_family(law: Law) -> bool:
     """Whether a law is one of a family of smooth laws, so that it has a sharpness to follow."""
     return isinstance(law, Variational) or (
-        isinstance(law, Kirchhoff) and _ratio(law) <= EVEN * (1 + 1e-9)
+        isinstance(law, Stiff) and _ratio(law) <= EVEN * (1 + 1e-9)
     )
 
 
@@ -49,9 +51,13 @@ def sharpened(law: Law, to: float) -> Law:
     """Return a law of a smooth family at another sharpness; any other law as it is."""
     if isinstance(law, Variational):
         return Variational(delta=to)
-    if not isinstance(law, Kirchhoff) or not in_family(law):
+    if not isinstance(law, Stiff) or not in_family(law):
         return law
     ratio = min(to, EVEN)
+    if isinstance(law, Rod):
+        softest, next_, _ = _by_size(law)
+        B1, B2, B3 = (ratio * law.B[next_] if i == softest else B for i, B in enumerate(law.B))
+        return replace(law, B=(B1, B2, B3))
     return replace(law, B3=law.B2 * (ratio if law.B3 < law.B2 else 1 / ratio))
 
 
@@ -59,8 +65,17 @@ def named(law: Law) -> str:
     """Return the sharpness of a law in words, for a report; nothing of laws that have none."""
     if isinstance(law, Variational):
         return f"delta = {law.delta:.3g}"
+    if isinstance(law, Rod):
+        softest, next_, _ = _by_size(law)
+        return f"B{softest + 1} / B{next_ + 1} = {_ratio(law):.3g}"
     return f"B3 / B2 = {law.B3 / law.B2:.3g}" if isinstance(law, Kirchhoff) else ""
 
 
-def _ratio(law: Kirchhoff) -> float:
-    return min(law.B2, law.B3) / max(law.B2, law.B3)
+def _ratio(law: Stiff) -> float:
+    smallest, following, *_ = sorted(law.stiffnesses.values())
+    return smallest / following
+
+
+def _by_size(law: Rod) -> list[int]:
+    """Return which stiffness is the smallest, the next, and the largest."""
+    return sorted(range(3), key=lambda i: law.B[i])

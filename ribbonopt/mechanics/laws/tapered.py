@@ -24,6 +24,7 @@ _DECLARED = (
     "smooth",
     "linear_at_zero",
     "natural",
+    "spins",
     "kinked",
     "closed_moment",
 )

@@ -32,7 +32,7 @@ def examine(ribbon: Ribbon, problem: BoundaryValueProblem, posed: Posed) -> None
     ModelError
         With counts, names and remedy.
     """
-    refuse_asymmetry(ribbon, posed)
+    refuse_asymmetry(posed)
     conditions = linearize(ribbon, posed)
     names = list(conditions.names)
     samples = [conditions.at(conditions.generic(seed)) for seed in (0.3, 0.8)]

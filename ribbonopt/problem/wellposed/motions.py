@@ -35,7 +35,7 @@ def refuse_motions(conditions: Linearized, *, sliding: bool) -> None:
         z = conditions.satisfied(seed)
         if z is None:
             continue
-        allowed = _allowed(conditions)
+        allowed = allowed_motions(conditions)
         motions = rigid(conditions, z) @ allowed
         free = allowed @ unopposed(conditions, z, motions)
         slides = False
@@ -105,7 +105,7 @@ def along_itself(conditions: Linearized, z: Array) -> Array:
     return conditions.length * result
 
 
-def _allowed(conditions: Linearized) -> Array:
+def allowed_motions(conditions: Linearized) -> Array:
     """Return combinations (6, k) of the rigid motions that take equilibria into equilibria."""
     motions = conditions.ribbon.model.motions
     for load in conditions.posed.loads:

@@ -9,6 +9,7 @@ import numpy as np
 
 from ribbonopt.arrays import Array
 from ribbonopt.errors import ModelError
+from ribbonopt.mechanics.laws.asymmetry import leaves_plane
 from ribbonopt.mechanics.loads.load import Load
 from ribbonopt.problem.posed import Posed
 from ribbonopt.problem.ribbon import Ribbon
@@ -26,6 +27,12 @@ def in_plane(ribbon: Ribbon, posed: Posed) -> Ribbon:
     ModelError
         If the scene prescribes something that is not in the plane, or the law twists there.
     """
+    if leaves_plane(posed.scene, posed.theta):
+        raise ModelError(
+            f"states: planar, but the natural strains of law {posed.scene.law.type} lead out of "
+            "the plane across d2; use states: reduced, or leave it natural bending about d2 only",
+            "law.natural",
+        )
     conditions = linearize(ribbon, posed)
     samples = [conditions.at(conditions.generic(seed)) for seed in (0.3, 0.8)]
     without = np.all([np.abs(jacobian).max(axis=1) < NOTHING for _, jacobian in samples], axis=0)

@@ -11,14 +11,14 @@ from dataclasses import fields, is_dataclass
 from typing import Any, NamedTuple
 
 from ribbonopt.scene import limits
-from ribbonopt.scene.faults import KeyPath, Problem
-from ribbonopt.scene.laws import Kirchhoff
+from ribbonopt.scene.faults import KeyPath, Problem, dotted
+from ribbonopt.scene.laws import Stiff
 from ribbonopt.scene.model import Scene
 from ribbonopt.scene.schema.annotations import key_of
 from ribbonopt.scene.units import Units, units_of
 
 _OURS = __name__.partition(".checks")[0]
-_NEVER_ZERO = ("ribbon", "B2", "B3", "first", "smallest", "largest", "tolerance", "distance")
+_NEVER_ZERO = ("ribbon", "B", "B2", "B3", "first", "smallest", "largest", "tolerance", "distance")
 
 
 class _Kind(NamedTuple):
@@ -74,6 +74,7 @@ _KINDS: dict[KeyPath, _Kind] = {
     ("reference", "n0"): _FORCE,
     ("reference", "m0"): _MOMENT,
     ("law", "epsilon"): _SMOOTHING,
+    ("law", "natural"): _STRAIN,
     ("width",): _WIDTH,
 }
 
@@ -127,18 +128,25 @@ def in_units(scene: Scene, values: Mapping[KeyPath, float]) -> Iterator[Problem]
     units = units_of(scene)
     start, end = scene.interval
     yield from _length(end - start, units)
-    if isinstance(scene.law, Kirchhoff):
-        ratio = scene.law.B3 / scene.law.B2
-        if not 1 / limits.RATIO <= ratio <= limits.RATIO:
-            message = f"which is {ratio:g} times law.B2; expected a ratio from "
-            message += f"{1 / limits.RATIO:g} to {limits.RATIO:g}"
-            yield Problem(("law", "B3"), message, f"{scene.law.B3:g}")
+    if isinstance(scene.law, Stiff):
+        yield from _ratios(scene.law)
     for path, kind in _KINDS.items():
         unit = kind.unit_of(units)
         for place, value in _at(scene, path):
             for at, number in _numbers(value, place, values):
                 if abs(number) > kind.limit * unit:
                     yield Problem(at, _message(number, kind, unit, units), f"{number:g}")
+
+
+def _ratios(law: Stiff) -> Iterator[Problem]:
+    """Yield stiffnesses too unlike the first, by which all are divided."""
+    (first, unit), *others = law.stiffnesses.items()
+    for path, value in others:
+        ratio = value / unit
+        if not 1 / limits.RATIO <= ratio <= limits.RATIO:
+            message = f"which is {ratio:g} times {dotted(('law', *first))}; expected a ratio from "
+            message += f"{1 / limits.RATIO:g} to {limits.RATIO:g}"
+            yield Problem(("law", *path), message, f"{value:g}")
 
 
 def _length(length: float, units: Units) -> Iterator[Problem]:

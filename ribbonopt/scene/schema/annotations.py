@@ -86,7 +86,8 @@ def tag_chooser(annotation: Any) -> Callable[[Any], str | None]:
     def choose(value: Any) -> str | None:
         if not isinstance(value, dict) or not classes:
             tag = _tag_of_value(value)
-            mine = own if tag not in known else {}
+            named = isinstance(known.get(tag), type) and not isinstance(value, known[tag])
+            mine = own if named or tag not in known else {}
             return next((name for name, cls in mine.items() if isinstance(value, cls)), tag)
         if len(classes) == 1:
             return next(iter(classes))

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from ribbonopt.checks.stability import negative_directions, negative_range
+from ribbonopt.mechanics.laws.catalogue import capabilities
 from ribbonopt.solution.solution import Solution
 
 
@@ -20,7 +21,15 @@ def unexplained(a: Solution, b: Solution, changes: int) -> str:
     # Next to special points one direction is nearly neutral: it may be counted or not.
     if any(_fits(n - m, changes) for m in _counts(a) for n in _counts(b)):
         return ""
-    return f"a change of the count of negative directions from {before} to {after}"
+    pair = "" if changes or abs(after - before) != 2 else _pair(b)
+    return f"a change of the count of negative directions from {before} to {after}{pair}"
+
+
+def _pair(solution: Solution) -> str:
+    """Say why two directions may have changed at once."""
+    if not capabilities(solution.scene).spins:
+        return ""
+    return " (modes of an isotropic rod come in pairs: a half held by `support: flip` has one)"
 
 
 def _counts(solution: Solution) -> range:

@@ -8,6 +8,7 @@ from itertools import pairwise
 
 import numpy as np
 
+from ribbonopt.accuracy.spin import spins
 from ribbonopt.arrays import Array
 from ribbonopt.problem import BoundaryValueProblem, Posed
 from ribbonopt.scene import ContinuationStage, Scene
@@ -144,7 +145,7 @@ class Curve:
 
     def line(self, solution: Solution) -> Line:
         """Return the equations of a solution along this curve, on its mesh and in its phases."""
-        return self.line_of(solution.dense)
+        return replace(self.line_of(solution.dense), neutral=spins(solution))
 
     def line_of(self, dense: Output) -> Line:
         """Return the equations of an output along this curve."""

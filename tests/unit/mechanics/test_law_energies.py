@@ -55,7 +55,7 @@ def moments_of(law: RibbonLaw) -> Pairs:
 
 def test_every_variational_law_has_both_energies_and_no_other_has_one() -> None:
     numbers = {"B2": 1, "B3": 2, "chi": 1, "epsilon": 0.1, "rho": 0.5, "delta": 0.1}
-    for kind in map(law_class, LAWS):
+    for kind in (kind for kind in map(law_class, LAWS) if issubclass(kind, RibbonLaw)):
         law = kind(**{name: numbers[name] for name in kind.__dataclass_fields__})
         assert (law.stored(1.0, 0.5) is not None) is law.variational
         assert (law.complementary(1.0, 0.5) is not None) is law.variational

@@ -221,6 +221,7 @@ def test_json_schema_describes_the_shorthands() -> None:
     laws = schema["properties"]["law"]["oneOf"]
     assert {law["properties"]["type"]["const"] for law in laws} == {
         "kirchhoff",
+        "rod",
         "sadowsky",
         "single_sheet",
         "regularized",
@@ -244,4 +245,4 @@ def test_json_schema_describes_the_shorthands() -> None:
     named = [part for part in objects(schema) if "properties" in part]
     assert all(part["additionalProperties"] is False for part in named)
     assert all(part["description"] for part in named)
-    assert laws[1]["description"] == room.Sadowsky.__doc__
+    assert laws[2]["description"] == room.Sadowsky.__doc__
