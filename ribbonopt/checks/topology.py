@@ -91,7 +91,8 @@ def closure(solution: Solution) -> ClosedBand | None:
         whole = _whole(solution, ends, sign)
         if is_closed(whole, TOLERANCE):
             return whole
-    flip = find_flip(solution)
+    # Under loads between the ends an image need not have its share of them.
+    flip = None if solution.posed.loaded else find_flip(solution)
     return None if flip is None else ClosedBand(solution, np.zeros(3), 0.0, flip)
 
 

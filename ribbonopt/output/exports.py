@@ -62,7 +62,10 @@ class Fields:
     name, files = "fields", ("solution.npz",)
 
     def write(self, solution: Solution, folder: Path) -> None:
-        """Write `s` (k,), vectors (k, 3); in `units` Dw = L = 1 `w`, `theta`, ..."""
+        """Write `s` (k,), vectors (k, 3); in `units` Dw = L = 1 `w`, `theta`, ...
+
+        Rows are evenly spaced; one at a place where n or strains jump has what is behind it.
+        """
         for found, inner in equilibria(solution, folder):
             s, dense = np.linspace(*found.scene.interval, ROWS), found.dense
             rows = found.outputs(s)

@@ -35,6 +35,7 @@ def report(summary: Mapping[str, Any]) -> str:
         _row("energy", s["energy"], errors["energy"]),
         _row("invariant H(0)", s["H0"], errors["H0"]),
         *(_row(name, value, s["recorded_error"][name]) for name, value in s["recorded"].items()),
+        *_acting(s),
         *_unknown_bars(s),
         *_phases(s),
         "",
@@ -63,6 +64,33 @@ def _phases(s: Mapping[str, Any]) -> list[str]:
         where = f"; switches at s = {at}" if at else " all along"
         lines.append(f"  phases                   {phase_words(s['phases'])}{where}")
     return lines
+
+
+def _acting(s: Mapping[str, Any]) -> list[str]:
+    """Lines on loads and on what supports and ends carry, where n(0) does not say all of it."""
+    between = [r for r in s["reactions"] if not r["path"].startswith("boundary.")]
+    if not s["loads"] and not between:
+        return []
+    unit = "N, N m, " if s["units"].startswith("SI") else ""
+    lines = [f"  on the ribbon ({unit}lab frame):"]
+    for load in s["loads"]:
+        where = "in all" if load["at"] is None else f"at s = {load['at']:.6g}"
+        lines.append(f"    {load['path']:<22} {_load(load)} {where}")
+    for held in s["reactions"]:
+        where = held["path"].removeprefix("boundary.")
+        label = f"  carried at {where}" if where == held["path"] else f"  at the {where}"
+        lines.append(_row(label, held["force"], held["error"]))
+    return lines
+
+
+def _load(load: Mapping[str, Any]) -> str:
+    """Write the force and the moment of a load, but for one that is zero."""
+    both = [(word, load[word]) for word in ("force", "moment") if any(load[word])]
+    texts = []
+    for word, vector in both or [("force", load["force"])]:
+        numbers = ", ".join(_number(v, None, small=False) for v in vector)
+        texts.append(f"({numbers})" if word == "force" else f"moment ({numbers})")
+    return " and ".join(texts)
 
 
 def _unknown_bars(s: Mapping[str, Any]) -> list[str]:

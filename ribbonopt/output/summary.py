@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 import platform
+from contextlib import suppress
 from dataclasses import fields
 from typing import Any
 
 import casadi as ca
 import numpy as np
 
+from ribbonopt.accuracy.carried import reaction_errors
 from ribbonopt.accuracy.estimate import estimate_error
 from ribbonopt.checks.topology import count_half_twists
 from ribbonopt.checks.validity import warnings_of
@@ -16,6 +18,7 @@ from ribbonopt.checks.zero_moment import lacks_linearisation
 from ribbonopt.plain import finite
 from ribbonopt.problem import formulation_name
 from ribbonopt.scene import Scene
+from ribbonopt.solution.acting import at_places, reactions, resultants
 from ribbonopt.solution.solution import Solution
 from ribbonopt.version import VERSION
 
@@ -50,6 +53,8 @@ def summarize(solution: Solution) -> dict[str, Any]:
         "law_residual": checks.law_residual,
         "error_estimate": _error_estimate(solution),
         **_recorded(solution),
+        "loads": _loads(solution),
+        "reactions": _reactions(solution),
         "switch_points": solution.switch_points.tolist(),
         "phases": list(solution.sheets),
         "half_twists": count_half_twists(solution),
@@ -113,15 +118,43 @@ def _recorded(solution: Solution) -> dict[str, Any]:
     return {"recorded": values, "recorded_error": errors}
 
 
+def _loads(solution: Solution) -> list[dict[str, Any]]:
+    """Return force and couple of each load in all: along the ribbon (`at` None), and at places."""
+    along = [(name, None, *both) for name, both in resultants(solution).items()]
+    points = [(p.path, p.at, p.force, p.moment) for p in at_places(solution) if not p.support]
+    return [
+        {"path": path, "at": at, "force": force.tolist(), "moment": moment.tolist()}
+        for path, at, force, moment in (*along, *points)
+    ]
+
+
+def _reactions(solution: Solution) -> list[dict[str, Any]]:
+    """Return what the supports and the ends carry; bars not known as in `_error_estimate`."""
+    found = reactions(solution)
+    errors: list[float | None] = [None] * len(found)
+    if not _unknown(solution):
+        with suppress(np.linalg.LinAlgError):
+            errors = list(reaction_errors(solution))
+    return [
+        {"path": place.path, "at": place.at, "force": place.force.tolist(), "error": error}
+        for place, error in zip(found, errors, strict=True)
+    ]
+
+
 def _error_estimate(solution: Solution) -> dict[str, float | None]:
     """Estimated absolute errors; None without convergence or linearisation, and for minima."""
-    unknown = not solution.status.converged or lacks_linearisation(solution)
-    if unknown or solution.problem.recovered:
+    if _unknown(solution):
         return dict.fromkeys(ANSWERS)
     try:
         return dict(estimate_error(solution))
     except np.linalg.LinAlgError:  # singular equations: the solution is not the only one near
         return dict.fromkeys(ANSWERS)
+
+
+def _unknown(solution: Solution) -> bool:
+    """Whether there can be no bars."""
+    without = not solution.status.converged or lacks_linearisation(solution)
+    return without or bool(solution.problem.recovered)
 
 
 def versions() -> dict[str, str]:

@@ -18,6 +18,8 @@ UP = np.array([1.0, 0.5, 0.8])  # up in the picture and towards the viewer, if t
 CHOICE = 0.03  # views this close to the best are as good
 AMBIENT = 0.5
 GLOSS = 0.16
+ONE_WAY = 0.5  # mean of unit vectors of forces that go about one way
+UPRIGHT = 4.0  # how much rather forces are seen upright
 FACING = 0.5  # a face this frontal (cosine) needs not be more so
 
 
@@ -46,18 +48,28 @@ class Camera:
         return diffuse, gloss
 
 
-def place_camera(line: Array, normals: Array) -> Camera:
-    """Place the camera for a centre line (k, 3) of evenly spaced points and its normals (k, 3)."""
+def place_camera(line: Array, normals: Array, ways: Array | None = None) -> Camera:
+    """Place the camera for a centre line (k, 3) of evenly spaced points and its normals (k, 3).
+
+    Unit vectors along `ways` (l, 3), of forces, are to be seen too.
+    """
     spread = np.cov(line.T)
     towards = _directions()
     seen = np.minimum(np.abs(towards @ normals.T), FACING).mean(axis=1)
     # Squared area of the projected centre line's ellipse: cofactors of its covariance.
-    total, size = np.trace(spread), np.trace(spread) ** 2
+    total = np.trace(spread)
     cofactors = ((total**2 - np.sum(spread**2)) / 2) * np.eye(3) - total * spread + spread @ spread
-    area = np.sqrt(np.maximum(np.einsum("ki,ij,kj->k", towards, cofactors, towards), 0) + size / 50)
-    score = seen * area
+    # That of a straight one is its length, as it is seen.
+    size = total - np.einsum("ki,ij,kj->k", towards, spread, towards)
+    squared = np.einsum("ki,ij,kj->k", towards, cofactors, towards)
+    score = seen * np.sqrt(np.maximum(squared, 0) + size**2 / 50)
+    upright = np.zeros(3)
+    if ways is not None and len(ways):
+        score *= np.sqrt(np.maximum(1 - (towards @ ways.T) ** 2, 0)).mean(axis=1)
+        upright = ways.mean(axis=0)
     good = np.flatnonzero(score > (1 - CHOICE) * score.max())
-    return max((_level(t, spread) for t in towards[good]), key=lambda c: float(c.towards @ UP))
+    views = (_level(t, spread, upright) for t in towards[good])
+    return max(views, key=lambda c: float(c.towards @ UP) + UPRIGHT * abs(float(c.up @ upright)))
 
 
 def _directions() -> Array:
@@ -69,11 +81,16 @@ def _directions() -> Array:
     return np.stack([rho * np.cos(angle), rho * np.sin(angle), z], axis=1)
 
 
-def _level(towards: Array, spread: Array) -> Camera:
-    """Turn the picture so that the lab axis nearest to its longest extent is level."""
+def _level(towards: Array, spread: Array, upright: Array) -> Camera:
+    """Turn the picture so that the lab axis nearest to its longest extent is level.
+
+    Where forces go one way, `upright`, it is the one that is most across that.
+    """
     across = np.eye(3) - np.outer(towards, towards)
-    longest = np.linalg.eigh(across @ spread @ across)[1][:, -1]
-    right = across[np.argmax(np.abs(longest))]
+    level = np.linalg.eigh(across @ spread @ across)[1][:, -1]
+    if np.linalg.norm(across @ upright) > ONE_WAY:
+        level = np.cross(across @ upright, towards)
+    right = across[np.argmax(np.abs(across @ level))]
     right = right / np.linalg.norm(right)
     up = np.cross(towards, right)
     if up @ UP < 0:

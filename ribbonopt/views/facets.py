@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import Any
 
@@ -17,6 +18,7 @@ FRONT = np.array([0.36, 0.58, 0.80])  # side of d1
 BACK = np.array([0.93, 0.72, 0.45])  # other side, of a ribbon that has two
 LINES = np.array([0.12, 0.16, 0.24])
 EDGE, CENTRE, GENERATRIX = (0.8, 0.9), (1.0, 0.85), (0.5, 0.5)  # width in points, opacity
+PLACE = (1.6, 0.9)
 SEAM = 0.35  # width in points of a face's own outline, which closes the seams between faces
 LIGHTER = 0.45  # of the way to white, for what follows by symmetry
 HAZE = 0.22  # of the way to white, for what is furthest
@@ -35,8 +37,11 @@ class Drawing:
 _Part = tuple[Array, Array, Array, Array, Array]  # a Drawing with heights (k,) after its corners
 
 
-def draw_surface(surface: Surface, camera: Camera) -> Drawing:
-    """Project, light and sort the faces, generatrices, edges and centre line of a ribbon."""
+def draw_surface(surface: Surface, camera: Camera, places: Sequence[float] = ()) -> Drawing:
+    """Project, light and sort the faces, generatrices, edges and centre line of a ribbon.
+
+    The generatrices at `places`, arclengths, are drawn strongly.
+    """
     back = FRONT if surface.one_sided else BACK
     length = surface.sheets[-1].piece.s[-1] - surface.sheets[0].piece.s[0]
     # A line lies in the faces that it borders: lifted by their radius it is painted after them.
@@ -47,6 +52,9 @@ def draw_surface(surface: Surface, camera: Camera) -> Drawing:
     for sheet in surface.sheets:
         parts.append(_lit(camera, *_faces(sheet), back, sheet.piece.mirrored))
         parts += [_segments(camera, lift, points, width) for points, width in _lines(sheet, length)]
+    for s in places:
+        sheet, row = surface.at(s)
+        parts.append(_segments(camera, lift, _across(sheet, row), PLACE))
     if not surface.closed:
         for sheet, row in ((surface.sheets[0], 0), (surface.sheets[-1], -1)):
             parts.append(_segments(camera, lift, _across(sheet, row), EDGE))

@@ -1,13 +1,14 @@
 """A solution as pieces to draw: rows along s, split where u2 changes sign while u3 does not vanish.
 
 There eta = u3/u2 leaps from one sign to the other, whether u2 jumps (Sadowsky's law at m2 = 0) or
-passes through 0 (the other laws). Rows approach the ends of each piece from inside, so that a jump
-at an end shows its own side only, and they crowd there, where regularised laws change quickly.
+passes through 0 (the other laws). They are split as well where something acts at a single place.
+Rows approach the ends of each piece from inside, so that a jump at an end shows its own side only,
+and they crowd there, where regularised laws change quickly.
 """
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
@@ -15,6 +16,7 @@ from numpy.typing import NDArray
 
 from ribbonopt.mechanics.laws.catalogue import capabilities
 from ribbonopt.mechanics.widths import widths
+from ribbonopt.solution.acting import at_places
 from ribbonopt.solution.solution import Solution
 
 Array = NDArray[np.float64]
@@ -80,13 +82,12 @@ def sample_pieces(solution: Solution, rows: int = ROWS) -> tuple[Piece, ...]:
     s = _grid(start, end, rows, INSET * length)
     values = solution.outputs(s)
     scale = _scale(values)
-    if is_rod(solution):
-        return (replace(_piece(solution, s, values, scale), eta=np.zeros(len(s))),)
-    crossings = _crossings(solution, s, values, scale)
-    if not crossings:
+    crossings = [] if is_rod(solution) else _crossings(solution, s, values, scale)
+    cuts = sorted({*crossings, *_places(solution)})
+    if not cuts:
         return (_piece(solution, s, values, scale),)
     pieces = []
-    for a, b in pairwise([start, *crossings, end]):
+    for a, b in pairwise([start, *cuts, end]):
         if b - a > SHORTEST * length:
             s = _grid(a, b, max(9, round(rows * (b - a) / length)), INSET * length)
             pieces.append(_piece(solution, s, solution.outputs(s), scale))
@@ -104,7 +105,8 @@ def _piece(solution: Solution, s: Array, values: dict[str, Array], scale: float)
     u1, u2, u3 = (values[name] for name in ("u1", "u2", "u3"))
     r, d1, d2, d3 = (values[name] for name in ("r", "d1", "d2", "d3"))
     width = widths(solution.scene, s)
-    return Piece(s, u1, u2, u3, _eta(u2, u3, scale), r, d1, d2, d3, width=width)
+    eta = np.zeros(len(s)) if is_rod(solution) else _eta(u2, u3, scale)
+    return Piece(s, u1, u2, u3, eta, r, d1, d2, d3, width=width)
 
 
 def _scale(values: dict[str, Array]) -> float:
@@ -123,6 +125,13 @@ def _crossings(solution: Solution, s: Array, values: dict[str, Array], scale: fl
     steady = np.abs(values["u2"]) > NO_BEND * scale
     rows = np.flatnonzero(steady & twisted)
     return [_bisect(solution, s[i], s[j], up[i]) for i, j in pairwise(rows) if up[i] != up[j]]
+
+
+def _places(solution: Solution) -> list[float]:
+    """Arclengths at which a load or a support acts: n jumps there, strains may."""
+    if not solution.posed.stations:
+        return []
+    return list(dict.fromkeys(place.at for place in at_places(solution)))
 
 
 def _bisect(solution: Solution, a: float, b: float, up: bool) -> float:

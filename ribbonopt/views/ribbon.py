@@ -10,6 +10,8 @@ from ribbonopt.solution.solution import Solution
 
 from .camera import Camera, place_camera
 from .facets import Drawing, draw_surface
+from .marks import marks_of, paint_marks
+from .pieces import Array
 from .style import FAINT, INK, blank, head
 from .subject import Subject, subject_of
 from .surface import ETA_BOUND, LEAP_SLOPE, Surface, sweep
@@ -19,6 +21,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 WIDTH, HEIGHT = 7.2, 6.4  # inches, at most
+NARROWEST = 0.75  # width of a picture over its height: room for its title
 
 
 def plot_ribbon(
@@ -45,17 +48,23 @@ def draw_ribbon(subject: Subject, half_width: float | None = None) -> Figure:
     pieces = subject.pieces
     surface = sweep(pieces, subject.drawn if half_width is None else half_width)
     line = np.concatenate([p.r for p in pieces])
-    camera = place_camera(line, np.concatenate([p.d1 for p in pieces]))
-    drawing = draw_surface(surface, camera)
+    camera = place_camera(line, np.concatenate([p.d1 for p in pieces]), subject.acting.ways)
+    drawing = draw_surface(surface, camera, list(subject.acting.places))
     (left, low), (right, high) = drawing.corners.min(axis=(0, 1)), drawing.corners.max(axis=(0, 1))
     size = max(right - left, (high - low) * WIDTH / HEIGHT)
-    foot = 0.11 * size
-    box = (left - 0.03 * size, right + 0.03 * size, low - foot, high + 0.03 * size)
+    marks = marks_of(subject.acting, surface, camera, size)
+    for x, y in marks.points:
+        left, right, low, high = min(left, x), max(right, x), min(low, y), max(high, y)
+    foot = 0.13 * size
+    low, high = low - foot, high + 0.03 * size
+    beside = max(0.03 * size, (NARROWEST * (high - low) - (right - left)) / 2)
+    box = (left - beside, right + beside, low, high)
     page = WIDTH / (box[1] - box[0])
     height = min(HEIGHT, page * (box[3] - box[2]))
     figure = blank(WIDTH, max(height, 0.2 * WIDTH) + 0.7)
     axes = figure.add_subplot()
     paint(axes, drawing)
+    paint_marks(axes, marks)
     axes.set(xlim=box[:2], ylim=box[2:], aspect="equal")
     axes.set_axis_off()
     head(axes, subject.name, subject.units)
@@ -96,6 +105,7 @@ def _triad(axes: Axes, camera: Camera, box: tuple[float, float, float, float], s
     """Draw the lab's axes as seen, in the lower right corner."""
     origin = np.array([box[1] - 0.08 * size, box[2] + 0.055 * size])
     tips, heights = camera.project(np.eye(3))
+    places: list[Array] = []
     for i in np.argsort(heights):
         if np.linalg.norm(tips[i]) < 0.2:
             continue
@@ -107,6 +117,12 @@ def _triad(axes: Axes, camera: Camera, box: tuple[float, float, float, float], s
             arrowprops={"arrowstyle": "-|>", "color": FAINT, "lw": 1, "shrinkA": 0, "shrinkB": 0},
         )
         place = origin + tip * (1 + 0.25 / max(float(np.linalg.norm(tips[i])), 0.25))
+        for other in places:
+            way = place - other
+            if np.linalg.norm(way) < 0.024 * size:  # letters would lie on one another
+                side = np.array([-tip[1], tip[0]]) / np.linalg.norm(tip)
+                place += 0.024 * size * (side if way @ side >= 0 else -side)
+        places.append(place)
         axes.text(
             place[0],
             place[1],
@@ -135,5 +151,18 @@ def _caption(subject: Subject, surface: Surface) -> str:
         notes.append("generatrices cross")
     if surface.leaps:
         reach = ETA_BOUND * surface.half_width / LEAP_SLOPE
-        notes.append(rf"$\eta$ drawn smooth within {reach:.2g}{unit} of where $u_2$ changes sign")
-    return "\n".join([*lines, *([", ".join(notes)] if notes else [])])
+        notes.append(rf"$\eta$ drawn smooth within {reach:.2g}{unit} of where it jumps")
+    return "\n".join([*lines, *filter(None, [", ".join(notes), _arrows(subject)])])
+
+
+def _arrows(subject: Subject) -> str:
+    """Return what the longest arrows are, in words; "" if there is none."""
+    acting, si = subject.acting, subject.units.si
+    found = []
+    if acting.largest > 0:
+        found.append(f"force {acting.largest:.3g}{' N' * si}")
+    if acting.strongest > 0:
+        found.append(f"moment {acting.strongest:.3g}{' N m' * si}")
+    if acting.densest > 0:
+        found.append(f"force per length {acting.densest:.3g}{' N/m' * si}")
+    return "arrows, the longest: " + ", ".join(found) if found else ""

@@ -14,6 +14,7 @@ from .style import (
     ALLOWED,
     BENDING,
     DASHES,
+    FAINT,
     FORBIDDEN,
     IN_PLANE,
     INK,
@@ -30,6 +31,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 ETA_SHOWN = 1.6
+LETTER = 0.011  # of the length shown: a letter of a name
 LINES: Mapping[str, tuple[str, str]] = {
     "u1": (IN_PLANE, r"$u_1$ (in plane)"),
     "u2": (BENDING, r"$u_2$ (bending)"),
@@ -75,6 +77,32 @@ def _plot(axes: Axes, subject: Subject, quantities: tuple[str, ...]) -> None:
             axes.plot(*_joined(subject.mirrored, quantity), color=colour, lw=1.5, ls=DASHES)
 
 
+def _mark(axes: Axes, places: Mapping[float, str]) -> None:
+    """Mark where something acts at a single place."""
+    for s in places:
+        axes.axvline(s, color=FAINT, lw=0.7, zorder=0)
+
+
+def _name(axes: Axes, places: Mapping[float, str], length: float, below: bool) -> None:
+    """Write the names of single places, as the scene has them, below or in axes, in free rows."""
+    taken: list[float] = []  # where the last name of each row is
+    for s, name in places.items():
+        room = LETTER * length * len(name)
+        row = next((i for i, last in enumerate(taken) if s - last > room), len(taken))
+        taken[row : row + 1] = [s]
+        axes.annotate(
+            name,
+            (s, 0),
+            (0, -4 - 9 * row if below else 3 + 9 * row),
+            xycoords=axes.get_xaxis_transform(),
+            textcoords="offset points",
+            ha="center",
+            va="top" if below else "bottom",
+            fontsize=7.5,
+            color=FAINT,
+        )
+
+
 def _shade(axes: Axes) -> None:
     """Shade what is allowed of eta, and what is not."""
     axes.axhspan(-1, 1, color=ALLOWED, lw=0, zorder=0)
@@ -86,7 +114,11 @@ def _shade(axes: Axes) -> None:
 
 
 def _label(top: Axes, bottom: Axes, subject: Subject, strains: str) -> None:
-    """Label the strains above, the arclength below."""
+    """Label the strains above, the arclength below; mark places."""
+    places = subject.acting.places
+    for axes in dict.fromkeys((top, bottom)):
+        _mark(axes, places)
+    _name(top, places, subject.length, below=top is not bottom)
     top.axhline(0, color=INK, lw=0.6, zorder=0)
     if subject.mirrored:
         top.plot([], [], color=INK, lw=1.5, ls=DASHES, label=subject.rest)

@@ -9,6 +9,7 @@ from ribbonopt.errors import ViewError
 from ribbonopt.scene.units import Units
 from ribbonopt.solution.solution import Solution
 
+from .acting import Acting, acting_of
 from .pieces import ROWS, Piece, in_plane, is_rod, sample_pieces
 from .symmetry import continued
 
@@ -30,6 +31,8 @@ class Subject:
         What follows by symmetry, or empty.
     count : int
         How many times the interval makes all of it.
+    acting : Acting
+        What acts and holds: at ends only where the ribbon does not go on by symmetry.
     units : Units
         Of all of it.
     half_width : float or None
@@ -46,6 +49,7 @@ class Subject:
     half_width: float | None = None
     count: int = 1
     rod: bool = False
+    acting: Acting = field(default_factory=Acting)
 
     @property
     def pieces(self) -> tuple[Piece, ...]:
@@ -106,4 +110,5 @@ def subject_of(solution: Solution, complete: bool) -> Subject:
         half_width=None if ribbon is None else ribbon.width / 2,
         count=count,
         rod=is_rod(solution),
+        acting=acting_of(solution, ends=band is None),
     )

@@ -84,6 +84,11 @@ class Surface:
         """The largest half-width."""
         return self.half_width * _widest(tuple(sheet.piece for sheet in self.sheets))
 
+    def at(self, s: float) -> tuple[Sheet, int]:
+        """Return the sheet and the row of it nearest to an arclength."""
+        sheet = next((sheet for sheet in self.sheets if sheet.piece.s[-1] >= s), self.sheets[-1])
+        return sheet, int(np.abs(sheet.piece.s - s).argmin())
+
     @property
     def tapers(self) -> bool:
         """Whether the width is not the same all along."""

@@ -50,8 +50,16 @@ def gap_between_ends(scene: Scene) -> float:
     if distance is not None:
         return number(distance, scene.parameters)
     ends = (scene.boundary.start, scene.boundary.end)
-    start, end = (_held(e, scene.parameters) for e in ends)
+    start, end = (held_position(e, scene.parameters) for e in ends)
     return float(np.linalg.norm([end[a] - start[a] for a in start if a in end]))
+
+
+def held_position(end: End, parameters: Parameters) -> dict[str, float]:
+    """Return the lab components of the position that an end holds, by axis."""
+    support, place = end.declared_support, components(end.position, parameters)
+    if support is None:
+        return place
+    return {axis: value for axis, value in place.items() if axis in support.holds}
 
 
 def _at_end(name: EndName, end: End, parameters: Parameters) -> list[Condition]:
@@ -61,11 +69,3 @@ def _at_end(name: EndName, end: End, parameters: Parameters) -> list[Condition]:
     from .supports import conditions_at  # scenes that name every component do without
 
     return conditions_at(name, support, end, parameters)
-
-
-def _held(end: End, parameters: Parameters) -> dict[str, float]:
-    """Return the lab components of the position that are held."""
-    support, place = end.declared_support, components(end.position, parameters)
-    if support is None:
-        return place
-    return {axis: value for axis, value in place.items() if axis in support.holds}

@@ -1,6 +1,7 @@
 """What the count of half twists costs, and when it is none."""
 
 from collections.abc import Callable
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -8,7 +9,9 @@ import pytest
 
 from ribbonopt.checks import topology
 from ribbonopt.checks.flip import find_flip
-from ribbonopt.checks.topology import ClosedBand, count_half_twists
+from ribbonopt.checks.topology import ClosedBand, closure, count_half_twists
+from ribbonopt.mechanics.loads.catalogue import loads_of
+from ribbonopt.scene import Loads
 from ribbonopt.solution.solution import Solution
 
 Array = np.ndarray
@@ -72,3 +75,10 @@ def test_a_half_that_is_loaded_along_its_axis_is_none(solved: Solved, load: str)
 
     loaded: Any = Loaded()
     assert find_flip(loaded) is None
+
+
+def test_a_half_under_a_load_between_its_ends_is_none(solved: Solved) -> None:
+    half = solved("moebius_half")
+    assert closure(half) is not None
+    heavy = loads_of(replace(half.scene, loads=Loads(force=(0, 0, -1))))
+    assert closure(replace(half, posed=replace(half.posed, loads=heavy))) is None
