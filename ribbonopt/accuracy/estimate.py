@@ -19,6 +19,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from ribbonopt.arrays import Array
+from ribbonopt.solution.potential import dead_force_of
 from ribbonopt.solution.solution import Solution
 from ribbonopt.solution.trajectory import Trajectory
 from ribbonopt.solvers.condense import CondensedSystem
@@ -92,7 +93,7 @@ def analyse(solution: Solution, near: Factors | None = None, *, keep: bool = Fal
 
 
 def estimate_error(solution: Solution) -> dict[str, float]:
-    """Bars: bounds of the absolute errors of `n0`, `m0`, `u0`, `H0`, `energy`, `states` and `u`.
+    """Bars: bounds of the absolute errors of n0, m0, u0, H0, energy, potential, states and u.
 
     Vectors by their largest component, in the units of the solution; states: positions, over the
     unit of length, and directors anywhere along the ribbon; u: strains anywhere along it, but where
@@ -100,10 +101,13 @@ def estimate_error(solution: Solution) -> dict[str, float]:
     over a layer.
     """
     units = solution.units
-    quantity = {"n0": "n", "m0": "m", "u0": "u", "u": "u", "H0": "H", "energy": "m"}
+    quantity = {"n0": "n", "m0": "m", "u0": "u", "u": "u", "H0": "H"}
+    quantity |= {"potential": "m", "energy": "m"}
     found = analyse(solution)
     bar = SAFETY if found.known else math.nan
     errors = {name: error for name, error in found.errors.items() if name != RESOLVED}
+    force = float(np.linalg.norm(dead_force_of(solution.posed)))
+    errors["potential"] += force * errors["states"]  # its work at an end
     return {name: bar * units.of(quantity.get(name, "")) * e for name, e in errors.items()}
 
 

@@ -36,7 +36,8 @@ def gaps_at_nodes(
     parts = errors["n0"] + float(np.abs(ours["u"][0]).max()) * errors["m0"]
     gap = _gap(theirs["H"][0], ours["H"][0], float(np.abs(ours["n"][0]).max()))
     errors["H0"] = max(gap, CANCEL * parts)
-    errors["energy"] = _gap(np.array(better.energy), np.array(trajectory.energy))
+    for name in ("energy", "potential"):
+        errors[name] = _gap(np.array(better.integral(name)), np.array(trajectory.integral(name)))
     along = {name: ours[name] for name in ("r", "d1", "d2", "d3", "u")}
     if len(trajectory.ends) > 2:
         along = _shifted(trajectory, better.nodes[::split])

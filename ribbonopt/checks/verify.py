@@ -163,21 +163,17 @@ def _verdicts(ribbon: Ribbon) -> tuple[tuple[str, ...], Buffered]:
 
 
 def _drifts(solution: Solution, uniform: bool) -> dict[str, float]:
-    """Drifts of what is conserved; under loads that is neither n nor n . m, maybe H with r.
-
-    H is not where the law depends on s.
-    """
-    nodes, loads, unknown = solution.trajectory.at_nodes, solution.posed.loads, float("nan")
+    """Drifts of what is conserved; H is not where the law depends on s."""
+    nodes, unknown = solution.trajectory.at_nodes, float("nan")
     if solution.posed.stations:  # n steps there, and what follows from it
         drift = {"orthonormality": float(nodes["orthonormality"].max())}
         return dict.fromkeys(("n", "n_dot_m", "H"), unknown) | drift
     drift = {"orthonormality": float(nodes["orthonormality"].max())}
-    levels = [load.level(nodes["r"]) for load in loads]
-    if loads:
-        known = [level for level in levels if level is not None]
-        H = nodes["H"] + sum(known)
-        changes = _drift(H) if uniform and len(known) == len(levels) else unknown
-        return {"n": unknown, "n_dot_m": unknown, "H": changes} | drift
+    if solution.posed.loads:
+        from .conserved import conserved  # few scenes have loads
+
+        found = {name: one.drift for name, one in conserved(solution, uniform).items()}
+        return {"n": unknown, "n_dot_m": unknown, "H": unknown} | drift | found
     scale = float(np.linalg.norm(nodes["n"][0])) * _size(nodes["m"])
     n_dot_m = _drift(nodes["n_dot_m"], scale)
     changes = _drift(nodes["H"]) if uniform else unknown

@@ -78,8 +78,8 @@ class RodModel(ABC):
         """dx/ds for the Darboux vector u (3,) along the directors, eqs. (2.1), (2.2), (2.7)."""
 
     @abstractmethod
-    def beyond(self, s: ca.SX, end: ca.SX) -> ca.SX:
-        """Force (3,) of the dead loads between the arclengths s and `end`, lab frame."""
+    def beyond(self, s: ca.SX) -> ca.SX:
+        """Force (3,) of the dead loads at single places behind the arclength s, lab frame."""
 
     @abstractmethod
     def start_conditions(self, x: ca.SX) -> dict[str, ca.SX]:
@@ -144,12 +144,12 @@ class SpatialRod(RodModel):
         return Section(x[:3], *directors, n, m, s, own, self.balance.stepped(c, s))
 
     def rates(self, x: ca.SX, section: Section, u: ca.SX) -> ca.SX:
-        q, _ = self._split(x)
+        q, rest = self._split(x)
         turn = self.orientation.rates(q, u)
-        return ca.vertcat(section.d3, turn, self.balance.rates(section))
+        return ca.vertcat(section.d3, turn, self.balance.rates(section, rest))
 
-    def beyond(self, s: ca.SX, end: ca.SX) -> ca.SX:
-        return self.balance.beyond(s, end)
+    def beyond(self, s: ca.SX) -> ca.SX:
+        return self.balance.beyond(s)
 
     def start_conditions(self, x: ca.SX) -> dict[str, ca.SX]:
         q, rest = self._split(x)

@@ -12,10 +12,13 @@ from .laws.law import ConstitutiveLaw, Stress
 from .section import Section
 
 
-def outputs(section: CrossSection, law: ConstitutiveLaw, u: ca.SX) -> dict[str, ca.SX]:
+def outputs(
+    section: CrossSection, law: ConstitutiveLaw, u: ca.SX, work: ca.SX | float = 0.0
+) -> dict[str, ca.SX]:
     """Expressions to sample on a solution, by name; vectors in the lab frame but u (directors).
 
-    `u` (3,) are the strains of the formulation, `section` holds those of the inverse law.
+    `u` (3,) are the strains of the formulation, `section` holds those of the inverse law. `work` is
+    that of the loads per length.
     """
     rod = section.rod
     stress = rod.stress
@@ -28,6 +31,7 @@ def outputs(section: CrossSection, law: ConstitutiveLaw, u: ca.SX) -> dict[str, 
     result |= {f"n{i + 1}": stress.n[i] for i in range(3)}
     result |= {f"m{i + 1}": stress.m[i] for i in range(3)}
     result["energy"] = energy
+    result["potential"] = energy - work
     result["H"] = stress.n[2] + complementary
     result["n_dot_m"] = ca.dot(rod.n, rod.m)
     result |= {"switching": switch.value, "leap": switch.leap}

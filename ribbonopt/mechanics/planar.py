@@ -110,11 +110,12 @@ class PlanarRod(RodModel):
         return Section(r, *self._directors(x[2]), n, m, s, own, stepped)
 
     def rates(self, x: ca.SX, section: Section, u: ca.SX) -> ca.SX:
-        rest = self.balance.rates(section)[self._kept(self.balance.states)]
+        own = self._whole(self.balance.states, x[3:])
+        rest = self.balance.rates(section, own)[self._kept(self.balance.states)]
         return ca.vertcat(section.d3[list(self.plane.inside)], u[1], rest)
 
-    def beyond(self, s: ca.SX, end: ca.SX) -> ca.SX:
-        return self.balance.beyond(s, end)
+    def beyond(self, s: ca.SX) -> ca.SX:
+        return self.balance.beyond(s)
 
     def start_conditions(self, x: ca.SX) -> dict[str, ca.SX]:
         found = self.balance.start_conditions(self._whole(self.balance.states, x[3:]))
@@ -170,7 +171,7 @@ class PlanarRod(RodModel):
         """Places of the components of a balance that are in the plane, by its names."""
         inside = {AXES[i] for i in self.plane.inside}
         across = AXES[self.plane.axis]
-        axes = {"n": inside, "m": {across}, "a": {across}, "b": {across}}
+        axes = {"n": inside, "F": inside, "m": {across}, "a": {across}, "b": {across}}
         return [i for i, name in enumerate(names) if name[1] in axes[name[0]]]
 
     def _whole(self, names: tuple[str, ...], part: ca.SX) -> ca.SX:

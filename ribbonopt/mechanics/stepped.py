@@ -60,13 +60,13 @@ class Stepped(Balance):
     def stepped(self, c: ca.SX, s: ca.SX) -> ca.SX:
         return self._steps(s, c[len(self.inner.constants) :])[0]
 
-    def rates(self, section: Section) -> ca.SX:
+    def rates(self, section: Section, x: ca.SX) -> ca.SX:
         assert section.stepped is not None  # as `stepped` says
-        inside = replace(section, n=section.n + section.stepped)
-        return ca.vertcat(self.inner.rates(inside), -ca.cross(section.stepped, section.d3))
+        inside, (own, _) = replace(section, n=section.n + section.stepped), self._split(x)
+        return ca.vertcat(self.inner.rates(inside, own), -ca.cross(section.stepped, section.d3))
 
-    def beyond(self, s: ca.SX, end: ca.SX) -> ca.SX:
-        found = self.inner.beyond(s, end)
+    def beyond(self, s: ca.SX) -> ca.SX:
+        found = ca.SX.zeros(3)
         for station, passed in zip(self.stations, self._passed(s), strict=True):
             # A reaction does no work: its place is a condition of the least energy.
             found += (1 - passed) * station.force(self.theta, lambda name: ca.SX(0))
@@ -80,9 +80,10 @@ class Stepped(Balance):
     def pack(self, fields: RodFields, reference: Array) -> tuple[Array, Array]:
         states, constants = self.inner.pack(fields, reference)
         rest = np.zeros((len(fields.r), 3))
-        if not self.inner.states:  # m is all in the constants, where nothing else carries the rest
+        if len(constants):  # what of m the states inside do not carry
             n, m = constants[:3], constants[3:6]
             rest = fields.m - m - np.cross(n, fields.r - reference)
+            rest[:, [f"a{axis}" in self.inner.states for axis in AXES]] = 0.0
         return np.hstack([states, rest]), np.append(constants, np.zeros(len(self.unknown)))
 
     def moved(self, x: Array, c: Array) -> tuple[Array, Array]:

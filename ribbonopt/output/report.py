@@ -33,7 +33,8 @@ def report(summary: Mapping[str, Any]) -> str:
         _row("strains u(0), directors", s["u0"], errors["u0"]),
         *(["  (force and moment recovered from the costates)"] * (s["loads_from"] == "costates")),
         _row("energy", s["energy"], errors["energy"]),
-        _row("invariant H(0)", s["H0"], errors["H0"]),
+        *_potential(s),
+        _row("H(0)" if _varies(s) else "invariant H(0)", s["H0"], errors["H0"]),
         *(_row(name, value, s["recorded_error"][name]) for name, value in s["recorded"].items()),
         *_acting(s),
         *_unknown_bars(s),
@@ -52,6 +53,22 @@ def report(summary: Mapping[str, Any]) -> str:
         *(f"    {reason}" for reason in s["skipped"]),
     ]
     return "\n".join(lines)
+
+
+def _varies(summary: Mapping[str, Any]) -> bool:
+    """Whether H is no invariant: loads or a law that varies change it."""
+    drift = summary["invariant_drift"]
+    return drift["orthonormality"] is not None and drift["H"] is None
+
+
+def _potential(summary: Mapping[str, Any]) -> list[str]:
+    """Lines on the potential and on what loads along the ribbon leave constant."""
+    s, bar = summary, summary["error_estimate"]["potential"]
+    lines = []
+    if s["potential"] not in (None, s["energy"]):
+        lines.append(_row("potential", s["potential"], bar))
+    names = [name for name in s["conserved"] if name != "H"]
+    return lines + [f"  {'invariant ' + name:<25}{s['conserved'][name]:.10g}" for name in names]
 
 
 def _phases(s: Mapping[str, Any]) -> list[str]:
@@ -108,12 +125,15 @@ def _others(equilibria: Sequence[Mapping[str, Any]]) -> list[str]:
     """Lines on all equilibria found, where there are several."""
     if len(equilibria) == 1:
         return []
-    lines = [f"  {len(equilibria)} equilibria, by energy; the first is the one above:"]
+    told = [found.get("potential") for found in equilibria]
+    worked = None not in told and told != [found["energy"] for found in equilibria]
+    name = "potential" if worked else "energy"
+    lines = [f"  {len(equilibria)} equilibria, by {name}; the first is the one above:"]
     for i, found in enumerate(equilibria, start=1):
         n = ", ".join(f"{v:.6g}" for v in found["n0"])
         m = ", ".join(f"{v:.6g}" for v in found["m0"])
         lines.append(
-            f"    {i}: energy {found['energy']:.8g}, n(0) = ({n}), m(0) = ({m}), "
+            f"    {i}: {name} {found[name]:.8g}, n(0) = ({n}), m(0) = ({m}), "
             f"from {found['starts']} starts"
         )
     return lines
@@ -158,7 +178,7 @@ def _drifts(drift: Mapping[str, float | None]) -> str:
     words = {"n": "n", "n_dot_m": "n.m", "H": "H", "orthonormality": "orthonormality"}
     # Under loads less is conserved; without convergence nothing is known.
     known = {k: v for k, v in drift.items() if v is not None} or drift
-    return ", ".join(f"{words[k]} {_short(v)}" for k, v in known.items())
+    return ", ".join(f"{words.get(k, k)} {_short(v)}" for k, v in known.items())
 
 
 def _plain(value: float | Sequence[float]) -> str:

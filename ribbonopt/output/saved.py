@@ -67,6 +67,8 @@ class SavedSummary:
     u0: Vector | None = None
     H0: Known = None
     energy: Known = None
+    potential: Known = None
+    conserved: dict[str, Known] | None = None
     twist: Known = None
     length: Known = None
     error_estimate: dict[str, Known] | None = None

@@ -19,11 +19,12 @@ from ribbonopt.plain import finite
 from ribbonopt.problem import formulation_name
 from ribbonopt.scene import Scene
 from ribbonopt.solution.acting import at_places, reactions, resultants
+from ribbonopt.solution.potential import potential
 from ribbonopt.solution.solution import Solution
 from ribbonopt.version import VERSION
 
 #: what the answer consists of, each with a bar
-ANSWERS = ("n0", "m0", "u0", "H0", "energy", "states", "u")
+ANSWERS = ("n0", "m0", "u0", "H0", "energy", "potential", "states", "u")
 
 
 def summarize(solution: Solution) -> dict[str, Any]:
@@ -45,6 +46,8 @@ def summarize(solution: Solution) -> dict[str, Any]:
         "u0": start["u"].tolist(),
         "H0": float(start["H"]),
         "energy": solution.energy,
+        "potential": potential(solution),
+        "conserved": _conserved(solution),
         "twist": solution.twist,
         "length": scene.interval[1] - scene.interval[0],
         "invariant_drift": dict(checks.drift),
@@ -95,9 +98,26 @@ def _equilibrium(solution: Solution) -> dict[str, Any]:
     """Return what tells one equilibrium of a scene from the others; `starts` led to it."""
     return {
         "energy": solution.energy,
+        "potential": potential(solution),
         "n0": solution.n0.tolist(),
         "m0": solution.m0.tolist(),
         "starts": solution.times,
+    }
+
+
+def _conserved(solution: Solution) -> dict[str, float]:
+    """Return what loads leave constant, numbers only, at the start; nothing without loads."""
+    posed = solution.posed
+    if not posed.loads or posed.stations or not solution.status.converged:
+        return {}
+    from ribbonopt.checks.conserved import conserved  # few scenes have loads
+
+    uniform = not np.isnan(solution.verification.invariant)
+    units, found = solution.units, conserved(solution, uniform)
+    return {
+        name: float(one.values[0]) * units.length**one.length * units.force**one.force
+        for name, one in found.items()
+        if one.values.ndim == 1
     }
 
 

@@ -10,18 +10,21 @@ which n and m(0) are recovered. Controls:
 
 Sign: with equations x_{e+1} - x_e - ... = 0 and the Lagrangian cost + lambda . equations, lambda is
 the derivative of the energy with respect to a shift of the rest of the ribbon, which is n; a turn
-by dt of the rest changes q by dt q / 2, hence m . e_k = lambda_q . (e_k q) / 2. With dead forces in
-the cost, -Q . d3 with Q(s) all that acts beyond s, the costate of r is the constant n - Q.
+by dt of the rest changes q by dt q / 2, hence m . e_k = lambda_q . (e_k q) / 2. Dead loads f along
+the ribbon are in the cost as -f . r, so that the costate of r is n all along it, whether the start
+is free to move or not; a dead force Q at an end, or at a place beyond s, is there as -Q . d3, and
+that costate is n - Q.
 """
 
 from __future__ import annotations
 
-from typing import NamedTuple
+from collections.abc import Sequence
+from typing import TYPE_CHECKING, NamedTuple
 
 import casadi as ca
 
 from ribbonopt.errors import ModelError
-from ribbonopt.mechanics.ends.conditions import Component
+from ribbonopt.mechanics.ends.conditions import Component, Condition
 from ribbonopt.mechanics.ends.placement import LoadAlong
 from ribbonopt.mechanics.laws.law import ConstitutiveLaw, Stress
 from ribbonopt.mechanics.outputs import outputs
@@ -33,6 +36,9 @@ from .held import held_between
 from .imposed import residuals
 from .posed import RECOVERED, Posed
 from .ribbon import Ribbon
+
+if TYPE_CHECKING:
+    from ribbonopt.mechanics.stations import Station
 
 WITHOUT = {
     "full": "costates of nine director components are not unique",
@@ -66,14 +72,15 @@ def minimum(ribbon: Ribbon) -> BoundaryValueProblem:
     names = [*RECOVERED, *(f"recovered.{name}" for name in ribbon.constants[len(RECOVERED) :])]
     loads = ca.vertcat(*(ribbon.theta[name] for name in names))
     section, (start, end) = ribbon.section(x[:count], loads), ribbon.interval
-    beyond = dead_force(ribbon) + ribbon.model.beyond(ribbon.position, end)
-    program = _program(ribbon.law, section.rod.own, held.estimate)
+    rod, work = section.rod, ribbon.work(section.rod)
+    beyond = dead_force(ribbon) + ribbon.model.beyond(ribbon.position)
+    program = _program(ribbon.law, rod.own, held.estimate)
     phase = Phase(
         dynamics=ca.vertcat(ribbon.rates(section, program.u), held.rates(section.rod)),
         length=end - start,
-        outputs=outputs(section, ribbon.law, program.u),
+        outputs=outputs(section, ribbon.law, program.u, work),
         path=program.path,
-        cost=program.cost - ca.dot(beyond, section.rod.d3),
+        cost=program.cost - ca.dot(beyond, rod.d3) - work,
     )
     points = ca.SX.sym("start", x.numel()), ca.SX.sym("end", x.numel())
     costate = ca.SX.sym("costate", x.numel())
@@ -137,7 +144,7 @@ def dead_force(ribbon: Ribbon) -> ca.SX:
     given = {
         c.axis: ribbon.theta[c.name]
         for c in ribbon.conditions
-        if isinstance(c, Component) and _is_dead_force(ribbon, c)
+        if isinstance(c, Component) and _is_dead_force(ribbon.conditions, c)
     }
     force = ca.vertcat(*(given.get(axis, ca.SX(0)) for axis in "xyz"))
     for condition in ribbon.conditions:
@@ -146,10 +153,10 @@ def dead_force(ribbon: Ribbon) -> ca.SX:
     return force
 
 
-def _is_dead_force(ribbon: Ribbon, condition: Component) -> bool:
+def _is_dead_force(conditions: Sequence[Condition], condition: Component) -> bool:
     held = [
         c
-        for c in ribbon.conditions
+        for c in conditions
         if isinstance(c, Component) and (c.quantity, c.axis) == ("position", condition.axis)
     ]
     return condition.quantity == "force" and condition.axis in "xyz" and len(held) < 2
@@ -183,28 +190,22 @@ def refusal(ribbon: Ribbon, posed: Posed) -> Refusal | None:
         return Refusal(WITHOUT[posed.scene.states], "use states: reduced", "formulation")
     return (
         _load_without_potential(ribbon)
-        or _point_without_potential(ribbon)
-        or _end_without_potential(ribbon)
+        or point_without_potential(ribbon.stations)
+        or end_without_potential(ribbon.conditions)
     )
 
 
 def _load_without_potential(ribbon: Ribbon) -> Refusal | None:
-    held = {c.axis for c in ribbon.conditions if isinstance(c, Component) and _holds_start(c)}
     for load in ribbon.loads:
-        key = load.name
-        if not load.dead:
-            return Refusal(f"{key} follows the ribbon", "use another formulation", key)
-        if held < set("xyz"):
-            return Refusal(
-                f"{key} does work on the start, which is free to move",
-                "prescribe the position of the start, or use another formulation",
-                key,
-            )
+        if load.without_potential:
+            reason = f"{load.name} {load.without_potential}"
+            return Refusal(reason, "use another formulation", load.name)
     return None
 
 
-def _point_without_potential(ribbon: Ribbon) -> Refusal | None:
-    for station in ribbon.stations:
+def point_without_potential(stations: Sequence[Station]) -> Refusal | None:
+    """Return why what acts at single places has no potential; None where it has one."""
+    for station in stations:
         for action in station.actions:
             if action.without_potential:
                 return Refusal(
@@ -215,15 +216,12 @@ def _point_without_potential(ribbon: Ribbon) -> Refusal | None:
     return None
 
 
-def _holds_start(condition: Component) -> bool:
-    return (condition.end, condition.quantity) == ("start", "position")
-
-
-def _end_without_potential(ribbon: Ribbon) -> Refusal | None:
-    for condition in ribbon.conditions:
+def end_without_potential(conditions: Sequence[Condition]) -> Refusal | None:
+    """Return why what is prescribed at the ends has no potential; None where it has one."""
+    for condition in conditions:
         if not isinstance(condition, Component) or condition.kinematic or not condition.value:
             continue
-        if not _is_dead_force(ribbon, condition):
+        if not _is_dead_force(conditions, condition):
             return Refusal(
                 f"{condition.name}, other than zero, has no potential here (only a dead force, in "
                 "lab components, on an end free to follow it has)",

@@ -98,7 +98,7 @@ def equilibrium(
     phase = Phase(
         dynamics=rates,
         length=end - start,
-        outputs=outputs(unknowns.section, ribbon.law, u),
+        outputs=outputs(unknowns.section, ribbon.law, u, ribbon.work(unknowns.section.rod)),
         algebraic=empty if equations is None else equations,
         path=empty if path is None else path,
         singular=singular(ribbon.law, unknowns.stress),

@@ -66,7 +66,7 @@ class Posed:
         units = units or units_of(scene)
         special = in_special_units(scene, units)
         loads: tuple[Load, ...] = ()
-        if special.loads != NO_LOADS:
+        if special.loads != NO_LOADS or special.gravity is not None:
             from ribbonopt.mechanics.loads.catalogue import loads_of  # few scenes have any
 
             loads = loads_of(special)
@@ -140,7 +140,7 @@ class Posed:
             (type(c).__name__, *(v for v in vars(c).values() if isinstance(v, str)))
             for c in self.conditions
         )
-        loads: tuple[object, ...] = tuple(type(load) for load in self.loads)
+        loads: tuple[object, ...] = tuple(load.structure_key for load in self.loads)
         loads += tuple(tuple(type(a) for a in station.actions) for station in self.stations)
         settings = type(scene.law), scene.formulation, scene.states, scene.transcription
         # In a plane, which conditions are left depends on what plane it is; natural strains tell

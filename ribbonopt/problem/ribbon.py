@@ -173,6 +173,12 @@ class Ribbon:
         model = self.model.rates(section.x, section.rod, u)
         return ca.vertcat(model, self.law.rates(section.rod.stress, u))
 
+    def work(self, rod: Section) -> ca.SX:
+        """Return the work f . r per length of the loads that have a potential."""
+        theta = self.theta.__getitem__
+        known = [load for load in self.loads if not load.without_potential]
+        return sum((ca.dot(load.force(rod, theta), rod.r) for load in known), ca.SX(0))
+
 
 def _model_of(posed: Posed, theta: Mapping[str, ca.SX]) -> RodModel:
     """Return the model that a scene names by `states`."""

@@ -119,6 +119,6 @@ def _phase(ribbon: Ribbon, unknowns: Unknowns, kind: int, length: ca.SX) -> Phas
     return Phase(
         dynamics=unknowns.marked.rates(section, u),
         length=length,
-        outputs=outputs(section, ribbon.law, u),
+        outputs=outputs(section, ribbon.law, u, ribbon.work(section.rod)),
         singular=singular(law, unknowns.stress),
     )

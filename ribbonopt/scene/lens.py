@@ -31,6 +31,7 @@ _ROOTS: tuple[KeyPath, ...] = (
     ("boundary", "start"),
     ("boundary", "end"),
     ("loads",),
+    ("gravity",),
     ("supports",),
     ("ribbon",),
     ("width",),

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from typing import Annotated, Any, Protocol, runtime_checkable
 
-from .ends import LabVector, Triple
+from .along import Along
 from .schema.bounds import InPython
 from .stations import PointLoad
 
@@ -26,13 +26,29 @@ class OwnLoad(Protocol):
 
 
 @dataclass(frozen=True)
+class AlongAxes:
+    """Components in the lab frame, each a number along the ribbon; those not given are zero."""
+
+    x: Along | None = None
+    y: Along | None = None
+    z: Along | None = None
+
+
+AlongVector = tuple[Along, Along, Along] | AlongAxes
+
+
+@dataclass(frozen=True)
 class Loads:
     """Loads along the ribbon, and at single places.
 
-    `force` is dead: a force per length (lab frame) that keeps its direction, as own weight does.
-    `points` act at single arclengths; `own` are declared in Python.
+    `force` and `couple` are dead: per length, in the lab frame, they keep their direction while the
+    ribbon moves. `pressure` follows it: a force per length along the normal d1, in SI a pressure in
+    pascals times the width. All three are numbers, formulas of s, or tables. `points` act at single
+    arclengths; `own` are declared in Python.
     """
 
-    force: Triple | LabVector | None = None
+    force: AlongVector | None = None
+    couple: AlongVector | None = None
+    pressure: Along | None = None
     points: tuple[PointLoad, ...] = ()
     own: tuple[Annotated[OwnLoad, InPython()], ...] = ()

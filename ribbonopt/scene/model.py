@@ -13,7 +13,7 @@ from typing import Annotated, Literal
 from . import limits
 from .along import Along
 from .continuation import ContinuationStage
-from .ends import Boundary, HalfTwists, Loop, Value
+from .ends import Boundary, HalfTwists, LabVector, Loop, Triple, Value
 from .laws import Law
 from .loads import Loads
 from .schema.bounds import Bounds
@@ -166,13 +166,17 @@ class Reference:
 
 @dataclass(frozen=True)
 class RibbonSizes:
-    """The ribbon in SI units (m, Pa): lengths, forces and moments of the scene are SI too."""
+    """The ribbon in SI units (m, Pa): lengths, forces and moments of the scene are SI too.
+
+    `density` (kg/m^3) is needed where there is `gravity`.
+    """
 
     length: Annotated[float, Bounds(gt=0)]
     width: Annotated[float, Bounds(gt=0)]
     thickness: Annotated[float, Bounds(gt=0)]
     youngs_modulus: Annotated[float, Bounds(gt=0)]
     poisson_ratio: Annotated[float, Bounds(gt=-1, le=0.5)]
+    density: Annotated[float, Bounds(gt=0)] | None = None
 
     def interval(self, loop: Loop | None, start: float = 0.0) -> tuple[float, float]:
         """Return the longest interval from a start: all of the ribbon, or the piece of a loop."""
@@ -208,5 +212,6 @@ class Scene:
     record: dict[str, str] = field(default_factory=dict)
     continuation: ContinuationStage | tuple[ContinuationStage, ...] | None = None
     loads: Loads = field(default_factory=Loads)
+    gravity: Triple | LabVector | None = None
     supports: tuple[InteriorSupport, ...] = ()
     width: Along | None = None

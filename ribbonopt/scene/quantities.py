@@ -56,6 +56,7 @@ QUANTITIES: Mapping[str, Named] = {
     "u3": Named("twist", length=-1, at_ends=True),
     "eta": Named("slope of the generatrices, u3 / u2"),
     "energy": Named("strain energy per length", force=1),
+    "potential": Named("energy per length less the work of loads along the ribbon", force=1),
     "H": Named("invariant W_Leg + n3", force=1),
     "n_dot_m": Named("invariant n . m", length=1, force=2),
     "switching": Named("what changes sign where the curvature may jump", length=1, force=1),
@@ -77,7 +78,7 @@ VECTORS = tuple(name for name, shape in OUTPUTS.items() if shape == "vector")
 START_VECTORS = (("n0x", "n0y", "n0z"), ("m0x", "m0y", "m0z"), ("u1", "u2", "u3"))
 
 #: ... and all numbers of an equilibrium
-ANSWERS = ("energy", "H0", *(part for vector in START_VECTORS for part in vector))
+ANSWERS = ("energy", "potential", "H0", *(part for vector in START_VECTORS for part in vector))
 
 
 def dimension(name: str) -> tuple[int, int]:

@@ -17,9 +17,9 @@ from dataclasses import dataclass, fields, is_dataclass, replace
 from typing import Any
 
 from .along import scaled
-from .ends import Boundary, End
+from .ends import Boundary, End, LabVector, Triple
 from .laws import Law, OwnLaw, Stiff
-from .loads import Loads
+from .loads import AlongAxes, AlongVector, Loads
 from .model import Guess, LoadGuess, Reference, Scene, StrainGuess
 from .quantities import dimension
 from .stations import InteriorSupport, PointLoad
@@ -110,6 +110,7 @@ def in_special_units(scene: Scene, units: Units | None = None) -> Scene:
         parameters=parameters | own,
         boundary=_boundary(boundary, units, parameters),
         loads=_loads(scene.loads, units, parameters),
+        gravity=_gravity(scene, units),
         supports=tuple(_support(support, units, parameters) for support in scene.supports),
         width=scaled(scene.width, 1.0, units.length),
         guess=_guess(scene.guess, units),
@@ -132,9 +133,39 @@ def _boundary(boundary: Boundary, units: Units, parameters: Mapping[str, float])
 
 
 def _loads(loads: Loads, units: Units, parameters: Mapping[str, float]) -> Loads:
-    points = tuple(_point(point, units, parameters) for point in loads.points)
-    force = _over(loads.force, units.force / units.length, parameters)
-    return replace(loads, force=force, points=points)
+    if loads == Loads():
+        return loads
+    per_length = units.force / units.length
+    return replace(
+        loads,
+        force=_along(loads.force, per_length, units.length),
+        couple=_along(loads.couple, units.force, units.length),
+        pressure=scaled(loads.pressure, per_length, units.length),
+        points=tuple(_point(point, units, parameters) for point in loads.points),
+    )
+
+
+def _along(vector: AlongVector | None, unit: float, length: float) -> AlongVector | None:
+    """Return a vector of numbers along the ribbon divided by a unit, its arclength by a length."""
+    if isinstance(vector, AlongAxes):
+        x, y, z = (scaled(v, unit, length) for v in (vector.x, vector.y, vector.z))
+        return AlongAxes(x, y, z)
+    if vector is None:
+        return None
+    x, y, z = (scaled(value, unit, length) for value in vector)
+    return x, y, z
+
+
+def _gravity(scene: Scene, units: Units) -> Triple | LabVector | None:
+    """Return the weight per length, for which gravity stands in a scene without a `ribbon`."""
+    ribbon = scene.ribbon
+    if scene.gravity is None or ribbon is None or ribbon.density is None:
+        return scene.gravity
+    mass = ribbon.density * ribbon.width * ribbon.thickness
+    weight: Triple | LabVector = _over(
+        scene.gravity, units.force / units.length / mass, scene.parameters
+    )
+    return weight
 
 
 def _point(point: PointLoad, units: Units, parameters: Mapping[str, float]) -> PointLoad:

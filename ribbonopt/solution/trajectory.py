@@ -145,7 +145,11 @@ class Trajectory:
     @cached_property
     def energy(self) -> float:
         """Strain energy, by the quadrature of the scheme."""
-        return float(self.length * self.stages[2] @ self.at_stages["energy"])
+        return self.integral("energy")
+
+    def integral(self, name: str) -> float:
+        """Integral over s of a scalar named output, by the quadrature of the scheme."""
+        return float(self.length * self.stages[2] @ self.at_stages[name])
 
     @cached_property
     def _extent(self) -> Array:

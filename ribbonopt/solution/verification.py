@@ -24,7 +24,8 @@ class Verification:
         Largest difference at the stages between the strains and those that the inverse law gives
         for the moments, relative to the largest strain.
     drift : mapping
-        Drift of the invariants `n`, `n_dot_m`, `H` (relative) and `orthonormality` at the nodes.
+        Drift of the invariants `n`, `n_dot_m`, `H` (relative) and `orthonormality` at the nodes;
+        under loads of those that they leave, by name, such as `H + f.r`.
     """
 
     problems: tuple[str, ...]
@@ -32,6 +33,11 @@ class Verification:
     residual_between_nodes: float
     law_residual: float
     drift: Mapping[str, float]
+
+    @property
+    def invariant(self) -> float:
+        """Drift of H or, under dead loads, of what is constant in its place."""
+        return self.drift.get("H + f.r", self.drift["H"])
 
 
 def unverified() -> Verification:

@@ -35,8 +35,9 @@ from ribbonopt.solution.solution import Solution
 
 from .energy import MESH, least_energy_of
 from .first_shape import compresses, follower_loads, loaded, shapes_for
-from .homotopy import HomotopyPath, follow, smooth_of
+from .homotopy import HomotopyPath, follow
 from .loops import closed_posed, fundamental_scene
+from .tracking import smooth_of
 from .unfold import unfolded
 
 FIRST, LAST = 0.3, 0.01  # delta of the first solve, and of the last unless the scene's is smaller

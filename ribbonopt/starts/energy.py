@@ -2,7 +2,7 @@
 
 IPOPT on a coarse mesh, from a shape that need not even be a ribbon; force and moment follow from
 the costates. What is prescribed of loads at the ends is left out here, unless a dead force has a
-potential; so are loads that follow the ribbon, which have none.
+potential; so are loads along the ribbon that have none.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ def least_energy_of(posed: Posed, law: Law) -> Posed:
     """Return a scene under a law with a smooth energy, as this solve wants it."""
     settings = {"formulation": "energy", "states": "reduced", "solver": SOLVER}
     found = posed.under(law=law, transcription=MESH, **settings)
-    loads = tuple(load for load in found.loads if load.dead)
+    loads = tuple(load for load in found.loads if not load.without_potential)
     if not found.stations:
         return replace(found, loads=loads)
     from ribbonopt.mechanics.stations import conservative  # few scenes have any

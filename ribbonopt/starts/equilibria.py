@@ -22,10 +22,11 @@ from ribbonopt.guess import Guess
 from ribbonopt.guess.named import shape_of
 from ribbonopt.guess.shapes import Chord, Perturbed, Shape
 from ribbonopt.problem import Posed
+from ribbonopt.solution.potential import known_potential
 from ribbonopt.solution.solution import Solution
 
 from .automatic import Automatic
-from .first_shape import dead_force_of, shapes_for
+from .first_shape import shapes_for
 
 SAME = 1e-3  # of strains over the largest strain (root mean square), and of invariants
 POINTS = 129
@@ -146,21 +147,8 @@ def distinct(solutions: Sequence[Solution]) -> Kinds:
             kind.append((new, [i]))
         else:
             image[1].append(i)
-    kinds.sort(key=lambda kind: potential(kind[0][0].solution))
+    kinds.sort(key=lambda kind: known_potential(kind[0][0].solution))
     return [[members for _, members in kind] for kind in kinds]
-
-
-def potential(solution: Solution) -> float:
-    """Strain energy less the work of dead loads, in the units of the solution."""
-    s = np.array(solution.scene.interval)
-    ends = solution.outputs(s)
-    chord = ends["r"][1] - ends["r"][0]
-    work = float(dead_force_of(solution.posed) @ chord) * solution.units.force
-    trajectory = solution.trajectory
-    for load in solution.posed.loads:
-        weights = solution.posed.length * trajectory.stages[2]
-        work += load.work(trajectory.at_stages["r"], weights) * solution.units.moment
-    return float(solution.energy - work)
 
 
 def _variants(posed: Posed) -> Iterator[Shape]:

@@ -14,14 +14,15 @@ from ribbonopt.guess.placing import place_ends
 from ribbonopt.guess.shapes import Chord, Shape
 from ribbonopt.mechanics.ends.conditions import Component, Frame
 from ribbonopt.mechanics.ends.frames import DIRECTORS
-from ribbonopt.mechanics.ends.placement import LoadAlong
 from ribbonopt.mechanics.ends.winding import winding
 from ribbonopt.problem import Posed, Ribbon
 from ribbonopt.scene import LoadGuess
+from ribbonopt.solution.potential import dead_force_of
 
 from .loops import loop_of
 
 ACROSS = 1e-12  # cosine of a right angle
+MIDDLE = np.array([0.5])
 SMALL_BOW = 0.3  # radians, for a strip that nothing shortens but a load
 
 
@@ -44,6 +45,10 @@ def shapes_for(posed: Posed, *, wound: bool = True) -> Iterator[Shape]:
     plain = Chord(start, end, length, winding=turn)
     if chord > length * (1 - 1e-9) and (posed.loaded or compresses(posed, plain)):
         bow = SMALL_BOW
+    if posed.loads and bow:
+        # To the side where it has the lesser potential: a strip that hangs, not an arch.
+        pull = np.sum([load.mean_force() for load in posed.loads], axis=0)
+        bow *= 1.0 if pull @ plain.frames(MIDDLE)[0][:, 0] >= 0 else -1.0
     yield replace(plain, bow=bow)
     if plain.straight and not bow:
         return
@@ -69,17 +74,6 @@ def compresses(posed: Posed, chord: Chord) -> bool:
     """
     force, along = dead_force_of(posed), chord.end[0] - chord.start[0]
     return bool(force @ along < -ACROSS * np.linalg.norm(force) * np.linalg.norm(along))
-
-
-def dead_force_of(posed: Posed) -> Array:
-    """Dead force (3,) on an end, lab frame."""
-    force = np.zeros(3)
-    for c in posed.conditions:
-        if isinstance(c, Component) and c.quantity == "force" and c.axis in "xyz":
-            force["xyz".index(c.axis)] = c.value
-        elif isinstance(c, LoadAlong):
-            force += c.value * np.array(c.along)
-    return force
 
 
 def follower_loads(posed: Posed) -> FollowerLoads | IntegratedLoads | None:

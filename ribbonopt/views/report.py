@@ -37,7 +37,14 @@ from .histogram import distributions_html
 GOOD, BAD = "#1f5fa8", ("#c2410c", "#e69f00", "#cc79a7", "#8a5a44", "#777777")
 NONE = "#c9c9c9"  # ribbons that are missing
 LONG = ("message", "note", "path", "verified")  # not for axes
-MINOR = ("H0", *(part for vector in START_VECTORS for part in vector), "start", "note", "message")
+MINOR = (
+    "potential",
+    "H0",
+    *(part for vector in START_VECTORS for part in vector),
+    "start",
+    "note",
+    "message",
+)
 LISTED, FAILED, LONGEST = 200, 1000, 60  # rows of the table, more that failed, letters of a cell
 FILES = ("table.csv", "rows.jsonl")
 SOLUTIONS = "solutions"  # folder beside the report; what is saved of ribbon 7 is in solutions/7

@@ -16,7 +16,9 @@ from scipy.spatial.transform import Rotation
 from ribbonopt.checks.arcs import Arcs
 from ribbonopt.checks.verify import verify
 from ribbonopt.pipeline.prepared import prepare, solve
-from ribbonopt.scene import Scene, loads_scene
+from ribbonopt.scene import Collocation, Scene, loads_scene
+from ribbonopt.scene.loads import Loads
+from ribbonopt.solution.potential import potential
 from ribbonopt.solution.solution import Solution
 from ribbonopt.solvers import Status
 
@@ -275,3 +277,25 @@ def test_meshes_of_clamps_with_jumps_agree(number: int) -> None:
         assert gap <= 1e-8 * loads
     np.testing.assert_allclose(coarse.switch_points, fine.switch_points, rtol=0, atol=1e-7)
     assert coarse.energy == pytest.approx(fine.energy, rel=1e-8)
+
+
+@pytest.mark.parametrize(
+    "loads",
+    [
+        pytest.param(Loads(force=(1.0, -2.0, 1.5)), marks=pytest.mark.slow),
+        pytest.param(Loads(force=(0.0, "3*s", 0.0)), marks=pytest.mark.slow),
+        pytest.param(Loads(couple=(0.3, -0.4, 0.5)), marks=pytest.mark.slow),
+        Loads(couple=(0.0, "s", "0.5*s**2")),
+        Loads(pressure=1.5),
+    ],
+)
+def test_loads_turn_a_mixture_so_that_m2_stays_zero(loads: Loads) -> None:
+    """Verified in each phase: m2 and n1 + m1 u3 + c2 are zero all along, the far clamp is met."""
+    found = solve(replace(clamp(*draw(4)), loads=loads))
+    assert found.verified, found.message
+    assert found.sheets[:3] == (-1, 0, 1)
+    if loads.force is not None:  # the convexified energy knows of no phases
+        scene = replace(found.scene, formulation="energy", tolerance=None)
+        other = solve(replace(scene, transcription=Collocation(degree=3, intervals=120)))
+        assert other.verified
+        assert potential(other) == pytest.approx(potential(found), rel=1e-5)

@@ -25,13 +25,18 @@ def number(value: Value, parameters: Parameters) -> float:
 
 def components(vector: Any, parameters: Parameters) -> dict[str, float]:
     """Return the prescribed components of a vector by axis; a triple stands for x, y, z."""
+    return {axis: number(value, parameters) for axis, value in by_axis(vector)}
+
+
+def by_axis(vector: Any) -> list[tuple[str, Any]]:
+    """Return the prescribed components of a vector as they were written, by axis."""
     if vector is None:
-        return {}
+        return []
     if is_dataclass(vector):
         pairs = [(f.name, getattr(vector, f.name)) for f in fields(vector)]
     else:
         pairs = list(zip("xyz", vector, strict=True))
-    return {axis: number(v, parameters) for axis, v in pairs if v is not None}
+    return [(axis, value) for axis, value in pairs if value is not None]
 
 
 def unit(vector: Any, parameters: Parameters) -> np.ndarray:

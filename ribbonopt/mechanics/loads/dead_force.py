@@ -1,57 +1,64 @@
-"""A dead force per length, the same all along the ribbon: own weight, for example."""
+"""A dead force per length, which keeps its direction: own weight, for example."""
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterable
 from dataclasses import dataclass
 
 import casadi as ca
 import numpy as np
 
 from ribbonopt.arrays import Array
-from ribbonopt.mechanics.rotations import cross_matrix
 from ribbonopt.mechanics.section import Section
 
-from .load import DeadLoad, Theta
-
-NAME = "loads.force"
-PARALLEL = 1e-9
+from .components import Components
+from .load import DeadLoad, Line, Theta, line_of, turns_that_leave
 
 
 @dataclass(frozen=True, eq=False)
 class DeadForce(DeadLoad):
-    """Components x, y, z of a force per length, lab frame; those not named are zero."""
+    """Force per length, lab frame; `name` is its path in the scene."""
 
-    components: Mapping[str, float]
-    name = NAME
+    components: Components
+    name: str = "loads.force"
+
+    @property
+    def lab_axes(self) -> tuple[str, str]:  # type: ignore[override]
+        """Those of its components; it has no couple."""
+        return self.components.axes, ""
+
+    @property
+    def open_axes(self) -> str:  # type: ignore[override]
+        return self.components.open_axes
+
+    @property
+    def structure_key(self) -> tuple[object, ...]:
+        return type(self), self.name, self.components.structure
 
     def numbers(self) -> dict[str, float]:
-        return {f"{NAME}.{axis}": value for axis, value in self.components.items()}
+        return self.components.numbers()
+
+    def numbers_to_scale(self) -> Iterable[str]:
+        return self.components.numbers_to_scale()
+
+    def size_along(self) -> float:
+        return float(np.abs(self.components.samples).max())
+
+    def mean_force(self) -> Array:
+        return np.asarray(self.components.samples.mean(axis=0))
 
     def force(self, section: Section, theta: Theta) -> ca.SX:
-        return self._vector(theta)
+        return self.components.at(section.s, theta)
 
     def total(self, s: ca.SX, theta: Theta) -> ca.SX:
-        return self._vector(theta) * (s - theta("interval.start"))
+        return self.components.total(s, theta)
 
     def symmetries(self, motions: Array) -> Array:
         # A turn w leaves f where w x f = 0: all but those about the force change it.
-        size = max(float(np.linalg.norm(self._values)), np.finfo(float).tiny)
-        changed = cross_matrix(self._values / size) @ motions[3:]
-        _, singular, right = np.linalg.svd(changed)
-        rank = int((singular > PARALLEL).sum())
-        return np.asarray(right[rank:].T)
+        return turns_that_leave(self.components.samples, motions)
 
-    def work(self, r: Array, weights: Array) -> float:
-        return float(weights @ r @ self._values)
+    def level(self, r: Array) -> Array | None:
+        return np.asarray(r @ self.components.samples[0]) if self.components.uniform else None
 
-    def level(self, r: Array) -> Array:
-        return np.asarray(r @ self._values)
-
-    @property
-    def _values(self) -> Array:
-        return np.array([self.components.get(axis, 0.0) for axis in "xyz"])
-
-    def _vector(self, theta: Theta) -> ca.SX:
-        named = self.components
-        return ca.vertcat(*(theta(f"{NAME}.{a}") if a in named else 0 for a in "xyz"))
+    def lines_of_action(self) -> tuple[Line, Line]:
+        return line_of(self.components.samples), np.zeros(3)

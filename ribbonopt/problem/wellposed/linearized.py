@@ -127,7 +127,7 @@ class Linearized:
         n, m = ([known.get(f"{v}{axis}", 0.0) for axis in "xyz"] for v in "nm")
         force = max(1 / self.length**2, float(np.linalg.norm(n)))
         moment = max(1 / self.length, float(np.linalg.norm(m)))
-        sizes = {"r": self.length, "n": force, "m": moment, "a": moment, "b": moment}
+        sizes = {"r": self.length, "n": force, "F": force, "m": moment, "a": moment, "b": moment}
         model = self.ribbon.model
         state = [sizes.get(name[0], 1.0) for name in model.states]
         state += [1.0] * len(self.ribbon.law.states)

@@ -17,6 +17,7 @@ from ribbonopt.problem.ribbon import Ribbon
 from .linearized import linearize
 
 NOTHING = 1e-9  # largest residual of a condition that holds, and derivative of one without effect
+PLACES = 33  # at which loads along the ribbon are looked at
 
 
 def in_plane(ribbon: Ribbon, posed: Posed) -> Ribbon:
@@ -43,13 +44,12 @@ def in_plane(ribbon: Ribbon, posed: Posed) -> Ribbon:
     for load in posed.loads:
         across = _across(ribbon, load, conditions.generic(0.3), posed)
         if across > NOTHING:
-            key = next(iter(load.numbers())).rpartition(".")[0]
-            raise _refusal(key, across, key)
+            raise _refusal(load.name, across, load.name)
     return replace(ribbon, idle=frozenset(np.array(conditions.names)[without].tolist()))
 
 
 def _across(ribbon: Ribbon, load: Load, z: Array, posed: Posed) -> float:
-    """Part of a load at one end that would take the ribbon out of its plane."""
+    """Part of a load that would take the ribbon out of its plane, at the states of one end."""
     x, constants = (ca.SX.sym("x", len(names)) for names in (ribbon.states, ribbon.constants))
     rod, theta = ribbon.section(x, constants).rod, ribbon.theta.__getitem__
     force, couple = load.force(rod, theta), load.couple(rod, theta)
@@ -58,7 +58,8 @@ def _across(ribbon: Ribbon, load: Load, z: Array, posed: Posed) -> float:
     function = ca.Function("across", inputs, [ca.densify(ca.vertcat(*parts))])
     count = x.numel()
     c = z[len(z) - len(ribbon.constants) :]
-    found = function(z[:count], c, posed.values, posed.scene.interval[0])
+    places = np.linspace(*posed.scene.interval, PLACES)
+    found = [function(z[:count], c, posed.values, s) for s in places]
     return float(np.abs(np.array(found)).max())
 
 

@@ -42,6 +42,7 @@ _STRAIN = _Kind(-1, 0, limits.STRAIN, "1 / L", "it bends to a millionth of the l
 _PER_LENGTH = _Kind(
     -1, 1, limits.FORCE_PER_LENGTH, "D w / L^3", "it acts on a millionth of the length"
 )
+_COUPLE = _Kind(0, 1, limits.FORCE, "D w / L^2", "it bends to a millionth of the length")
 _ANGLE = _Kind(0, 0, limits.ANGLE, "rad", "angles so large lose their digits")
 _TURNS = _Kind(0, 0, limits.ANGLE / 6, "turns", "angles so large lose their digits")
 _WIDTH = _Kind(0, 0, limits.WIDTH, "", "it is in units of the ribbon's own width")
@@ -61,6 +62,8 @@ _KINDS: dict[KeyPath, _Kind] = {
         }.items()
     },
     ("loads", "force"): _PER_LENGTH,
+    ("loads", "couple"): _COUPLE,
+    ("loads", "pressure"): _PER_LENGTH,
     ("loads", "points", "at"): _LENGTH,
     ("loads", "points", "force"): _FORCE,
     ("loads", "points", "moment"): _MOMENT,

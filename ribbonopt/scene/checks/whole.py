@@ -36,6 +36,7 @@ def check(scene: Scene) -> list[Problem]:
     formulas |= _formulas(scene.loads, Loads, ("loads",))
     formulas |= _formulas(scene.supports, tuple[InteriorSupport, ...], ("supports",))
     formulas |= _formulas(scene.guess, Guess, ("guess",))
+    formulas |= _formulas(scene.gravity, hints(Scene)["gravity"], ("gravity",))
     values: dict[KeyPath, float] = {}
     if formulas or boundary.also or scene.parameters:
         # Imported late: a scene in plain numbers starts without the grammar of formulas.
@@ -71,6 +72,10 @@ def check(scene: Scene) -> list[Problem]:
         problems += _switching(scene.switching, scene.interval)
     if scene.ribbon is not None:
         problems += [*_sizes(scene.ribbon), *_fits(scene, scene.ribbon)]
+    if scene.gravity is not None:
+        from .gravity import check_gravity  # few scenes have any
+
+        problems += check_gravity(scene, values)
     if not problems:
         problems += in_units(scene, values)
     if scene.record or scene.continuation is not None:

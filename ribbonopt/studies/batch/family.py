@@ -14,6 +14,7 @@ from functools import partial
 from ribbonopt.errors import ConvergenceError
 from ribbonopt.pipeline.prepared import Prepared
 from ribbonopt.scene import Scene
+from ribbonopt.solution.potential import known_potential
 from ribbonopt.solution.solution import Solution
 
 from .neighbour import Neighbour
@@ -42,10 +43,8 @@ class Family:
 
     def near(self, member: Neighbour) -> bool:
         """Whether one may become that of least energy within a few ribbons."""
-        from ribbonopt.starts.equilibria import potential  # few scenes ask for it
-
-        lowest = potential(self.members[0].solution)
-        return potential(member.solution) - lowest <= NEAR * abs(lowest)
+        lowest = known_potential(self.members[0].solution)
+        return known_potential(member.solution) - lowest <= NEAR * abs(lowest)
 
 
 def solve_beside(

@@ -164,7 +164,7 @@ def _measured(
         profile = Profile(solution.n0, solution.m0, o["u"], solution.units)
         estimate = _estimate(solution, profile)
         numbers |= {
-            "drift_invariant": solution.verification.drift["H"],
+            "drift_invariant": solution.verification.invariant,
             "drift_law": LawResidual(solution.posed)(s, o, solution.units),
             "drift_frame": float(o["orthonormality"].max()),
         }

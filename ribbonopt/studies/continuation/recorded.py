@@ -18,6 +18,7 @@ from ribbonopt.scene.faults import suggestion
 from ribbonopt.scene.lens import value_at
 from ribbonopt.scene.quantities import ANSWERS, START_VECTORS
 from ribbonopt.scene.stages import parse_record, stages_of, words_of
+from ribbonopt.solution.potential import potential
 from ribbonopt.solution.solution import Solution
 
 from .curve import Curve
@@ -196,9 +197,10 @@ def sampled(
     return found
 
 
-def numbers_of(solution: Solution) -> dict[str, float]:
-    """Return energy, invariant, loads (lab frame) and strains at the start, in scene units."""
-    row = {"energy": solution.energy, "H0": float(solution.start["H"])}
+def numbers_of(solution: Solution) -> dict[str, float | None]:
+    """Return energy, potential, H, loads (lab frame) and strains at the start, in scene units."""
+    row: dict[str, float | None] = {"energy": solution.energy, "potential": potential(solution)}
+    row["H0"] = float(solution.start["H"])
     for names, vector in zip(START_VECTORS, (solution.n0, solution.m0, solution.u0), strict=True):
         row |= {name: float(value) for name, value in zip(names, vector, strict=True)}
     return row

@@ -37,16 +37,18 @@ from ribbonopt.scene import (
     Variational,
     load_scene,
 )
+from ribbonopt.solution.potential import potential
 from ribbonopt.solution.solution import Solution
 from ribbonopt.solvers import NewtonSolver, Status
 from ribbonopt.starts import automatic, homotopy
 from ribbonopt.starts.automatic import Automatic
 from ribbonopt.starts.equilibria import _variants as variants
-from ribbonopt.starts.equilibria import equilibria, potential
+from ribbonopt.starts.equilibria import equilibria
 from ribbonopt.starts.first_shape import compresses, shapes_for
 from ribbonopt.starts.grading import is_coarse
-from ribbonopt.starts.homotopy import HomotopyPath, smooth_of
+from ribbonopt.starts.homotopy import HomotopyPath
 from ribbonopt.starts.loops import closed_posed, fundamental_scene, loop_of
+from ribbonopt.starts.tracking import Tracking, smooth_of
 
 Array = np.ndarray
 Solved = Callable[..., Solution]
@@ -160,7 +162,7 @@ def test_a_path_that_cannot_be_followed_to_its_end_is_given_up(
         assert len(tried) < 1000, "goes on without end"
         return tried[-1] > 0
 
-    monkeypatch.setattr(homotopy._Tracking, "_step", step)
+    monkeypatch.setattr(Tracking, "step", step)
     this = scene(CLAMP, End("free", moment=(0, 3.2, 2.4)))
     path = followed(this, STRAIGHT, 0.1)
     assert not path.complete
@@ -168,19 +170,19 @@ def test_a_path_that_cannot_be_followed_to_its_end_is_given_up(
 
 
 def test_a_first_step_that_fails_is_the_end_of_a_path(monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(homotopy._Tracking, "_step", lambda *_: False)
+    monkeypatch.setattr(Tracking, "step", lambda *_: False)
     path = followed(scene(CLAMP, End("free", moment=(0, 3.2, 2.4))), STRAIGHT, 0.1)
     assert (path.complete, path.points) == (False, ())
 
 
 @pytest.mark.parametrize("limit", [0.2, 0.05])
 def test_delta_goes_down_as_far_as_it_can(monkeypatch: pytest.MonkeyPatch, limit: float) -> None:
-    genuine = homotopy._Tracking._step
+    genuine = Tracking.step
 
     def step(self: Any, law: Any, relaxed: Array | None) -> bool:
         return law.delta >= limit and genuine(self, law, relaxed)
 
-    monkeypatch.setattr(homotopy._Tracking, "_step", step)
+    monkeypatch.setattr(Tracking, "step", step)
     path = followed(scene(CLAMP, End("free", force=(1, 0, 0))), STRAIGHT, 0.01)
     assert not path.complete
     assert limit <= path.points[-1].scene.law.delta < 1.2 * limit

@@ -86,7 +86,7 @@ SCENES = {
 START = ["number", "stage", "branch", "origin", "parameter"]
 HEAD = [
     *("kind", "negative", "error", "energy"),
-    *("H0", "n0x", "n0y", "n0z", "m0x", "m0y", "m0z", "u1", "u2", "u3"),
+    *("potential", "H0", "n0x", "n0y", "n0z", "m0x", "m0y", "m0z", "u1", "u2", "u3"),
 ]
 TAIL = ["switches", "intervals", "iterations", "note"]
 

@@ -1,0 +1,55 @@
+"""Pressure: a force per length along the normal d1, which follows the ribbon, n' = -p d1."""
+
+from __future__ import annotations
+
+from collections.abc import Iterable
+from dataclasses import dataclass
+
+import casadi as ca
+import numpy as np
+
+from ribbonopt.arrays import Array
+from ribbonopt.mechanics.section import Section
+
+from .components import Share
+from .load import Line, Load, Theta
+
+
+@dataclass(frozen=True, eq=False)
+class Pressure(Load):
+    """Force p per length along d1, all along the ribbon, `largest` at most."""
+
+    p: Share
+    largest: float
+    name = "loads.pressure"
+
+    @property
+    def structure_key(self) -> tuple[object, ...]:
+        return type(self), self.p.structure
+
+    def numbers(self) -> dict[str, float]:
+        return self.p.numbers()
+
+    def numbers_to_scale(self) -> Iterable[str]:
+        return (self.p.scale,)
+
+    def size_along(self) -> float:
+        return self.largest
+
+    def force(self, section: Section, theta: Theta) -> ca.SX:
+        return self.p.at(section.s, theta) * section.d1
+
+    def symmetries(self, motions: Array) -> Array:
+        return np.eye(motions.shape[1])  # it follows every motion
+
+    def level(self, r: Array) -> Array | None:
+        return np.zeros(len(r))  # it does no work along d3: H itself is constant
+
+    def level_in_plane(self, n: Array, m2: Array) -> Array | None:
+        if not self.p.uniform:
+            return None
+        (p,) = self.p.numbers().values()
+        return np.asarray(np.sum(n**2, axis=1) / 2 - p * m2)
+
+    def lines_of_action(self) -> tuple[Line, Line]:
+        return None, np.zeros(3)
