@@ -7,6 +7,7 @@ about its axis has m2 = f w3, w3' = u3*, m3' = -f u2*, without moment where noth
 
 import itertools
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import mpmath as mp
@@ -18,7 +19,7 @@ from scipy.optimize import brentq
 from ribbonopt.checks.stability import negative_directions
 from ribbonopt.output.summary import summarize
 from ribbonopt.pipeline.prepared import prepare
-from ribbonopt.scene import Scene, loads_scene
+from ribbonopt.scene import Scene, load_scene, loads_scene
 from ribbonopt.scene.lens import with_value
 from ribbonopt.studies.buckling.buckling import buckling_loads
 from ribbonopt.studies.continuation.continuation import Continuation
@@ -108,6 +109,18 @@ def test_a_tapered_strip_under_its_own_weight(monkeypatch: pytest.MonkeyPatch) -
     expected = brentq(on_edge, 16, 17.5, (lambda s: (1 - s) ** 2 / 2, 2, [1, 0]), xtol=1e-12)
     found = first_load(scene("sadowsky", ON_EDGE, "width: 1 - 0.9*s"), 20)
     assert found == pytest.approx(expected, abs=1e-8)
+
+
+def test_a_weight_that_fades_towards_the_tip() -> None:
+    """q (1 - s) along the width; the same by a formula whose integral is no closed form."""
+    expected = brentq(on_edge, 80, 95, (lambda s: (1 - s) ** 3 / 6, 3, [1, 0]), xtol=1e-12)
+    assert first_load(scene("sadowsky", "loads: {force: {y: q*(1 - s)}}"), 100) == pytest.approx(
+        expected, abs=2e-8
+    )
+    same = "loads: {force: {y: q*exp(log(1.0001 - s))}}"
+    found = first_load(scene("variational, delta: 0.1", same), 100)
+    near = first_load(scene("variational, delta: 0.1", "loads: {force: {y: q*(1.0001 - s)}}"), 100)
+    assert found == pytest.approx(near, rel=1e-9)
 
 
 @pytest.mark.parametrize(
@@ -237,3 +250,17 @@ def test_a_heavy_rod_on_edge_buckles_where_bessel_functions_say() -> None:
     assert value_of(crossing.row) == pytest.approx(load, abs=1e-8)
     for row in (p.row for p in points if p.kind == POINT):
         assert row["negative"] == (value_of(row) > load)
+
+
+def test_the_strip_of_the_shipped_scene_in_si(configs: Path) -> None:
+    """At density h w g = 21.49065961 Dw / L^3, and on earth it is one of the buckled ones."""
+    this = load_scene(configs / "lateral_buckling_si.yaml")
+    (found,) = buckling_loads(this, "parameters.g", 5, 20)
+    sizes = this.ribbon
+    assert sizes is not None and sizes.density is not None
+    stiffness = sizes.youngs_modulus * sizes.thickness**2 / 12 / (1 - sizes.poisson_ratio**2)
+    unit = stiffness / (sizes.density * sizes.length**3)
+    assert found.value / unit == pytest.approx(21.49065961, abs=1e-7)
+    hanging = prepare(this).solve()
+    assert hanging.verified and negative_directions(hanging) == 0
+    assert abs(hanging.sample(0.2, "dot(r, ey)")) > 0.1
