@@ -36,8 +36,11 @@ def switched(
     if point.kind == KINK:
         return _left(equations, point, sign)
     known = equations.departure(point)
-    direction = null_direction(equations, point) if known is None else known
-    direction = sign * _oriented(equations, point, direction)
+    if known is None:
+        direction = sign * _oriented(equations, point, null_direction(equations, point))
+    else:
+        direction = sign * _oriented(equations, known.along, known.direction)
+        point = known.along if direction @ known.direction > 0 else known.against
     away, own = AWAY, None
     while away > LEAST_AWAY:
         guess = point.unknowns + away * direction
