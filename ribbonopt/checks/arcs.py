@@ -16,6 +16,7 @@ from ribbonopt.arrays import Array
 from ribbonopt.guess import Guess
 from ribbonopt.guess.balanced import Balanced
 from ribbonopt.guess.named import ShapeGuess
+from ribbonopt.mechanics.outputs import sheet_slopes
 from ribbonopt.problem import Ribbon
 from ribbonopt.problem.imposed import margins_function
 from ribbonopt.scene import Scene
@@ -33,25 +34,10 @@ SHORTEST = 0.01  # of an arc of a mixture, and of the phase before one that begi
 
 @dataclass(frozen=True, eq=False)
 class Arcs:
-    """Kinds of the phases (+1, -1: sign of m2; 0: mixture) and fractions where they meet."""
+    """Kinds of phases (+1, -1: sign of the switch; 0: mixture) and fractions where they meet."""
 
     kinds: tuple[int, ...]
     switches: Array
-
-
-def phase_words(kinds: tuple[int, ...]) -> str:
-    """Return the kinds of phases in words."""
-    words = {1: "m2 > 0", -1: "m2 < 0", 0: "m2 = 0 (mixture)"}
-    # At a single place where something acts or holds two of one kind meet.
-    turns = (kind for i, kind in enumerate(kinds) if not i or kind != kinds[i - 1])
-    return ", ".join(words[kind] for kind in turns) or "one, without a sign change"
-
-
-def changed_phases(before: tuple[int, ...], after: tuple[int, ...]) -> str:
-    """Say which phases there are instead of those before; "" if the same."""
-    if before == after:
-        return ""
-    return f"phases: {phase_words(after)}; at the point before: {phase_words(before)}"
 
 
 MIXTURE = Arcs((0,), np.empty(0))  # from end to end
@@ -165,7 +151,7 @@ def given_arcs(source: Solution, scene: Scene) -> Arcs:
     switches = (np.array(scene.switching) - start) / (end - start)
     s = source.scene.interval
     middle = s[0] + (s[1] - s[0]) * switches[:1] / 2
-    first = 1 if source.outputs(middle)["m2"][0] > 0 else -1
+    first = 1 if source.outputs(middle)["switching"][0] > 0 else -1
     return Arcs(tuple(first * (-1) ** i for i in range(len(switches) + 1)), switches)
 
 
@@ -193,9 +179,9 @@ def _interleaved(arcs: Arcs, mixtures: list[tuple[float, float]]) -> Arcs:
 
 
 def _beyond(solution: Solution) -> list[tuple[float, float]]:
-    """Fractions between which |eta| is beyond that of one sheet."""
-    f, eta = solution.trajectory.stages[1], solution.at_stages["eta"]
-    beyond = np.concatenate([[False], np.abs(eta) > BEYOND, [False]])
+    """Fractions between which strains are beyond those of one sheet."""
+    f, slopes = solution.trajectory.stages[1], sheet_slopes(solution.at_stages)
+    beyond = np.concatenate([[False], slopes > BEYOND, [False]])
     edges = np.flatnonzero(beyond[1:] != beyond[:-1])
     return [(f[a], f[b - 1]) for a, b in zip(edges[::2], edges[1::2], strict=True)]
 

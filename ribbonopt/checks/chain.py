@@ -17,7 +17,8 @@ class LinearisedChain:
     """Elements one after another, linearised: all states follow from x_0 and the controls.
 
     `J` (N, K, nx, nx + nz) are the derivatives of the rates at the stages, `slopes`
-    (N, K, nx + nz) of the cost, `jumps` (N, nx) of the states at the start of each element.
+    (N, K, nx + nz) of the cost, `jumps` (N, nx) of the states at the start of each element, which
+    cost `prices` (N,).
     Controls are scaled so that the sum of their squares is an integral along the chain, the
     elements of which have `widths` (N,), fractions of its `length`.
     """
@@ -30,6 +31,7 @@ class LinearisedChain:
         tableau: Tableau,
         length: float = 1.0,
         jumps: Array | None = None,
+        prices: Array | None = None,
     ) -> None:
         (N, K, nv), nx = slopes.shape, J.shape[2]
         nz = nv - nx
@@ -66,6 +68,8 @@ class LinearisedChain:
         if jumps is not None:
             self.step[..., -1] += jumps
         self.cost = ((self.weight[..., None] * slopes)[:, :, None] @ stages)[:, :, 0].sum(axis=1)
+        if prices is not None:
+            self.cost[:, -1] += prices
         self._sweep()
 
     def _sweep(self) -> None:

@@ -2,10 +2,11 @@
 
 Each side of a switch at s has the law of its phase. When the switch moves by k, a stretch of that
 length changes sides: the shape turns there by [u] k, [u] being the leap of the strains, and since
-m . [u] is zero at the switch and grows as m' . [u] beside it, that costs (m' . [u]) k^2 / 2. The
-states beside a switch so jump by [f] k, and what else they take part in, they do at the middle of
-the jump. It is the limit of a smooth law: its layer, that bends easily, shrinks to a point, and as
-the square of a moment over no length a switch weighs nothing in the metric.
+the leap of W_Leg is zero at the switch and grows as its rate beside it, m' . [u] and what varies
+with s in the law itself, that costs [W_Leg]' k^2 / 2. The states beside a switch so jump by [f] k,
+the energy by [W] k (natural strains have an m . [u]), and what else they take part in, they do at
+the middle of the jump. It is the limit of a smooth law: its layer, that bends easily, shrinks to a
+point, and as the square of a moment over no length a switch weighs nothing in the metric.
 """
 
 from __future__ import annotations
@@ -33,11 +34,13 @@ NO_LEAP = 1e-9  # of the largest strain
 class Moved:
     """What moves with k switches, each scaled to a leap of one: `jumps` (N, nx) of the states.
 
-    Jumps are those at the start of each element; `firsts` are the elements that begin at a switch,
-    `turning` (k, nx, nx) the Jacobians of their jumps and `stiffness` (k,) what moving costs.
+    Jumps are those at the start of each element, `prices` (N,) what they cost; `firsts` are the
+    elements that begin at a switch, `turning` (k, nx, nx) the Jacobians of their jumps and
+    `stiffness` (k,) what moving costs.
     """
 
     jumps: Array
+    prices: Array
     firsts: NDArray[np.intp]
     turning: Array
     stiffness: Array
@@ -60,8 +63,8 @@ class Moved:
 class MovingSwitches:
     """The leap at a switch as a function of a stage.
 
-    By how much rates and strains of the side +1 are above those of -1, and the Jacobian of the
-    former by the states.
+    By how much rates, strains and cost of the side +1 are above those of -1, the Jacobian of the
+    rates by the states, and how the leap of W_Leg varies with the arclength alone.
     """
 
     leap: Buffered
@@ -76,10 +79,14 @@ class MovingSwitches:
         free = len(law.components)
         stress = Stress.of_moment(law.whole(inputs[0][-free:]))
         strains = law.branch(1).strain(stress) - law.branch(-1).strain(stress)
+        # Both sides have an energy, so that the second of each is W_Leg.
+        (_, up), (_, down) = (law.branch(kind).densities(stress, strains) for kind in (1, -1))
+        varies = ca.jacobian(up - down, ribbon.position)
         place = problem.start + inputs[3][0] * problem.phases[0].length
-        strains = ca.substitute(strains, ribbon.position, place)
+        strains, varies = ca.substitute([strains, varies], [ribbon.position], [place])
         jacobian = ca.jacobian(change, inputs[0])[:, :-free]
-        outputs = [ca.densify(each) for each in (change, strains, jacobian)]
+        price = above.cost_density(*inputs) - below.cost_density(*inputs)
+        outputs = [ca.densify(each) for each in (change, strains, jacobian, varies, price)]
         return cls(Buffered(ca.Function("leap", inputs, outputs)))
 
     def at(self, solution: Solution, stages: GaussStages, theta: Array) -> Moved:
@@ -92,16 +99,19 @@ class MovingSwitches:
         n, m = (np.einsum("ki,kij->kj", o[name], frames) for name in "nm")
         slope = -np.cross(o["u"], m) - np.cross([0.0, 0.0, 1.0], n)  # m' of eq. (2.7)
         most = NO_LEAP * float(np.abs(trajectory.at_stages["u"]).max())
-        jumps = np.zeros((len(stages.widths), nx))
+        jumps, prices = np.zeros((len(stages.widths), nx)), np.zeros(len(stages.widths))
         turning, stiffness = np.zeros((len(firsts), nx, nx)), np.ones(len(firsts))
         for i, e in enumerate(firsts):
             v = np.concatenate([stages.x_switch[i], stages.z_switch[i]])
-            change, strains, jacobian = self.leap(v, np.empty(0), theta, switches[i : i + 1])
+            change, strains, jacobian, varies, price = self.leap(
+                v, np.empty(0), theta, switches[i : i + 1]
+            )
             size = float(np.linalg.norm(strains))
             if size <= most:
                 continue  # nothing leaps: there is nothing to move
             sign = np.sign(solution.sheets[turns[i]] - solution.sheets[turns[i] - 1])
-            jumps[e] = sign * change / size
+            jumps[e], prices[e] = sign * change / size, sign * float(price[0]) / size
             turning[i] = sign * jacobian.reshape(nx, nx).T / size
-            stiffness[i] = trajectory.length**2 * sign * slope[i] @ strains / size**2
-        return Moved(jumps, firsts, turning, stiffness)
+            cost = slope[i] @ strains + float(varies[0])
+            stiffness[i] = trajectory.length**2 * sign * cost / size**2
+        return Moved(jumps, prices, firsts, turning, stiffness)

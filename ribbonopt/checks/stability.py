@@ -116,7 +116,7 @@ def variation_of(solution: Solution) -> Variation | str:
     if faded_share(solution, law):
         return f"{none} that are known where m2 and m3 fade away"
     if not law.smooth:
-        kinked = _on_the_kink(solution) if law.kinked else "at its kinks"
+        kinked = _on_the_kink(solution, law.switch_name) if law.kinked else "at its kinks"
         if kinked:
             return f"{none} {kinked}"
     posed = solution.posed.under(formulation="energy", states="reduced")
@@ -137,19 +137,21 @@ def variation_of(solution: Solution) -> Variation | str:
     )
 
 
-def _on_the_kink(solution: Solution) -> str:
+def _on_the_kink(solution: Solution, switch: str) -> str:
     """Say where a solution of a kinked law is not clearly on one side of it; empty if nowhere."""
     if 0 in solution.sheets:
-        return "in a mixture of both sheets, where m2 stays zero"
+        return f"in a mixture of both sheets, where {switch} stays zero"
     o = solution.trajectory.at_stages
     value, small = o["switching"], NEGLIGIBLE * float(np.abs(o["m"]).max())
     if solution.sheets:
         kinds = np.array(solution.sheets)[solution.trajectory.stages[3]]
         wrong = kinds * value < -small
-        return "where it is taken beyond them, m2 having the wrong sign" if wrong.any() else ""
+        beyond = f"where it is taken beyond them, {switch} having the wrong sign"
+        return beyond if wrong.any() else ""
     near = (np.abs(value) <= small) & (o["leap"] > small)
     if near.any() or len(sign_changes(solution).kinds) > 1:
-        return "where m2 changes its sign, and no phases meet there (switching: auto finds them)"
+        found = f"where {switch} changes its sign, and no phases meet there"
+        return f"{found} (switching: auto finds them)"
     return ""
 
 

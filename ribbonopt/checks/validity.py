@@ -15,6 +15,7 @@ import numpy as np
 from ribbonopt.accuracy.spin import spin_problems
 from ribbonopt.arrays import Array
 from ribbonopt.mechanics.laws.catalogue import is_developable
+from ribbonopt.mechanics.outputs import sheet_slopes
 from ribbonopt.mechanics.widths import widths
 from ribbonopt.scene import RibbonSizes
 from ribbonopt.solution.solution import Solution
@@ -27,6 +28,7 @@ WIDEST = 1 / math.sqrt(3)  # w / L of a Moebius band in space (Schwartz 2023)
 NOTABLE, MEETING = 0.5, 2.0  # |eta'| w
 STEEP = 0.5  # |w'|: each edge leaves the tangent by 14 degrees
 ROWS = 2001
+BESIDE, ROUNDED = 1e-5, 1e-9  # of the length, for differences; of slopes of a sheet
 FLAT = 1e-9  # of the largest moment, or of D w / L: below it m3 counts as zero
 
 
@@ -117,8 +119,11 @@ def generatrix_slopes(solution: Solution, s: Array) -> Array:
 
     Sadowsky's law has |eta| = tan(phi / 2) with tan phi = m3 / |m2|, so that on either sheet
     eta' = phi' (1 + eta^2) / 2; m2' = -n1 - u3 m1 and m3' = u2 m1 by eqs. (2.2), (2.7). Where m2
-    changes sign eta leaps, and laws that smooth the leap are not blamed for it.
+    changes sign eta leaps, and laws that smooth the leap are not blamed for it. With natural
+    strains they are differences of eta between places on one sheet.
     """
+    if solution.scene.natural is not None:
+        return _by_differences(solution, s)
     o = solution.outputs(s)
     largest = max(float(np.hypot(o["m2"], o["m3"]).max()), solution.units.moment)
     rows = (np.abs(o["m3"]) > FLAT * largest) & (np.abs(o["eta"]) <= 1 + 1e-9)
@@ -128,3 +133,15 @@ def generatrix_slopes(solution: Solution, s: Array) -> Array:
     result = np.zeros(len(s))
     result[rows] = (1 + (m3 / (size + np.abs(m2))) ** 2) / 2 * turn
     return result
+
+
+def _by_differences(solution: Solution, s: Array) -> Array:
+    """Return the slopes (k,) from eta on either side, zero where not both are on one sheet."""
+    start, end = solution.scene.interval
+    reach = BESIDE * (end - start)
+    places = np.clip([s - reach, s + reach], start, end)
+    before, after = (solution.outputs(at) for at in places)
+    one = (before["u2"] > 0) == (after["u2"] > 0)
+    one &= np.maximum(sheet_slopes(before), sheet_slopes(after)) <= 1 + ROUNDED
+    change = (after["eta"] - before["eta"]) / (places[1] - places[0])
+    return np.where(one, change, 0.0)

@@ -121,10 +121,10 @@ class Energy:
         moved = None
         if self.switches is not None and len(at.firsts):
             moved = self.switches.at(solution, at, theta)
-        jumps = None if moved is None else moved.jumps
+        jumps, prices = (None, None) if moved is None else (moved.jumps, moved.prices)
         slopes = slopes.reshape(N, K, nv)
         length = solution.trajectory.length
-        chain = LinearisedChain(J, slopes, at.widths, at.tableau, length, jumps)
+        chain = LinearisedChain(J, slopes, at.widths, at.tableau, length, jumps, prices)
         b, B = self.conditions(at.ends, none, theta)
         B = B.reshape(2 * nx, len(b)).T
         left, singular, right = np.linalg.svd(B @ chain.ends, full_matrices=False)

@@ -14,6 +14,7 @@ import numpy as np
 from ribbonopt.accuracy.estimate import SAFETY, Analysis, analyse
 from ribbonopt.accuracy.gaps import LEAST
 from ribbonopt.arrays import Array
+from ribbonopt.mechanics.outputs import SLOPE, sheet_slopes
 from ribbonopt.problem import Ribbon
 from ribbonopt.problem.imposed import verdicts_function
 from ribbonopt.solution.solution import Solution
@@ -29,7 +30,7 @@ JUMP = 1e-6  # of the largest moment, on either side of a jump of the law
 def verify(solution: Solution, ribbon: Ribbon) -> Verification:
     """Check a solution against its scene."""
     if not (np.diff(solution.trajectory.ends) > NO_LENGTH).all():
-        problem = "a phase between two sign changes of m2 has no length"
+        problem = f"a phase between two sign changes of {ribbon.law.switch_name} has no length"
         return replace(unverified(), problems=(problem,))
     worst_name, worst = _worst_condition(solution, ribbon)
     residual = float(solution.dense.residual_between_nodes().max())
@@ -60,12 +61,17 @@ def verify(solution: Solution, ribbon: Ribbon) -> Verification:
         if len(switches):
             start, end = solution.scene.interval
             where = ", ".join(f"{start + (end - start) * at:.4g}" for at in switches)
+            switch = ribbon.law.switch_name
             problems.append(
-                f"m2 changes sign at s = {where}, where the law's strains jump, without phases "
-                "that end there"
+                f"{switch} changes sign at s = {where}, where the law's strains jump, without "
+                "phases that end there"
             )
+    if ribbon.law.natural and not ribbon.law.smooth and not solution.problem.recovered:
+        from .equal_curvatures import unseen_leaps
+
+        problems += unseen_leaps(solution)
     if ribbon.law.bounds_eta and not solution.problem.recovered:
-        eta = np.abs(nodes["eta"])
+        eta = sheet_slopes(nodes)
         if 0 in solution.sheets:
             phase = solution.trajectory.phase_of(solution.trajectory.nodes)
             eta[np.array(solution.sheets)[phase] == 0] = 0
@@ -74,8 +80,9 @@ def verify(solution: Solution, ribbon: Ribbon) -> Verification:
         eta[told <= ROUNDED * _size(nodes["m"])] = 0
         if not eta.max() <= 1 + TOLERANCE + residual:
             s = solution.nodes[int(eta.argmax())]
+            what = "the slope, |eta| but for natural strains," if SLOPE in nodes else "|eta|"
             problems.append(
-                f"|eta| = {eta.max():.4g} at s = {s:.4g}, beyond 1: eq. (4.1) forbids it; the "
+                f"{what} = {eta.max():.4g} at s = {s:.4g}, beyond 1: eq. (4.1) forbids it; the "
                 "ribbon wants to switch sheets there (law: sadowsky, regularized or variational)"
             )
     problems += _off_the_law(solution, ribbon)

@@ -9,12 +9,15 @@ import casadi as ca
 import numpy as np
 
 from ribbonopt.arrays import Array
+from ribbonopt.mechanics.laws.catalogue import fields_of
 from ribbonopt.mechanics.section import RodFields
 from ribbonopt.problem import BoundaryValueProblem, Posed, Ribbon
 from ribbonopt.scene import LoadGuess
 from ribbonopt.transcription.buffered import Buffered, Mapped
 
 STEPS = 32  # of one call
+POINTS = 33  # at which natural strains are looked at
+CURVATURES = ("natural.curvature", "natural.twist", "natural.across")
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,7 +41,7 @@ class IntegratedLoads:
     def _most_strain(self) -> float:
         """Bound of the strains, for stiffness 1: the force may act on all of the length."""
         n, m = (np.abs(v).max() for v in (self.loads.force, self.loads.moment))
-        return float(m + self.posed.length * n)
+        return float(m + self.posed.length * n) + free_strain(self.posed)
 
     def fields(self, fraction: Array) -> RodFields:
         """Fields at fractions (k,) of the length, increasing from 0 to 1."""
@@ -83,10 +86,19 @@ class IntegratedLoads:
 
 def _bounded_strain(posed: Posed, loads: LoadGuess) -> float:
     """Bound of the strains by H = W + n3, |u|^2 <= 2 W; infinite where H is not constant."""
-    if posed.loaded:
+    if posed.loaded or not all(field.uniform for field in fields_of(posed.scene)):
         return math.inf
     n, m = (float(np.linalg.norm(v)) for v in (loads.force, loads.moment))
-    return math.sqrt(m**2 + 4 * n)
+    return math.sqrt((m + free_strain(posed)) ** 2 + 4 * n)
+
+
+def free_strain(posed: Posed) -> float:
+    """Bound of the strains that a ribbon has without loads, by its natural ones."""
+    if posed.scene.natural is None:
+        return 0.0
+    s = np.linspace(*posed.scene.interval, POINTS)
+    fields = [f for f in fields_of(posed.scene) if f.name in CURVATURES]
+    return 2 * sum(float(np.abs(f.sampled(s, posed.theta)).max()) for f in fields)
 
 
 def _sections(ribbon: Ribbon) -> Mapped:

@@ -5,11 +5,18 @@ Without loads n and n . m are constant for any law; H = W_Leg + n3 only where th
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+
 import casadi as ca
+import numpy as np
+
+from ribbonopt.arrays import Array
 
 from .ends.conditions import CrossSection
 from .laws.law import ConstitutiveLaw, Stress
 from .section import Section
+
+SLOPE = "slope"  # at most 1 where one sheet allows the strains; in its absence |eta| tells
 
 
 def outputs(
@@ -35,10 +42,21 @@ def outputs(
     result["H"] = stress.n[2] + complementary
     result["n_dot_m"] = ca.dot(rod.n, rod.m)
     result |= {"switching": switch.value, "leap": switch.leap}
+    slope = law.sheet_slope(stress, u)
+    if slope is not None:
+        result[SLOPE] = slope
     result["law_residual"] = ca.norm_2(u - section.u)
     result["orthonormality"] = _gram_error(rod)
     result |= dict(zip(map(own_name, law.states), ca.vertsplit(rod.own), strict=True))
     return result
+
+
+def sheet_slopes(values: Mapping[str, Array]) -> Array:
+    """Return what is at most 1 where one sheet allows the strains: |eta|, or what its law says.
+
+    `values` are outputs by name, as they are sampled on a solution.
+    """
+    return np.abs(values[SLOPE if SLOPE in values else "eta"])
 
 
 def singular(law: ConstitutiveLaw, stress: Stress) -> ca.SX:

@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from ribbonopt.checks.arcs import phase_words
+from ribbonopt.checks.phase_words import phase_words
 
 NOTHING = 1e-50  # what guards the laws where m = 0 leaves of zero
 SMALL = 1e-3  # largest component of what is written with powers of ten
@@ -79,7 +79,8 @@ def _phases(s: Mapping[str, Any]) -> list[str]:
     if s["phases"]:
         at = ", ".join(f"{point:.6g}" for point in s["switch_points"])
         where = f"; switches at s = {at}" if at else " all along"
-        lines.append(f"  phases                   {phase_words(s['phases'])}{where}")
+        words = phase_words(s["phases"], s.get("switch", "m2"))
+        lines.append(f"  phases                   {words}{where}")
     return lines
 
 

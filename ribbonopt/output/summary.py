@@ -12,6 +12,7 @@ import numpy as np
 
 from ribbonopt.accuracy.carried import reaction_errors
 from ribbonopt.accuracy.estimate import estimate_error
+from ribbonopt.checks.phase_words import switch_of
 from ribbonopt.checks.topology import count_half_twists
 from ribbonopt.checks.validity import warnings_of
 from ribbonopt.checks.zero_moment import lacks_linearisation
@@ -60,6 +61,7 @@ def summarize(solution: Solution) -> dict[str, Any]:
         "reactions": _reactions(solution),
         "switch_points": solution.switch_points.tolist(),
         "phases": list(solution.sheets),
+        "switch": switch_of(scene),
         "half_twists": count_half_twists(solution),
         "unknowns": dense.blocks.layout.unknowns,
         "intervals": dense.blocks.layout.element_count,

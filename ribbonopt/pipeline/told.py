@@ -58,7 +58,8 @@ def judged(best: Solution, search: Search) -> Solution:
     """
     if not best.verified or best.sheets or not search.jumps(best):
         return best
-    what = "m2 changes sign along it, and no phases that end there were found"
+    switch = search.structure.ribbon.law.switch_name
+    what = f"{switch} changes sign along it, and no phases that end there were found"
     status = Status.WRONG_SOLUTION
     return replace(best, status=status, message=f"{status.value}. {what}")
 

@@ -50,6 +50,7 @@ from .model import (
     SolutionGuess,
     StrainGuess,
 )
+from .natural import Natural
 from .stations import InteriorSupport, PointLoad
 from .supports import Support, SupportName
 from .yamlio import (
@@ -87,6 +88,7 @@ __all__ = [
     "Loads",
     "Loop",
     "MoebiusGuess",
+    "Natural",
     "Newton",
     "OwnLaw",
     "OwnLoad",

@@ -34,6 +34,7 @@ _ROOTS: tuple[KeyPath, ...] = (
     ("gravity",),
     ("supports",),
     ("ribbon",),
+    ("natural",),
     ("width",),
 )
 _ITEMS = {2: ("start", "end"), 3: ("x", "y", "z")}

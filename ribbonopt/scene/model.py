@@ -16,6 +16,7 @@ from .continuation import ContinuationStage
 from .ends import Boundary, HalfTwists, LabVector, Loop, Triple, Value
 from .laws import Law
 from .loads import Loads
+from .natural import Natural
 from .schema.bounds import Bounds
 from .stations import InteriorSupport
 
@@ -215,3 +216,4 @@ class Scene:
     gravity: Triple | LabVector | None = None
     supports: tuple[InteriorSupport, ...] = ()
     width: Along | None = None
+    natural: Natural | None = None

@@ -3,7 +3,8 @@
 There eta = u3/u2 leaps from one sign to the other, whether u2 jumps (Sadowsky's law at m2 = 0) or
 passes through 0 (the other laws). They are split as well where something acts at a single place.
 Rows approach the ends of each piece from inside, so that a jump at an end shows its own side only,
-and they crowd there, where regularised laws change quickly.
+and they crowd there, where regularised laws change quickly. With natural strains u2 may leap from
+and to any value: pieces are the phases, where there are any.
 """
 
 from __future__ import annotations
@@ -121,7 +122,9 @@ def _eta(u2: Array, u3: Array, scale: float) -> Array:
 
 
 def _crossings(solution: Solution, s: Array, values: dict[str, Array], scale: float) -> list[float]:
-    """Arclengths at which u2 changes sign and u3 does not vanish."""
+    """Arclengths at which u2 changes sign and u3 does not vanish, or leaps as phases say."""
+    if solution.scene.natural is not None and solution.sheets:
+        return [float(s) for s in solution.switch_points]
     up = values["u2"] > NO_BEND * scale
     twisted = np.abs(values["u3"]) > NO_TWIST * scale
     steady = np.abs(values["u2"]) > NO_BEND * scale

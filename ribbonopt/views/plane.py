@@ -48,7 +48,13 @@ def draw_plane(subject: Subject) -> Figure:
     shape = (high - low) / (right - left)
     figure = blank(6.6, (2.05 if subject.mirrored else 1.8) + 5.6 * shape)
     axes = figure.add_subplot()
-    _shade(axes, 2 * max(-left, right, -low, high))
+    far = 2 * max(-left, right, -low, high)
+    if subject.across:
+        from .natural import shade_natural  # few ribbons have natural strains
+
+        shade_natural(axes, far, subject.across)
+    elif subject.across == 0:
+        _shade(axes, far)
     for piece in pieces:
         line = DASHES if piece.mirrored else "-"
         axes.plot(piece.u2, piece.u3, color=BENDING, lw=1.8, ls=line, zorder=3)

@@ -30,7 +30,7 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-ETA_SHOWN = 1.6
+ETA_SHOWN, ETA_MOST = 1.6, 5.0
 LETTER = 0.011  # of the length shown: a letter of a name
 LINES: Mapping[str, tuple[str, str]] = {
     "u1": (IN_PLANE, r"$u_1$ (in plane)"),
@@ -64,7 +64,11 @@ def draw_strains(subject: Subject) -> Figure:
     top, bottom = figure.subplots(2, 1, sharex=True, height_ratios=(2.4, 1))
     _plot(top, subject, ("u2", "u3"))
     _plot(bottom, subject, ("eta",))
-    _shade(bottom)
+    if subject.across == 0:
+        _shade(bottom)
+    else:
+        _limit(bottom, subject)
+    bottom.set_ylabel(r"$\eta = u_3/u_2$")
     _label(top, bottom, subject, r"strains $u_2,\ u_3$")
     return figure
 
@@ -110,7 +114,14 @@ def _shade(axes: Axes) -> None:
         axes.axhspan(sign, 2 * sign * ETA_SHOWN, color=FORBIDDEN, lw=0, zorder=0)
     axes.set_ylim(-ETA_SHOWN, ETA_SHOWN)
     axes.set_yticks([-1, 0, 1])
-    axes.set_ylabel(r"$\eta = u_3/u_2$")
+
+
+def _limit(axes: Axes, subject: Subject) -> None:
+    """Show eta up to some size: natural strains allow any."""
+    largest = max(float(np.abs(piece.eta).max()) for piece in subject.pieces)
+    shown = min(max(1.1 * largest, ETA_SHOWN), ETA_MOST)
+    axes.axhline(0, color=INK, lw=0.6, zorder=0)
+    axes.set_ylim(-shown, shown)
 
 
 def _label(top: Axes, bottom: Axes, subject: Subject, strains: str) -> None:

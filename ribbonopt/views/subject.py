@@ -6,6 +6,7 @@ from dataclasses import dataclass, field
 
 from ribbonopt.checks.topology import closure
 from ribbonopt.errors import ViewError
+from ribbonopt.mechanics.laws.catalogue import curvature_across
 from ribbonopt.scene.units import Units
 from ribbonopt.solution.solution import Solution
 
@@ -37,6 +38,8 @@ class Subject:
         Of all of it.
     half_width : float or None
         Of the ribbon, where the scene says it.
+    across : float or None
+        K22 of natural strains, on which the strains that a sheet allows depend; None if it varies.
     rod : bool
         Whether u1 is free, so that there are no generatrices.
     """
@@ -48,6 +51,7 @@ class Subject:
     units: Units = field(default_factory=Units)
     half_width: float | None = None
     count: int = 1
+    across: float | None = 0.0
     rod: bool = False
     acting: Acting = field(default_factory=Acting)
 
@@ -109,6 +113,7 @@ def subject_of(solution: Solution, complete: bool) -> Subject:
         units=solution.units,
         half_width=None if ribbon is None else ribbon.width / 2,
         count=count,
+        across=curvature_across(solution.scene),
         rod=is_rod(solution),
         acting=acting_of(solution, ends=band is None),
     )

@@ -23,6 +23,7 @@ from .law import ConstitutiveLaw
 
 if TYPE_CHECKING:
     from ribbonopt.mechanics.along import Field
+    from ribbonopt.scene.along import Along
 
 #: laws by the name a scene gives them: module and class, which is imported when a scene asks for
 #: it; the class takes what the scene's has, in order
@@ -98,21 +99,45 @@ def relation_of(scene: Scene, theta: Callable[[str], ca.SX], position: ca.SX) ->
     """
     numbers = {name: theta(f"law.{name}") for name in numbers_of(scene.law)}
     law = law_of(scene.law, numbers, position)
+    along = {field.name: field.at(position, theta) for field in fields_of(scene)}
+    if scene.natural is not None:
+        from .natural_of import natural_law  # few scenes have natural strains
+
+        law = natural_law(scene, law, along, position)
     if scene.width is not None:
         from .tapered import tapered  # few scenes have a width of their own
 
-        (width,) = (field for field in fields_of(scene) if field.name == "width")
-        law = tapered(law, width.at(position, theta), position)
+        law = tapered(law, along["width"], position)
     return law
 
 
 def fields_of(scene: Scene) -> tuple[Field, ...]:
     """Return the numbers along the ribbon that its relation depends on beside its law."""
-    if scene.width is None:
+    if scene.width is None and scene.natural is None:
         return ()
     from ribbonopt.mechanics.along import Field  # as above
 
-    return (Field("width", scene.width),)
+    named: dict[str, Along | None] = {"width": scene.width}
+    if scene.natural is not None:
+        members = vars(scene.natural).items()
+        named |= {f"natural.{name}": 0.0 if value is None else value for name, value in members}
+    return tuple(Field(name, value) for name, value in named.items() if value is not None)
+
+
+def curvature_across(scene: Scene) -> float | None:
+    """Return K22 = k22 + nu k11 of natural strains, 0 without; None where it is not a number.
+
+    In the units of the scene.
+    """
+    natural = scene.natural
+    if natural is None:
+        return 0.0
+    k11, k22 = natural.curvature, natural.across
+    ribbon = 0.0 if scene.ribbon is None else scene.ribbon.poisson_ratio
+    ratio = ribbon if natural.poisson_ratio is None else natural.poisson_ratio
+    if not isinstance(k22, float) or not (ratio == 0 or isinstance(k11, float)):
+        return None
+    return k22 + (ratio * k11 if isinstance(k11, float) else 0.0)
 
 
 def capabilities(scene: Scene) -> ConstitutiveLaw:

@@ -11,12 +11,15 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
-from dataclasses import dataclass
-from typing import NamedTuple
+from typing import TYPE_CHECKING, NamedTuple
 
 import casadi as ca
 
 from .implicit import ImplicitLaw
+from .parts import Relaxed, Singular, Switch
+
+if TYPE_CHECKING:
+    from .natural import NaturalStrains
 
 
 class Stress(NamedTuple):
@@ -36,43 +39,6 @@ class Stress(NamedTuple):
     def of_moment(cls, m: ca.SX) -> Stress:
         """Return the stress of a moment (3,) alone."""
         return cls(ca.SX.zeros(3), m, ca.SX(0, 1))
-
-
-class Switch(NamedTuple):
-    """Where the strains of a kinked law leap: where `value` changes sign and `leap` is not zero.
-
-    Both have the dimension of a moment.
-    """
-
-    value: ca.SX
-    leap: ca.SX
-
-
-class Singular(NamedTuple):
-    """Where strains are singular as functions of complex s: where `re` + i `im` is zero.
-
-    `re` and `im` have one dimension, whichever; `size` says by how much strains change there, as a
-    moment. Near the real axis that is a layer, which a mesh must resolve to be of use.
-    """
-
-    re: ca.SX
-    im: ca.SX
-    size: ca.SX
-
-
-@dataclass(frozen=True, eq=False)
-class Relaxed:
-    """A convexified energy as a smooth program over controls along the ribbon.
-
-    `controls` (nz,) symbols; `u` (3,) strains, `cost` per length and `path` (<= 0) as expressions
-    of them; `estimate` (nz,), where to start, of the stress.
-    """
-
-    controls: ca.SX
-    u: ca.SX
-    cost: ca.SX
-    path: ca.SX
-    estimate: ca.SX
 
 
 class ConstitutiveLaw(ABC):
@@ -96,6 +62,10 @@ class ConstitutiveLaw(ABC):
     spins: bool = False
     #: strains have a kink or a jump where `switching` changes sign; `branch` continues either side
     kinked: bool = False
+    #: its sides are two sheets that may mix, as Sadowsky's
+    sheeted: bool = False
+    #: what `switching` is called in words
+    switch_name: str = "m2"
     #: `moment` is exact and a closed form, cheap to differentiate; else it serves guesses only
     closed_moment: bool = True
     #: names of states of its own along the ribbon, with `rates`, `end_conditions`, `own_guess`
@@ -146,6 +116,20 @@ class ConstitutiveLaw(ABC):
 
     def relaxed(self, stress: Stress) -> Relaxed | None:
         """Return the program of the convexified energy where the law is not smooth, or None."""
+        return None
+
+    def sheet_slope(self, stress: Stress, u: ca.SX) -> ca.SX | None:
+        """Return what is at most 1 in size where a sheet allows strains u (3,); None where eta is.
+
+        Its sign is that of the sheet.
+        """
+        return None
+
+    def naturally(self, natural: NaturalStrains) -> ConstitutiveLaw | None:
+        """Return the law of the same ribbon with any natural strains.
+
+        None where these can only shift the moments, so that K22 must be zero: `shifted`.
+        """
         return None
 
     # Own states: none but for laws that declare them.

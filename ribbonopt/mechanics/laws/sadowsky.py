@@ -9,11 +9,13 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import casadi as ca
 
 from .implicit import ImplicitLaw, bounded
-from .law import ConstitutiveLaw, Relaxed, RibbonLaw, Singular, Stress
+from .law import ConstitutiveLaw, RibbonLaw, Stress
+from .parts import Relaxed, Singular
 from .relations import (
     Components,
     convexified_energy,
@@ -24,11 +26,15 @@ from .relations import (
     sheet_sum,
 )
 
+if TYPE_CHECKING:
+    from .natural import NaturalStrains
+
 
 class SwitchedLaw(RibbonLaw):
     """A law whose strains have a jump or a kink at m2 = 0, in phases of one sheet or a mixture."""
 
     kinked = True
+    sheeted = True
 
     def branch(self, kind: int) -> ConstitutiveLaw:
         return self.sheet(kind) if kind else MixtureLaw()
@@ -74,6 +80,11 @@ class SadowskyLaw(SwitchedLaw):
     bounds_eta = True
     smooth = False
 
+    def naturally(self, natural: NaturalStrains) -> ConstitutiveLaw:
+        from .natural_sadowsky import NaturalSadowskyLaw
+
+        return NaturalSadowskyLaw(natural)
+
     def implicit(self, stress: Stress) -> ImplicitLaw:
         # The gradient of W_S itself: eqs. (2.4)-(2.5) have solutions in the forbidden region too.
         return bounded(sheet_moment, self.strain(stress), stress.m)
@@ -111,6 +122,11 @@ class SingleSheetLaw(RibbonLaw):
 
     chi: ca.SX
     bounds_eta = True
+
+    def naturally(self, natural: NaturalStrains) -> ConstitutiveLaw:
+        from .natural_sadowsky import NaturalSheetLaw
+
+        return NaturalSheetLaw(self.chi, natural)
 
     def implicit(self, stress: Stress) -> ImplicitLaw:
         return bounded(self.moments, self.strain(stress), stress.m)

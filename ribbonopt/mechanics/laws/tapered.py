@@ -14,7 +14,8 @@ import casadi as ca
 from ribbonopt.errors import ModelError
 
 from .implicit import ImplicitLaw
-from .law import ConstitutiveLaw, Relaxed, Singular, Stress, Switch
+from .law import ConstitutiveLaw, Stress
+from .parts import Relaxed, Singular, Switch
 
 _DECLARED = (
     "components",
@@ -26,6 +27,8 @@ _DECLARED = (
     "natural",
     "spins",
     "kinked",
+    "sheeted",
+    "switch_name",
     "closed_moment",
 )
 
@@ -85,6 +88,9 @@ class TaperedLaw(ConstitutiveLaw):
             return None
         cost = self.width * found.cost
         return Relaxed(found.controls, found.u, cost, found.path, found.estimate)
+
+    def sheet_slope(self, stress: Stress, u: ca.SX) -> ca.SX | None:
+        return self.law.sheet_slope(self._unit(stress), u)
 
     def singular(self, stress: Stress) -> tuple[Singular, ...]:
         found = self.law.singular(self._unit(stress))

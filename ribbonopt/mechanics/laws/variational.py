@@ -3,12 +3,16 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import TYPE_CHECKING
 
 import casadi as ca
 
 from .implicit import ImplicitLaw, norm_form
-from .law import RibbonLaw, Stress
+from .law import ConstitutiveLaw, RibbonLaw, Stress
 from .relations import Components, inverse, norm
+
+if TYPE_CHECKING:
+    from .natural import NaturalStrains
 
 
 @dataclass(frozen=True, eq=False)
@@ -17,6 +21,11 @@ class VariationalLaw(RibbonLaw):
 
     delta: ca.SX
     closed_moment = False
+
+    def naturally(self, natural: NaturalStrains) -> ConstitutiveLaw:
+        from .natural_variational import NaturalVariationalLaw
+
+        return NaturalVariationalLaw(self.delta, natural)
 
     def implicit(self, stress: Stress) -> ImplicitLaw:
         return norm_form(self.delta, self.strain(stress), stress.m)

@@ -64,6 +64,10 @@ def check(scene: Scene) -> list[Problem]:
         problems += check_loop(boundary.loop, boundary, scene.guess)
     else:
         problems += check_supports(boundary, values)
+    if scene.natural is not None:
+        from .natural import check_natural  # few scenes have natural strains
+
+        problems += check_natural(scene)
     if scene.loads.points or scene.supports:
         from .stations import check_stations  # few scenes have any
 

@@ -9,7 +9,7 @@ import numpy as np
 
 from ribbonopt.accuracy.estimate import relative_error
 from ribbonopt.attempt.attempt import verified
-from ribbonopt.checks.arcs import changed_phases
+from ribbonopt.checks.phase_words import changed_phases
 from ribbonopt.solution.solution import Solution
 from ribbonopt.solvers import Status
 from ribbonopt.studies.spare import SPARE
@@ -43,7 +43,7 @@ def finished(
         found, note = _refined(equations, origin, trial, tolerance)
     else:
         found = verified(found, prepared.ribbon)
-    note = "; ".join(filter(None, [note, changed_phases(origin.solution.sheets, found.sheets)]))
+    note = "; ".join(filter(None, [note, changed_phases(origin.solution, found)]))
     if origin.kind != POINT and found.status in (Status.ROUNDED, Status.TOLERANCE_MISSED):
         # Where branches cross rounding is magnified: the row says how exact it is.
         found = replace(found, status=Status.CONVERGED, message=Status.CONVERGED.value)
@@ -60,7 +60,7 @@ def elsewhere(
         return None
     posed = equations.curve.posed_at(position)
     found = prepared.solve(posed, guess=origin, fallback=False)
-    note = changed_phases(origin.sheets, found.sheets)
+    note = changed_phases(origin, found)
     unknowns = np.append(found.dense.w, position)
     return Trial(found, unknowns, True, found.message, note) if found.verified else None
 

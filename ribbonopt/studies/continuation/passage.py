@@ -38,7 +38,10 @@ def passage(
     """
     if not point.solution.sheets:
         kind = one_sign(point.solution)
-        if not kind or not trial.converged or one_sign(trial.solution) == kind:
+        if not kind or (trial.converged and one_sign(trial.solution) == kind):
+            return None
+        # A trial that did not converge may have stumbled over the leap of a law without phases.
+        if not (trial.converged or equations.prepared.search(point.solution.posed).needs_phases):
             return None
         point, trial = _on_sheet(equations, point, trial, kind)
     if not trial.converged:
@@ -136,7 +139,7 @@ def _lost(solution: Solution, expected: Array) -> list[Change]:
 
 def _told(solution: Solution, changes: list[Change]) -> str:
     """Say that no equilibrium was found behind changes of phases, and what to do."""
-    what = "; ".join(dict.fromkeys(change.told(solution.sheets) for change in changes))
+    what = "; ".join(dict.fromkeys(change.told(solution) for change in changes))
     return (
         f"{what}, and no equilibrium was found in other phases: a smooth law needs none "
         "(law: {type: variational, delta: 0.01}, or regularized)"

@@ -13,13 +13,17 @@ from itertools import pairwise
 from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ribbonopt.arrays import Array
-from ribbonopt.checks.arcs import NEGLIGIBLE, phase_words
+from ribbonopt.checks.arcs import NEGLIGIBLE
+from ribbonopt.checks.phase_words import phase_words, switch_of
+from ribbonopt.mechanics.outputs import SLOPE, sheet_slopes
 from ribbonopt.solution.solution import Solution
 
 EMPTY = 1e-6  # of the length: at its ends the switch of such a phase says no more than that
 NEAR = 0.3  # of the largest value in a phase: a minimum above that is no touch to come
+BEFORE, BESIDE = 1e-9, 1e-5  # of a phase, where it ends; of the length, for slopes there
 ROUNDS = 12  # of the search for a minimum
 
 
@@ -42,9 +46,10 @@ class Change(NamedTuple):
     what: What
     phase: int
 
-    def told(self, kinds: tuple[int, ...]) -> str:
-        """Say it in words, for phases of these kinds."""
-        return f"{self.what.value} (of phase {self.phase + 1} among: {phase_words(kinds)})"
+    def told(self, solution: Solution) -> str:
+        """Say it in words, for the phases of a solution."""
+        kinds = phase_words(solution.sheets, switch_of(solution.scene))
+        return f"{self.what.value} (of phase {self.phase + 1} among: {kinds})"
 
 
 def margins(solution: Solution) -> dict[Change, float]:
@@ -96,8 +101,19 @@ def spares(solution: Solution, phase: int) -> list[tuple[float, float, int]]:
     sigma, (n2, n3, m1, m3) = _along(solution, phase, "n2", "n3", "m1", "m3")
     ratio = 2 * n2 / (n3 + (m3**2 - m1**2) / 4)
     share, signs = 1 - np.abs(ratio), np.sign(ratio * m3).astype(int)
+    if solution.scene.natural is not None:
+        share, signs = _natural_spares(solution, phase, sigma)
     lowest = 1 + np.flatnonzero((share[1:-1] <= share[:-2]) & (share[1:-1] < share[2:]))
     return [(float(sigma[j]), float(share[j]), int(signs[j])) for j in (0, *lowest, -1)]
+
+
+def _natural_spares(solution: Solution, phase: int, sigma: Array) -> tuple[Array, NDArray[np.intp]]:
+    """Return the same of a ribbon with natural strains, by how its law says it."""
+    trajectory = solution.trajectory
+    a, b = trajectory.ends[phase : phase + 2]
+    o = trajectory.outputs(a + (b - a) * np.minimum(sigma, 1 - BEFORE))
+    sign = np.sign(o[SLOPE] if SLOPE in o else o["u2"]).astype(int)
+    return 1 - 1 / np.maximum(sheet_slopes(o), NEGLIGIBLE), sign
 
 
 def _along(solution: Solution, phase: int, *names: str) -> tuple[Array, list[Array]]:
@@ -119,11 +135,19 @@ def _slope_at_end(solution: Solution, phase: int) -> float:
     """Return the slope of the switch m2 at the end of a phase, over moment and length.
 
     m2' = -n1 - u3 m1 by eqs. (2.2) and (2.7): exact there, as slopes of polynomials are not.
+    With natural strains the switch is more than m2 by what depends on s alone.
     """
     nodes, trajectory = solution.trajectory.at_nodes, solution.trajectory
     at = solution.dense.blocks.layout.phase_slices[phase].stop
     n1, m1, u3 = (float(nodes[name][at]) for name in ("n1", "m1", "u3"))
-    return -(n1 + u3 * m1) * trajectory.length / moment(solution)
+    found = -(n1 + u3 * m1) * trajectory.length
+    if solution.scene.natural is not None:
+        place = trajectory.ends[phase + 1]
+        both = np.clip([place - BESIDE, place + BESIDE], 0.0, 1.0)
+        o = trajectory.outputs(both)
+        natural = o["switching"] - o["m2"]
+        found += float((natural[1] - natural[0]) / (both[1] - both[0]))
+    return found / moment(solution)
 
 
 def moment(solution: Solution) -> float:

@@ -117,7 +117,7 @@ def test_phases_that_a_scene_names_begin_on_the_side_where_the_ribbon_is(
     whole = load_scene(configs / "moebius_regularized.yaml")
     named = replace(whole, switching=(0.2, 0.6))
     source: Any = SimpleNamespace(
-        scene=whole, outputs=lambda s: {"m2": mirror * np.where(s < 0.15, 1.0, -1.0)}
+        scene=whole, outputs=lambda s: {"switching": mirror * np.where(s < 0.15, 1.0, -1.0)}
     )
     found = given_arcs(source, named)
     assert found.kinds == (mirror, -mirror, mirror)

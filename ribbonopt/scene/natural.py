@@ -1,0 +1,22 @@
+"""What a scene may say of the strains that its ribbon has when it is free."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Annotated
+
+from .along import Along
+from .schema.bounds import Bounds
+
+
+@dataclass(frozen=True)
+class Natural:
+    """Curvatures of the free ribbon, 1 / length, numbers along it: along, twist and across.
+
+    `poisson_ratio` couples those along and across; by default that of `ribbon`, or 0 without one.
+    """
+
+    curvature: Along = 0.0
+    twist: Along = 0.0
+    across: Along = 0.0
+    poisson_ratio: Annotated[float, Bounds(gt=-1, le=0.5)] | None = None
