@@ -159,6 +159,47 @@ def test_the_clamp_of_a_strip_on_edge_has_the_strains_of_its_side() -> None:
         assert summarize(found)["error_estimate"]["u0"] < 1e-8
 
 
+def test_branches_leave_the_straight_strip_by_both_of_its_modes() -> None:
+    """The second has m2 of both signs: it begins in two phases, with one negative direction."""
+    stage = "continuation: {parameter: parameters.q, from: 20, to: 56, largest: 6, switch: true}"
+    points = list(Continuation(scene("sadowsky", ON_EDGE, stage, q=20)))
+    loads = [value_of(point.row) for point in points if point.kind == BUCKLING]
+    second = brentq(turn_of_second, 52, 54, xtol=1e-12)
+    assert loads == pytest.approx([21.49065961, second], abs=2e-8)
+    for branch in (1, 2, 3, 4):
+        rows = [point.row for point in points if point.branch == branch]
+        assert value_of(rows[0]) == pytest.approx(loads[(branch - 1) // 2], abs=0.01)
+        assert value_of(rows[-1]) == 56
+        assert {row["negative"] for row in rows} == {(branch - 1) // 2}
+        assert all(row["error"] <= 1e-9 and row["note"] == "" for row in rows)
+    ends = [point for point in points if point.branch and value_of(point.row) == 56]
+    assert sorted(len(end.solution.sheets) for end in ends) == [1, 1, 2, 2]
+    sides = [end.row["side"] for end in ends]
+    assert sides[::2] == pytest.approx([-side for side in sides[1::2]], rel=1e-7)
+
+
+def turn_of_second(P: float) -> float:
+    """w3 at the clamp as by `on_edge`, Sadowsky's law of the other side behind the zero of w3."""
+
+    def rates(s: float, y: np.ndarray, side: float) -> list[float]:
+        f = P * (1 - s) ** 2 / 2
+        m2, m3 = f * y[0], y[1]
+        M = np.hypot(m2, m3)
+        return [m3 * (side * m2 + M) / (4 * M), -f * side * (side * m2 + M) ** 2 / (4 * M)]
+
+    def zero(s: float, y: np.ndarray, side: float) -> float:
+        return float(y[0])
+
+    zero.terminal = True  # type: ignore[attr-defined]
+    t, exact = 1e-4, {"method": "DOP853", "rtol": 1e-12, "atol": 1e-15}
+    y = np.array([1.0, P**2 / 4 * t**5 / 5])
+    found: Any = solve_ivp(rates, (1 - t, 0), y, args=(1.0,), events=zero, **exact)
+    s, y = found.t[-1], found.y[:, -1]
+    h = 1e-9  # over the zero, by a step that the event does not see
+    y = y - h * np.array(rates(s, y, -1.0))
+    return float(solve_ivp(rates, (s - h, 0), y, args=(-1.0,), **exact).y[0, -1])
+
+
 # Columns.
 
 
@@ -264,3 +305,30 @@ def test_the_strip_of_the_shipped_scene_in_si(configs: Path) -> None:
     hanging = prepare(this).solve()
     assert hanging.verified and negative_directions(hanging) == 0
     assert abs(hanging.sample(0.2, "dot(r, ey)")) > 0.1
+
+
+# A ring.
+
+RING = """
+name: ring
+law: {{type: kirchhoff, B2: 1, B3: {B3}}}
+parameters: {{k: 5}}
+natural: {{curvature: 2*pi*k}}
+interval: [0, 0.5]
+boundary: {{loop: {{half_twists: 0, piece: half}}}}
+guess: circle
+tolerance: 1e-9
+continuation: {{parameter: parameters.k, from: {low}, to: {high}, switch: false}}
+"""
+
+
+@pytest.mark.parametrize("nu", [0.0, 0.3])
+def test_a_ring_of_a_curved_rod_opens_where_it_is_said_to(nu: float) -> None:
+    """Covered once it is flat up to 1 + 3 B3 of its curvature: at k = 2 of SCIENCE-NEXT 2c."""
+    exact = 1 + 3 * 2 / (1 + nu)
+    text = RING.format(B3=2 / (1 + nu), low=exact - 0.4, high=exact + 0.4)
+    points = list(Continuation(loads_scene(text)))
+    (crossing,) = [point for point in points if point.kind == BRANCH_POINT]
+    assert value_of(crossing.row) == pytest.approx(exact, abs=1e-8)
+    counts = [(value_of(p.row), p.row["negative"]) for p in points if p.kind == POINT]
+    assert all(count == (value > exact) for value, count in counts) and len(counts) > 2
