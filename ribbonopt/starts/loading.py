@@ -51,7 +51,7 @@ def _bring_heavy(run: Tracking, size: float) -> bool:
     course = Factors(size, 0.5)
     while not course.done:
         run.loads = course.share
-        if not _grown(run, course, (1 - run.loads) * residuals):
+        if not _grown(run, course, (1 - run.loads) * residuals, heavy=True):
             return False
     return run.step(run.law, None) and run.keep()
 
@@ -60,24 +60,26 @@ def bring_followers(run: Tracking) -> bool:
     """Bring on the loads along the ribbon that have no potential: least energy knew none."""
     if run.followers == 1:
         return True
-    course = Factors(_along(run, without_potential=True), FIRST_FOLLOWERS)
+    size = _along(run, without_potential=True)
+    course = Factors(size, FIRST_FOLLOWERS)
     while not course.done:
         run.followers = course.share
-        if not _grown(run, course, None):
+        if not _grown(run, course, None, heavy=size > HEAVY):
             return False
     run.followers = 1.0
     run.points.pop()  # an equilibrium without them
     return run.keep()
 
 
-def _grown(run: Tracking, course: Factors, relaxed: Array | None) -> bool:
-    """Try the loads as they are now, and say whether to go on."""
+def _grown(run: Tracking, course: Factors, relaxed: Array | None, *, heavy: bool) -> bool:
+    """Try the loads as they are now, and say whether to go on; meshes follow `heavy` ones."""
     before, w = run.iterations, run.w
     run.attempt = run.attempt_at(run.law)
     done = run.step(run.law, relaxed)
     if done and run.iterations - before <= SURE:
         course.taken(growth(run.iterations - before))
-        run.regrade()
+        if heavy:
+            run.regrade()
         return True
     # After many iterations it may be another equilibrium: not what grew from before.
     run.w = w
