@@ -266,6 +266,38 @@ def test_a_column_on_a_support_between_its_ends() -> None:
         assert found == pytest.approx(expected, abs=5e-9)
 
 
+def test_a_column_that_a_support_in_the_middle_bears() -> None:
+    """The reaction q is there before it buckles: w'' = n w, n = q s before it and q (s - 1) behind.
+
+    The clamp slides up and down.
+    """
+
+    def slope(q: float) -> float:
+        y = np.array([0.0, 1.0])
+        for a, b, off in ((0, 0.5, 0.0), (0.5, 1, 1.0)):
+            found = solve_ivp(
+                lambda s, y, off: [y[1], q * (s - off) * y[0]],
+                (a, b),
+                y,
+                "DOP853",
+                args=(off,),
+                rtol=1e-12,
+                atol=1e-14,
+            )
+            y = found.y[:, -1]
+        return float(y[1])
+
+    this = loads_scene(
+        SCENE.format(law="sadowsky", q=1, more=DOWN).replace(
+            "{support: clamped, position: [0, 0, 0], directors: identity}",
+            "{position: {x: 0, y: 0}, directors: identity, force: {z: 0}}",
+        )
+        + "supports: [{at: 0.5, position: {z: 0.5}}]\nstates: planar\n"
+    )
+    expected = brentq(slope, 10, 40, xtol=1e-12)
+    assert first_load(this, 40) == pytest.approx(expected, abs=5e-9)
+
+
 def test_a_place_and_a_width_may_be_what_moves() -> None:
     """A force 30 at the place a: 30 a^2 is the load of a tip; beyond w = 1 - q s there is none."""
     at = "loads: {points: [{at: q, force: {y: 30}}]}"
