@@ -59,6 +59,10 @@ class Load(ABC):
         """Return |n|^2 / 2 - p m2 (k,), constant in a plane under this alone; None where not."""
         return None
 
+    def is_carried(self, *, about_d2: bool) -> bool:
+        """Whether a flip about d2, or d1, carries it from a piece to the next."""
+        return False
+
     def lines_of_action(self) -> tuple[Line, Line]:
         """Lab directions (3,) in which its force and its couple act, all along the ribbon."""
         return None, None

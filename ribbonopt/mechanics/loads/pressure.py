@@ -51,5 +51,8 @@ class Pressure(Load):
         (p,) = self.p.numbers().values()
         return np.asarray(np.sum(n**2, axis=1) / 2 - p * m2)
 
+    def is_carried(self, *, about_d2: bool) -> bool:
+        return self.p.uniform and not about_d2  # d1 continues where the flip is about it
+
     def lines_of_action(self) -> tuple[Line, Line]:
         return None, np.zeros(3)
