@@ -47,6 +47,14 @@ class Load(ABC):
         Motions are three translations, then three turns about the lab axes.
         """
 
+    def work(self, section: Section, theta: Theta) -> ca.SX:
+        """Work per length of a load that has a potential."""
+        return ca.dot(self.force(section, theta), section.r)
+
+    def in_plane(self) -> Load | None:
+        """Return the load as ribbons have it that stay in a plane, if it has a potential there."""
+        return None if self.without_potential else self
+
     def couple(self, section: Section, theta: Theta) -> ca.SX:
         """Couple (3,) per length on the ribbon at a section, lab frame."""
         return ca.SX.zeros(3)
