@@ -30,6 +30,7 @@ import numpy as np
 from starts_clamps import clamps
 
 import ribbonopt.scene
+from ribbonopt.errors import ConvergenceError
 from ribbonopt.pipeline.prepared import Prepared, prepare
 from ribbonopt.scene import Loads, Sadowsky, Scene, Variational
 
@@ -97,7 +98,11 @@ def judged(count: int, seed: int = 0) -> list[dict[str, Any]]:
 def judge(prepared: Prepared, scene: Scene) -> dict[str, Any]:
     """Solve one scene and integrate what comes out."""
     started = time.perf_counter()
-    solution = prepared.solve(scene)
+    try:
+        solution = prepared.solve(scene)
+    except ConvergenceError as error:
+        seconds = time.perf_counter() - started
+        return {"seconds": seconds, "message": str(error), "verdict": "unsolved"}
     row: dict[str, Any] = {
         "seconds": time.perf_counter() - started,
         "message": solution.message,

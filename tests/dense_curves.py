@@ -84,7 +84,7 @@ class Dense:
     def leaving(self, point: Point[Unit]) -> list[Point[Unit]]:
         return []
 
-    def departure(self, point: Point[Unit]) -> Array | None:
+    def departure(self, point: Point[Unit]) -> None:
         return None
 
     def finer(self, origin: Unit, unknowns: Array) -> None:

@@ -20,8 +20,13 @@ def switch_of(scene: Scene) -> str:
 
 
 def changed_phases(before: Solution, after: Solution) -> str:
-    """Say which phases there are instead of those before; "" if the same."""
-    if before.sheets == after.sheets:
+    """Say which phases there are instead of those before; "" if the same.
+
+    One on one side of the law is the same as none: the law tells the side itself.
+    """
+    sheets = before.sheets, after.sheets
+    one_side = len({*sheets[0], *sheets[1]}) == 1 and 0 not in (*sheets[0], *sheets[1])
+    if before.sheets == after.sheets or (one_side and () in sheets):
         return ""
     old, new = (phase_words(one.sheets, switch_of(one.scene)) for one in (before, after))
     return f"phases: {new}; at the point before: {old}"

@@ -17,11 +17,12 @@ import numpy as np
 from ribbonopt.accuracy.spin import SPIN, spins
 from ribbonopt.mechanics.laws.catalogue import capabilities
 from ribbonopt.problem import BoundaryValueProblem, Ribbon
-from ribbonopt.problem.energy import refusal
+from ribbonopt.problem.energy import without_potential
 from ribbonopt.solution.solution import Solution
 
 from .arcs import NEGLIGIBLE, sign_changes
 from .elimination import factored
+from .in_plane import mechanics, planar_posed
 from .variation import Energy, Variation
 from .zero_moment import faded_share, unbent_share
 
@@ -40,7 +41,8 @@ class SecondVariation:
 
     `negative` is the number of its clearly negative eigenvalues, those below -`neutral`. `error` is
     that of eigenvalues, over the largest, which is about `largest`. Units Dw = L = 1. `spins` says
-    that one is zero since an isotropic rod spins, which is neither for nor against it.
+    that one is zero since an isotropic rod spins, which is neither for nor against it; `planar`
+    that only directions in the ribbon's plane were looked at.
     """
 
     negative: int
@@ -48,12 +50,14 @@ class SecondVariation:
     error: float
     largest: float
     spins: bool = False
+    planar: bool = False
 
     @property
     def verdict(self) -> str:
         """What it says, in words."""
         count = f"{self.negative} negative direction{'s' if self.negative > 1 else ''}"
         found = f"unstable: {count}" if self.negative else "stable"
+        found += " in its plane" if self.planar else ""
         return f"{found}; neutral: {SPIN}" if self.spins else found
 
 
@@ -98,7 +102,8 @@ def _judged(variation: Variation | str, solution: Solution) -> SecondVariation |
     largest, error = variation.largest, variation.error
     neutral = max(error, ROUNDING) * largest
     negative = factored(variation.form, neutral).negative
-    return SecondVariation(negative, neutral, error, largest, spins(solution))
+    planar = planar_posed(solution) is not None
+    return SecondVariation(negative, neutral, error, largest, spins(solution), planar)
 
 
 def variation_of(solution: Solution) -> Variation | str:
@@ -119,10 +124,10 @@ def variation_of(solution: Solution) -> Variation | str:
         kinked = _on_the_kink(solution, law.switch_name) if law.kinked else "at its kinks"
         if kinked:
             return f"{none} {kinked}"
-    posed = solution.posed.under(formulation="energy", states="reduced")
-    ribbon = _once(solution.problem.kept(_ribbons), lambda: Ribbon.of(posed))
+    posed = planar_posed(solution) or solution.posed.under(formulation="energy", states="reduced")
+    ribbon = _once(solution.problem.kept(_ribbons), lambda: mechanics(posed))
     # With the conditions of this very scene: whether they are zero decides.
-    refused = refusal(replace(ribbon, conditions=posed.conditions), posed)
+    refused = without_potential(replace(ribbon, conditions=posed.conditions))
     if refused is not None:
         return refused.reason
     energy = _once(solution.problem.kept(_energies), lambda: Energy.of(ribbon))

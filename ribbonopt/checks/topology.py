@@ -91,9 +91,17 @@ def closure(solution: Solution) -> ClosedBand | None:
         whole = _whole(solution, ends, sign)
         if is_closed(whole, TOLERANCE):
             return whole
-    # Under loads between the ends an image need not have its share of them.
-    flip = None if solution.posed.loaded else find_flip(solution)
-    return None if flip is None else ClosedBand(solution, np.zeros(3), 0.0, flip)
+    flip = find_flip(solution)
+    if flip is None or not _carries_loads(solution, flip):
+        return None
+    return ClosedBand(solution, np.zeros(3), 0.0, flip)
+
+
+def _carries_loads(solution: Solution, flip: Flip) -> bool:
+    """Whether a flip carries what acts between the ends: an image need not have its share."""
+    posed = solution.posed
+    carried = (load.is_carried(about_d2=flip.along_d2) for load in posed.loads)
+    return not posed.stations and all(carried)
 
 
 def count_half_twists(solution: Solution) -> int | None:

@@ -138,8 +138,7 @@ class Search(Tried):
         if isinstance(self.posed.scene.switching, tuple):
             if self.run_in(given_arcs(source, self.posed.scene), source):
                 return True
-        arcs = sign_changes(source)
-        return len(arcs.kinds) > 1 and self.run_in(arcs, source)
+        return self.better_in_phases(source) and self.run_in(sign_changes(source), source)
 
     def _freed(self, arcs: Arcs, source: Guess) -> tuple[Arcs, Guess]:
         """Return arcs and a guess: nearer, for a mixture from end to end, by leaving m2 free."""

@@ -12,6 +12,7 @@ from ribbonopt.attempt.attempt import Attempt
 from ribbonopt.attempt.ledger import Ledger
 from ribbonopt.attempt.structure import Structure
 from ribbonopt.checks.arcs import sign_changes
+from ribbonopt.checks.one_sided import ends_on_switch
 from ribbonopt.mechanics.laws.smooth import sharpness
 from ribbonopt.problem import Posed
 from ribbonopt.solution.solution import Solution
@@ -85,6 +86,11 @@ class Tried:
     def changes_sign(self, solution: Solution) -> bool:
         """Whether m2 changes sign along a solution."""
         return len(sign_changes(solution).kinds) > 1
+
+    def better_in_phases(self, solution: Solution) -> bool:
+        """Whether phases tell strains that rounding would choose: at a sign change, or an end."""
+        ends = self.needs_phases and ends_on_switch(solution)
+        return ends or self.changes_sign(solution)
 
     def jumps(self, solution: Solution) -> bool:
         """Whether the law's strains jump along a solution, so that it needs phases to be right."""

@@ -167,7 +167,7 @@ class BoundaryValueProblem:
         """Whether there is nothing to minimise and no inequality: equations only."""
         return all(p.cost is None and p.path.numel() == 0 for p in self.phases)
 
-    @property
+    @cached_property
     def lengths(self) -> int:
         """How many constants, before any slack, are lengths of phases: none if they are known."""
         lengths = ca.vertcat(*(phase.length for phase in self.phases))

@@ -69,7 +69,7 @@ def minimum(ribbon: Ribbon) -> BoundaryValueProblem:
     count, held = len(ribbon.states), held_between(ribbon)
     x = ca.SX.sym("x", count + len(held.names))
     # Force and moment for outputs and verification only: they follow from the costates.
-    names = [*RECOVERED, *(f"recovered.{name}" for name in ribbon.constants[len(RECOVERED) :])]
+    names = [f"recovered.{name}" for name in ribbon.constants]
     loads = ca.vertcat(*(ribbon.theta[name] for name in names))
     section, (start, end) = ribbon.section(x[:count], loads), ribbon.interval
     rod, work = section.rod, ribbon.work(section.rod)
@@ -88,10 +88,10 @@ def minimum(ribbon: Ribbon) -> BoundaryValueProblem:
     first, last = (point[:count] for point in points)
     conditions = residuals(ribbon, first, last, loads, kinematic_only=True)
     conditions |= held.conditions(*points)
-    found = (
-        *_loads(points[0], costate, at_start + held.force(costate), ribbon),
-        *held.reactions(costate),
-    )
+    found: list[ca.SX] = []
+    if set(RECOVERED) <= set(names):  # not in a plane, where only its second variation is asked for
+        found += _loads(points[0], costate, at_start + held.force(costate), ribbon)
+        found += held.reactions(costate)
     return BoundaryValueProblem(
         position=ribbon.position,
         state=x,
@@ -108,7 +108,7 @@ def minimum(ribbon: Ribbon) -> BoundaryValueProblem:
         local=program.local,
         estimate=program.estimate,
         costate=costate,
-        recovered=dict(zip(names, found, strict=True)),
+        recovered=dict(zip(names, found, strict=False)),
         completed=held.completed(x, loads[len(RECOVERED) :]),
     )
 
@@ -188,6 +188,11 @@ def refusal(ribbon: Ribbon, posed: Posed) -> Refusal | None:
         )
     if posed.scene.states in WITHOUT:
         return Refusal(WITHOUT[posed.scene.states], "use states: reduced", "formulation")
+    return without_potential(ribbon)
+
+
+def without_potential(ribbon: Ribbon) -> Refusal | None:
+    """Return why what acts on a ribbon has no potential; None where it has one."""
     return (
         _load_without_potential(ribbon)
         or point_without_potential(ribbon.stations)

@@ -174,10 +174,10 @@ class Ribbon:
         return ca.vertcat(model, self.law.rates(section.rod.stress, u))
 
     def work(self, rod: Section) -> ca.SX:
-        """Return the work f . r per length of the loads that have a potential."""
+        """Return the work per length of the loads that have a potential."""
         theta = self.theta.__getitem__
         known = [load for load in self.loads if not load.without_potential]
-        return sum((ca.dot(load.force(rod, theta), rod.r) for load in known), ca.SX(0))
+        return sum((load.work(rod, theta) for load in known), ca.SX(0))
 
 
 def _model_of(posed: Posed, theta: Mapping[str, ca.SX]) -> RodModel:

@@ -26,6 +26,7 @@ ROWS = 241  # evenly spaced rows over the whole interval
 INSET = 1e-9  # of the length: distance of the outermost rows from the ends of a piece
 SHORTEST = 1e-6  # of the length: shorter pieces are left out
 NO_TWIST = 1e-9  # of the largest strain: below it u3 counts as zero
+STRAIGHT = 1e-3  # strain times length: of smaller ones than this the largest counts as such
 NO_BEND = 1e-12  # of the largest strain: below it u2 counts as zero
 
 
@@ -82,7 +83,8 @@ def sample_pieces(solution: Solution, rows: int = ROWS) -> tuple[Piece, ...]:
     length = end - start
     s = _grid(start, end, rows, INSET * length)
     values = solution.outputs(s)
-    scale = _scale(values)
+    # A straight ribbon has strains of rounding, and no generatrices but those across.
+    scale = max(_scale(values), STRAIGHT / length)
     crossings = [] if is_rod(solution) else _crossings(solution, s, values, scale)
     cuts = sorted({*crossings, *_places(solution)})
     if not cuts:

@@ -5,7 +5,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from ribbonopt import Continuation
+from ribbonopt import Continuation, solve
+from ribbonopt.checks.stability import SecondVariation, second_variation
 from ribbonopt.checks.validity import warnings_of
 from ribbonopt.scene import load_scene, loads_scene
 from ribbonopt.studies.continuation.recorded import value_of
@@ -66,3 +67,20 @@ def test_opposite_sides_touch(configs: Path) -> None:
         touch = value_of(one.row) - one.row[name] / slope
         assert touch == pytest.approx(5.2468869625, abs=3e-10)
         assert any("self-contact is not modelled" in w for w in warnings_of(one.solution))
+
+
+@pytest.mark.parametrize(("p", "count"), [(2.999, 0), (3.001, 1), (7.99, 1), (8.01, 2)])
+def test_modes_of_half_a_ring_lose_stability(configs: Path, p: float, count: int) -> None:
+    # Of k waves around the ring at p R^3 = k^2 - 1: two at 3, three at 8.
+    text = (configs / "ring_pressed.yaml").read_text(encoding="utf-8")
+    found = second_variation(solve(loads_scene(text.replace("pressure: 2.5", f"pressure: {p}"))))
+    assert isinstance(found, SecondVariation)
+    assert found.negative == count
+    assert found.verdict.endswith("in its plane")
+
+
+def test_a_pressure_that_varies_has_no_potential_in_the_plane_either(configs: Path) -> None:
+    text = (configs / "ring_pressed.yaml").read_text(encoding="utf-8").partition("continuation:")[0]
+    found = solve(loads_scene(text.replace("pressure: 2.5", 'pressure: "0.5*sin(s)"')))
+    assert found.verified
+    assert second_variation(found) == "loads.pressure follows the ribbon"

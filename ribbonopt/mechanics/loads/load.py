@@ -47,6 +47,14 @@ class Load(ABC):
         Motions are three translations, then three turns about the lab axes.
         """
 
+    def work(self, section: Section, theta: Theta) -> ca.SX:
+        """Work per length of a load that has a potential."""
+        return ca.dot(self.force(section, theta), section.r)
+
+    def in_plane(self) -> Load | None:
+        """Return the load as ribbons have it that stay in a plane, if it has a potential there."""
+        return None if self.without_potential else self
+
     def couple(self, section: Section, theta: Theta) -> ca.SX:
         """Couple (3,) per length on the ribbon at a section, lab frame."""
         return ca.SX.zeros(3)
@@ -58,6 +66,10 @@ class Load(ABC):
     def level_in_plane(self, n: Array, m2: Array) -> Array | None:
         """Return |n|^2 / 2 - p m2 (k,), constant in a plane under this alone; None where not."""
         return None
+
+    def is_carried(self, *, about_d2: bool) -> bool:
+        """Whether a flip about d2, or d1, carries it from a piece to the next."""
+        return False
 
     def lines_of_action(self) -> tuple[Line, Line]:
         """Lab directions (3,) in which its force and its couple act, all along the ribbon."""
@@ -101,6 +113,10 @@ class DeadLoad(Load):
 
 def line_of(samples: Array) -> Line:
     """Return the direction (3,) that vectors (k, 3) share, zero if all vanish; None if none."""
+    if len(samples) == 1:
+        (only,) = samples
+        size = float(np.sqrt(only @ only))
+        return np.asarray(only / size) if size > 0 else np.zeros(3)
     _, singular, right = np.linalg.svd(samples)
     if not singular.any():
         return np.zeros(3)

@@ -12,7 +12,7 @@ from ribbonopt.arrays import Array
 from ribbonopt.mechanics.section import Section
 
 from .components import Share
-from .load import Line, Load, Theta
+from .load import DeadLoad, Line, Load, Theta
 
 
 @dataclass(frozen=True, eq=False)
@@ -51,5 +51,40 @@ class Pressure(Load):
         (p,) = self.p.numbers().values()
         return np.asarray(np.sum(n**2, axis=1) / 2 - p * m2)
 
+    def is_carried(self, *, about_d2: bool) -> bool:
+        return self.p.uniform and not about_d2  # d1 continues where the flip is about it
+
+    def in_plane(self) -> Load | None:
+        return PlanarPressure(self.p) if self.p.uniform else None
+
     def lines_of_action(self) -> tuple[Line, Line]:
         return None, np.zeros(3)
+
+
+@dataclass(frozen=True, eq=False)
+class PlanarPressure(DeadLoad):
+    """A uniform pressure on a ribbon that stays in a plane, where p times the area is its work.
+
+    The area between the centre line and lines from its ends to the point of reference: ends that
+    move do so along these lines, or the energy is not stationary. Of use to that alone.
+    """
+
+    p: Share
+    name = "loads.pressure"
+    open_axes = "xyz"
+
+    def numbers(self) -> dict[str, float]:
+        return self.p.numbers()
+
+    def force(self, section: Section, theta: Theta) -> ca.SX:
+        return self.p.at(section.s, theta) * section.d1
+
+    def work(self, section: Section, theta: Theta) -> ca.SX:
+        arm = section.r - ca.vertcat(*(theta(f"reference.{axis}") for axis in "xyz"))
+        return self.p.at(section.s, theta) * ca.dot(arm, section.d1) / 2
+
+    def total(self, s: ca.SX, theta: Theta) -> ca.SX:
+        return ca.SX.zeros(3)
+
+    def symmetries(self, motions: Array) -> Array:
+        return np.eye(motions.shape[1])

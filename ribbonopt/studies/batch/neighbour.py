@@ -56,7 +56,7 @@ class Neighbour:
         attempts = search.on_mesh(old.sheets, old.mesh, old.trajectory.ends[1:-1])
         if self._run(attempts) and attempts.best is not None:
             found = attempts.best
-            if found.sheets or not (search.phases_help and search.changes_sign(found)):
+            if found.sheets or not (search.phases_help and search.better_in_phases(found)):
                 finer = self._finer(found, served=attempts.factorizations == 0)
                 refined = self.prepared.refined(found, SPARE, search)
                 on_new_mesh = refined.trajectory is not found.trajectory

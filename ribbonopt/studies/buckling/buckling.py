@@ -13,14 +13,17 @@ from __future__ import annotations
 from dataclasses import dataclass, replace
 from functools import cached_property
 
+import casadi as ca
 import numpy as np
 
 from ribbonopt.arrays import Array
 from ribbonopt.checks.zero_moment import SHORTEST, share_without_moment, unbent_share
 from ribbonopt.errors import ModelError, SceneError
+from ribbonopt.mechanics.laws.catalogue import relation_of
+from ribbonopt.mechanics.laws.law import ConstitutiveLaw
 from ribbonopt.pipeline.prepared import Prepared, prepare
 from ribbonopt.problem import Posed, Ribbon, formulate
-from ribbonopt.scene import Scene
+from ribbonopt.scene import Scene, Variational
 from ribbonopt.scene.lens import value_at, with_value
 from ribbonopt.solution.solution import Solution
 
@@ -28,13 +31,15 @@ from .found import Buckling
 from .infinitesimal import Deflected
 from .mode import Mode
 from .modes import Search
-from .rod import RodBuckling, pure_stiffnesses
+from .rod import RodBuckling, pure_compliances
 from .twin import has_twin, twin_of, twin_scene
 
 AFFINE = 1e-10  # of the straight state's numbers: how far from affine in the load they may be
 NEARER = 1e-3  # of the distance of two loads that an affine line is drawn through, the next time
+SMOOTH = 0.03  # delta of the smooth law that stands for one with a kink
 SETTLED = 1e-11  # change of the load, relative to the range, that ends this
 TURNS = 8
+BEYOND = (1.0, 1 / 4, 1 / 16, 0.0)  # of an end of the range: how far beyond it rods are looked at
 
 
 def buckling_loads(scene: Scene, parameter: str, start: float, end: float) -> tuple[Buckling, ...]:
@@ -62,7 +67,8 @@ def buckling_loads(scene: Scene, parameter: str, start: float, end: float) -> tu
     ModelError
         If the ribbon at the start is not such a state, or its law has states of its own.
     """
-    first = replace(with_value(scene, parameter, start), continuation=None)
+    # Another formulation has the same straight states; one that minimises may not find them.
+    first = with_value(replace(scene, formulation="inverted", continuation=None), parameter, start)
     prepared = prepare(first)
     return buckling_from(prepared, prepared.solve(), parameter, start, end)
 
@@ -84,10 +90,15 @@ def buckling_from(
             "law",
         )
     states = _States(prepared, straight, parameter)
-    # A ribbon is softer than the rod that has its stiffnesses, at most by two.
+    # A ribbon is softer than the rod that has its stiffnesses, at most by two: a rod may buckle
+    # beyond the range, as far as there are straight ones.
     low, high = min(start, end), max(start, end)
-    reach = min(low, 2 * low), max(high, 2 * high)
-    found = states.between(*reach) or (states.between(low, high) if reach != (low, high) else None)
+    found = None
+    for share in BEYOND:
+        reach = low + min(0.0, share * low), high + max(0.0, share * high)
+        found = states.between(*reach)
+        if found is not None:
+            break
     inside = [one for one in found or () if low <= one.value <= high]
     return tuple(sorted(inside, key=lambda one: abs(one.value - start)))
 
@@ -108,9 +119,11 @@ class _States:
             return None
         if a is None or b is None:
             return None
-        stiffnesses = pure_stiffnesses(self.ribbon, self.least(low).values)
-        rod = RodBuckling(Deflected(self.ribbon), stiffnesses, a, b)
-        search, result = Search(rod), []
+        compliances = pure_compliances(self.ribbon, self.least(low).values)
+        rod = RodBuckling(Deflected(self.ribbon), compliances, a, b)
+        if not rod.sound:
+            return None
+        search, result = Search(rod, self.smooth), []
         for load, start in rod.loads():
             mode = search.mode(load, start)
             found = None if mode is None else self.settled(search, mode, low, high)
@@ -133,7 +146,7 @@ class _States:
             a, b = self.at(low), self.at(high)
             if a is None or b is None:
                 return None
-            search = Search(replace(search.rod, a=a, b=b))
+            search = replace(search, rod=replace(search.rod, a=a, b=b))
             again = search.moved(mode, taken)
             if again is None:
                 return None
@@ -157,7 +170,28 @@ class _States:
         least = self.least(value)
         ends = found.fields(np.array([0.0, 1.0]))
         x, c = self.ribbon.model.pack(ends, least.start[0])
+        reactions = self.reactions(found)
+        for i, name in enumerate(self.ribbon.constants):
+            c[i] = reactions.get(name, c[i])
         return np.concatenate([x[0], c, least.values])
+
+    def reactions(self, solution: Solution) -> dict[str, float]:
+        """Unknown constants of the stations of a solution, by name."""
+        problem, dense = solution.problem, solution.dense
+        known = dict(zip(problem.constant_names, dense.constants, strict=False))
+        for name, value in zip(problem.parameter_names, dense.theta, strict=True):
+            known[name.removeprefix("recovered.")] = float(value)
+        return {name: known[name] for st in self.ribbon.stations for name in st.unknown}
+
+    @cached_property
+    def smooth(self) -> ConstitutiveLaw:
+        """The law of the ribbon, or a smooth one that stands for one with a kink."""
+        if not self.ribbon.law.kinked:
+            return self.ribbon.law
+        scene = self.least(value_at(self.straight.scene, self.parameter)).scene
+        theta = {**self.ribbon.theta, "law.delta": ca.SX(SMOOTH)}
+        scene = replace(scene, law=Variational(delta=SMOOTH))
+        return relation_of(scene, theta.__getitem__, self.ribbon.position)
 
     @cached_property
     def _rod(self) -> Prepared | None:

@@ -12,26 +12,21 @@ not linear. The straight state itself, on which the coefficients depend, is carr
 states obey x' = f(x, c, 0) from the start, and start and constants are affine in the load,
 
     (x_0, c, theta) = (1 - p) (...)_a + p (...)_b,    p = 0 at the value a, 1 at b.
-
-Unknowns: states [x, xi], constants [gamma, p, lengths of phases].
 """
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
 import casadi as ca
-import numpy as np
 
-from ribbonopt.arrays import Array
-from ribbonopt.mechanics.laws.law import ConstitutiveLaw, Stress
-from ribbonopt.problem import BoundaryValueProblem, Phase, Ribbon
+from ribbonopt.mechanics.laws.law import Stress
+from ribbonopt.problem import Ribbon
 from ribbonopt.problem.imposed import residuals
 
 Strain = Callable[[Stress], ca.SX]
-Kinds = tuple[int, ...]
 
 
 @dataclass(frozen=True, eq=False)
@@ -45,6 +40,11 @@ class Deflected:
     """
 
     ribbon: Ribbon
+
+    @cached_property
+    def marked(self) -> Ribbon:
+        """The ribbon with symbols for which stations are passed."""
+        return self.ribbon.marked
 
     @cached_property
     def sizes(self) -> tuple[int, int, int]:
@@ -71,7 +71,7 @@ class Deflected:
     def stress(self) -> Stress:
         """What the law reads of a deflection: n of the straight state, m of the deflection."""
         x, c = self._symbols
-        stress = self.ribbon.section(x, c).rod.stress
+        stress = self.marked.section(x, c).rod.stress
         free = self.ribbon.law.components
         change = self._linear(stress.m)
         m = ca.vertcat(*((change if i in free else stress.m)[i] for i in range(3)))
@@ -81,9 +81,9 @@ class Deflected:
     def dynamics(self, strain: Strain) -> ca.SX:
         """[x; xi]' with a law, given as its strains (3,) at a stress."""
         x, c = self._symbols
-        section = self.ribbon.section(x, c)
+        section = self.marked.section(x, c)
         u = ca.SX.sym("u", 3)
-        rates = self.ribbon.rates(section, u)
+        rates = self.marked.rates(section, u)
         straight = ca.substitute(rates, u, ca.SX.zeros(3))
         # The rates are affine in u.
         bent = ca.substitute(
@@ -91,28 +91,40 @@ class Deflected:
         )
         return ca.vertcat(self._at_base(straight), self._at_base(self._linear(straight)) + bent)
 
-    def conditions(self, start: ca.SX, end: ca.SX) -> dict[str, ca.SX]:
-        """Conditions of the straight state, then those of the deflection, at both ends [x; xi]."""
+    def conditions(self, points: Sequence[ca.SX]) -> dict[str, ca.SX]:
+        """Conditions of the straight state, then those of the deflection.
+
+        `points` are [x; xi] at the start, at the stations and at the end.
+        """
         nx, _, _ = self.sizes
         x0, c, theta = self.base
-        ends = ca.SX.sym("start", nx), ca.SX.sym("end", nx)
+        at = [ca.SX.sym(f"at{i}", nx) for i in range(len(points))]
         constants = ca.SX.sym("c", c.numel())
-        of, gamma = ca.vertcat(*ends, constants), self.parts["gamma"]
-        change = ca.vertcat(start[nx:], end[nx:], gamma)
-        here = ca.vertcat(start[:nx], end[:nx], c)
-        found = {f"start of the straight state, {i + 1}": start[i] - x0[i] for i in range(nx)}
-        for name, value in residuals(self.ribbon, *ends, constants).items():
+        of, gamma = ca.vertcat(*at, constants), self.parts["gamma"]
+        change = ca.vertcat(*(point[nx:] for point in points), gamma)
+        here = ca.vertcat(*(point[:nx] for point in points), c)
+        straight = [points[0][i] - x0[i] for i in range(nx)]
+        found = {f"start of the straight state, {i + 1}": v for i, v in enumerate(straight)}
+        imposed = residuals(self.ribbon, at[0], at[-1], constants, at[1:-1])
+        for name, value in imposed.items():
             linear = ca.jtimes(value, of, change)
             known = [of, self.ribbon.parameters], [here, theta]
             (found[name],) = ca.substitute([linear], *known)
         return found
 
-    @property
-    def interval(self) -> tuple[ca.SX, ca.SX]:
-        """Arclengths of both ends, at the load."""
-        _, _, theta = self.base
-        found = ca.substitute(list(self.ribbon.interval), [self.ribbon.parameters], [theta])
-        return found[0], found[1]
+    @cached_property
+    def places(self) -> tuple[ca.SX, ...]:
+        """Arclengths of the start, the stations and the end, at the load."""
+        ribbon, (_, _, theta) = self.ribbon, self.base
+        start, end = ribbon.interval
+        inner = (station.place(ribbon.theta.__getitem__) for station in ribbon.stations)
+        return tuple(ca.substitute([start, *inner, end], [ribbon.parameters], [theta]))
+
+    def before(self, value: ca.SX, count: int) -> ca.SX:
+        """Return an expression behind so many stations."""
+        total = len(self.ribbon.stations)
+        marks = ca.SX(ca.DM([1.0] * count + [0.0] * (total - count)))
+        return ca.substitute(value, self.marked.passed, marks) if total else value
 
     @cached_property
     def _symbols(self) -> tuple[ca.SX, ca.SX]:
@@ -130,66 +142,3 @@ class Deflected:
         of = [*self._symbols, self.ribbon.parameters]
         (found,) = ca.substitute([expression], of, [self.parts["x"], c, theta])
         return found
-
-
-def infinitesimal(
-    deflected: Deflected, numbers: ca.SX, strain: Strain, law: ConstitutiveLaw, kinds: Kinds = ()
-) -> BoundaryValueProblem:
-    """Return the square problem of a buckling load and its mode.
-
-    Parameters
-    ----------
-    deflected
-        The ribbon.
-    numbers
-        Further symbols (k,) that the strains contain; the last parameters.
-    strain
-        The law, as strains (3,) at a stress, where there are no phases.
-    law
-        The law whose sides hold in phases.
-    kinds
-        Kinds of the phases, +1 or -1, which meet where m2 vanishes; empty for one phase.
-    """
-    parts, (nx, nc, _) = deflected.parts, deflected.sizes
-    lengths = ca.SX.sym("length", max(len(kinds) - 1, 0))
-    row = ca.SX.sym("row", 2 * nx + nc)
-    start, end = deflected.interval
-    each = [*ca.vertsplit(lengths), end - start - ca.sum1(lengths)] if kinds else [end - start]
-    sides: list[Strain] = [law.branch(kind).strain for kind in kinds]
-    sides = sides or [strain]
-    outputs = {"m": deflected.stress.m}
-    phases = tuple(
-        Phase(deflected.dynamics(side), length, outputs)
-        for side, length in zip(sides, each, strict=True)
-    )
-    points = tuple(ca.SX.sym(f"point{i}", 2 * nx) for i in range(len(phases) + 1))
-    conditions = deflected.conditions(points[0], points[-1])
-    at, state = start, ca.vertcat(parts["x"], parts["xi"])
-    for i, length in enumerate(each[:-1], start=1):
-        at = at + length
-        here = [state, deflected.ribbon.position], [points[i], at]
-        (conditions[f"switch {i}: m2 = 0"],) = ca.substitute([deflected.stress.m[1]], *here)
-    mode = ca.vertcat(points[0][nx:], points[-1][nx:], parts["gamma"])
-    conditions["size of the deflection"] = ca.dot(row, mode) - 1
-    parameters = {"a": parts["a"], "b": parts["b"], "row": row, "numbers": numbers}
-    names = [f"{name} {i}" for name, part in parameters.items() for i in range(part.numel())]
-    constants = ca.vertcat(parts["gamma"], parts["load"], lengths)
-    return BoundaryValueProblem(
-        position=deflected.ribbon.position,
-        state=state,
-        algebraic=ca.SX(0, 1),
-        constants=constants,
-        parameters=ca.vertcat(*parameters.values()),
-        start=start,
-        phases=phases,
-        points=points,
-        conditions=conditions,
-        state_names=tuple(f"state {i}" for i in range(2 * nx)),
-        constant_names=tuple(f"constant {i}" for i in range(int(constants.numel()))),
-        parameter_names=tuple(names),
-    )
-
-
-def packed(a: Array, b: Array, row: Array, numbers: Array) -> Array:
-    """Return the parameters theta of the problem."""
-    return np.concatenate([a, b, row, numbers])

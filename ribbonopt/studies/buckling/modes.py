@@ -16,20 +16,19 @@ import numpy as np
 
 from ribbonopt.arrays import Array
 from ribbonopt.guess.unknowns import laid_out, places_of
-from ribbonopt.mechanics.laws.law import Stress
-from ribbonopt.mechanics.laws.variational import VariationalLaw
+from ribbonopt.mechanics.laws.law import ConstitutiveLaw, Stress
 from ribbonopt.problem import BoundaryValueProblem
 from ribbonopt.solution.trajectory import Trajectory
 from ribbonopt.solvers import NewtonSolver
 from ribbonopt.solvers.condense import CondensedSystem
 from ribbonopt.transcription import CollocationMethod, Mesh
 
-from .infinitesimal import Deflected, Kinds, infinitesimal, packed
+from .infinitesimal import Deflected
 from .mode import Mode
-from .rod import STEPS, RodBuckling
+from .rod import RodBuckling
+from .square import Pieces, packed, square
 
 DEGREE, INTERVALS = 8, 12
-SMOOTH = 0.03  # delta of the smooth law that stands for one with a kink
 LEAST_STEP = 1 / 64  # of t
 WANTED = 1e-12  # error of the load, relative to the range that is searched
 RESIDUALS = (1e-5, 1e-7, 1e-9, 1e-11)  # of the equations between the stages, relative
@@ -40,9 +39,13 @@ Read = Callable[[Array], Array]  # fractions (k,) of the length to states (k, 2 
 
 @dataclass(frozen=True, eq=False)
 class Search:
-    """From the modes of one rod to those of the ribbon."""
+    """From the modes of one rod to those of the ribbon.
+
+    `smooth` is the ribbon's law, or what stands for one with a kink.
+    """
 
     rod: RodBuckling
+    smooth: ConstitutiveLaw
 
     @property
     def deflected(self) -> Deflected:
@@ -52,16 +55,12 @@ class Search:
     @cached_property
     def _smooth(self) -> BoundaryValueProblem:
         """The problem in one phase: the rod's law for t = 0, the ribbon's or a smooth one for 1."""
-        law, t = self.deflected.ribbon.law, ca.SX.sym("t")
-        smooth = VariationalLaw(ca.SX(SMOOTH)) if law.kinked else law
-        stiffnesses = self.rod.stiffnesses
+        t = ca.SX.sym("t")
 
         def strain(stress: Stress) -> ca.SX:
-            rod = [stress.m[i] / stiffnesses[i] if i in law.components else 0 for i in range(3)]
-            blend: ca.SX = (1 - t) * ca.vertcat(*rod) + t * smooth.strain(stress)
-            return blend
+            return (1 - t) * self.rod.strain(stress) + t * self.smooth.strain(stress)
 
-        return infinitesimal(self.deflected, t, strain, law)
+        return square(self.deflected, t, strain, self.smooth)
 
     @property
     def _named(self) -> int:
@@ -75,9 +74,9 @@ class Search:
         found = self._from_rod(load, start)
         if found is None or not law.kinked:
             return None if found is None else self._refined(found, self._smooth)
-        kinds, places = found.signs
-        problem = infinitesimal(self.deflected, ca.SX(0, 1), law.strain, law, kinds)
-        found = self._in_phases(found, problem, kinds, places)
+        pieces, places = found.signs
+        problem = square(self.deflected, ca.SX(0, 1), law.strain, law, pieces)
+        found = self._in_phases(found, problem, pieces, places)
         return None if found is None else self._refined(found, problem)
 
     def at(self, load: float) -> Array:
@@ -94,7 +93,7 @@ class Search:
         constants[nc] = (there - a) @ (b - a) / ((b - a) @ (b - a))
         parts = trajectory.approximate, trajectory.ends, constants
         numbers, mesh = output.theta[self._named :], self._mesh(mode)
-        found = self._solved(trajectory.problem, mesh, *parts, numbers, mode.kinds)
+        found = self._solved(trajectory.problem, mesh, *parts, numbers, mode.pieces)
         return None if found is None else replace(found, error=self._error(found))
 
     def _mesh(self, mode: Mode) -> Mesh:
@@ -104,16 +103,15 @@ class Search:
 
     def _from_rod(self, load: float, start: Array) -> Mode | None:
         """Bring the law on, from that of the rod."""
-        along = self.rod.along(load, start)
-        grid = np.linspace(0, 1, STEPS + 1)
+        grid, along = self.rod.along(load, start)
 
         def read(fractions: Array) -> Array:
             return np.stack([np.interp(fractions, grid, column) for column in along.T], axis=1)
 
         nx, _, _ = self.deflected.sizes
-        constants, ends = np.append(start[nx:], load), np.array([0.0, 1.0])
-        mesh = Mesh.uniform(INTERVALS)
-        problem = self._smooth
+        problem, constants = self._smooth, np.append(start[nx:], load)
+        ends = self.rod.ends(load)
+        mesh = _shared(ends)
         mode = self._solved(problem, mesh, read, ends, constants, np.zeros(1))
         share, step = 0.0, 0.5
         while mode is not None and share < 1:
@@ -128,17 +126,13 @@ class Search:
         return mode
 
     def _in_phases(
-        self, mode: Mode, problem: BoundaryValueProblem, kinds: Kinds, places: Array
+        self, mode: Mode, problem: BoundaryValueProblem, pieces: Pieces, places: Array
     ) -> Mode | None:
         ends = np.concatenate([[0.0], places, [1.0]])
-        counts = [max(4, round(INTERVALS * float(share))) for share in np.diff(ends)]
         trajectory, dense = mode.trajectory, mode.trajectory.dense
-        extent = trajectory.problem.extent_function(dense.constants, dense.theta)
-        lengths = float(extent[1]) * np.diff(ends)[:-1]
+        lengths = trajectory.length * np.diff(ends)[:-1]
         constants, read = np.append(dense.constants, lengths), trajectory.approximate
-        found = self._solved(
-            problem, Mesh.uniform(*counts), read, ends, constants, np.empty(0), kinds
-        )
+        found = self._solved(problem, _shared(ends), read, ends, constants, np.empty(0), pieces)
         return found if found is not None and found.admissible else None
 
     def _again(
@@ -147,7 +141,7 @@ class Search:
         """Solve from a mode of the same problem, or of the same phases."""
         trajectory = mode.trajectory
         parts = trajectory.approximate, trajectory.ends, trajectory.dense.constants
-        return self._solved(problem, mesh, *parts, numbers, mode.kinds)
+        return self._solved(problem, mesh, *parts, numbers, mode.pieces)
 
     def _solved(
         self,
@@ -157,7 +151,7 @@ class Search:
         ends: Array,
         constants: Array,
         numbers: Array,
-        kinds: Kinds = (),
+        pieces: Pieces | None = None,
     ) -> Mode | None:
         """Solve from states that can be read anywhere, and constants."""
         nlp = CollocationMethod.named("gauss", DEGREE).transcribe(problem, mesh.elements)
@@ -171,7 +165,7 @@ class Search:
         if not report.status.converged:
             return None
         output = nlp.output(report.w, p)
-        return Mode(float(output.constants[nc]), np.inf, Trajectory(problem, output), kinds)
+        return Mode(float(output.constants[nc]), np.inf, Trajectory(problem, output), pieces)
 
     def _refined(self, mode: Mode, problem: BoundaryValueProblem) -> Mode:
         """Refine the mesh until the load is as exact as is wanted, or no mesh does better."""
@@ -208,3 +202,11 @@ class Search:
         step = CondensedSystem(finer.blocks, derivatives, finer.p).solve(residuals)
         _, _, constants = finer.blocks.layout.unpack(step)
         return abs(float(constants[self.deflected.sizes[1]]))
+
+
+def _shared(ends: Array) -> Mesh:
+    """Equal elements in phases between fractions, as many as their lengths ask for."""
+    shares = np.diff(ends)
+    if len(shares) == 1:
+        return Mesh.uniform(INTERVALS)
+    return Mesh.uniform(*(max(4, round(INTERVALS * float(share))) for share in shares))

@@ -20,20 +20,24 @@ from ribbonopt.problem import Ribbon
 
 from .infinitesimal import Deflected
 
-STEPS = 40  # of the rod's length
+STEPS, FEWEST = 40, 4  # along the rod; between stations
 SCAN = 120  # loads at which the determinant is looked at
 BISECTIONS = 24
 DEPENDENT = 1e-11  # singular value, over the largest, of conditions that hold at any load
 
 
-def pure_stiffnesses(ribbon: Ribbon, theta: Array) -> Array:
-    """Moment over strain (3,) where only one moment acts, at numbers theta; 1 where it has none."""
-    result, law, inputs = np.ones(3), ribbon.law, [ribbon.parameters, ribbon.position]
+def pure_compliances(ribbon: Ribbon, theta: Array) -> ca.SX:
+    """Strains (3,) over moments where only one moment acts, along the ribbon; 0 where it has none.
+
+    1 where the law, at numbers theta, says nothing of use.
+    """
+    law, result = ribbon.law, ca.SX.zeros(3)
+    start, end = ribbon.interval
     for i in law.components:
         strain = law.strain(Stress.of_moment(ca.SX(np.eye(3)[i])))[i]
-        value = float(ca.Function("u", inputs, [strain])(theta, 0.5))
-        if np.isfinite(value) and value > 0:
-            result[i] = 1 / value
+        middle = ca.substitute(strain, ribbon.position, (start + end) / 2)
+        value = float(ca.Function("u", [ribbon.parameters], [middle])(theta))
+        result[i] = strain if np.isfinite(value) and value > 0 else 1
     return result
 
 
@@ -45,16 +49,32 @@ class RodBuckling:
     ----------
     deflected : Deflected
         The ribbon, whose own law is not asked.
-    stiffnesses : (3,) array
-        Of the rod, along the directors.
+    compliances : SX (3,)
+        Of the rod, along the directors: of the parameters and the position of the ribbon.
     a, b : (nx + nc + nt,) arrays
         Start, constants and parameters of the straight state at either load.
     """
 
     deflected: Deflected
-    stiffnesses: Array
+    compliances: ca.SX
     a: Array
     b: Array
+
+    @property
+    def sound(self) -> bool:
+        """Whether it is one all along at both loads: it is not where a width is not positive."""
+        ribbon = self.deflected.ribbon
+        found = ca.densify(self.compliances[list(ribbon.law.components)])
+        function = ca.Function("compliances", [ribbon.parameters, ribbon.position], [found])
+        for load, numbers in ((0.0, self.a), (1.0, self.b)):
+            places = np.array(self._places(load, self.a, self.b)).ravel()
+            theta = numbers[-len(ribbon.theta) :]
+            values = [
+                np.array(function(theta, s)) for s in np.linspace(places[0], places[-1], STEPS + 1)
+            ]
+            if not np.min(values) > 0:
+                return False
+        return True
 
     def loads(self) -> Iterator[tuple[float, Array]]:
         """Yield loads p from 0 to 1 with the mode [xi; gamma] (nx + nc,) at the start."""
@@ -80,60 +100,75 @@ class RodBuckling:
         largest = np.abs(values).max(axis=2, keepdims=True)
         return np.asarray(values / np.where(largest > 0, largest, 1.0))
 
-    def along(self, load: float, mode: Array) -> Array:
-        """States [x; xi] (STEPS + 1, 2 nx) at evenly spaced places."""
+    def along(self, load: float, mode: Array) -> tuple[Array, Array]:
+        """Fractions (k,) of the length, where stations are twice, and states [x; xi] (k, 2 nx)."""
         nx, _, _ = self.deflected.sizes
-        x, Y = (np.array(part) for part in self._states(load, self.a, self.b))
-        Y = Y.T.reshape(STEPS + 1, -1, nx).swapaxes(1, 2)
-        return np.hstack([x.T, Y @ mode])
+        found = self._states(load, self.a, self.b)
+        x, Y, s = (np.hstack([np.array(part) for part in found[i::3]]) for i in range(3))
+        Y = Y.T.reshape(len(x.T), -1, nx).swapaxes(1, 2)
+        s = s.ravel()
+        return (s - s[0]) / (s[-1] - s[0]), np.hstack([x.T, Y @ mode])
+
+    def strain(self, stress: Stress) -> ca.SX:
+        """Strains (3,) of the rod."""
+        return self.compliances * stress.m
+
+    def ends(self, load: float) -> Array:
+        """Fractions of the length at which the start, the stations and the end are."""
+        s = np.array(self._places(load, self.a, self.b)).ravel()
+        return np.asarray((s - s[0]) / (s[-1] - s[0]))
+
+    @cached_property
+    def _places(self) -> ca.Function:
+        numbers = [self.deflected.parts[name] for name in ("load", "a", "b")]
+        return ca.Function("places", numbers, [ca.vertcat(*self.deflected.places)])
 
     @cached_property
     def _symbolic(self) -> tuple[ca.SX, ca.SX, ca.SX]:
         """[x; xi]' of the rod, and its Jacobians by xi and gamma."""
-
-        def strain(stress: Stress) -> ca.SX:
-            free = self.deflected.ribbon.law.components
-            found: ca.SX = ca.vertcat(
-                *(stress.m[i] / self.stiffnesses[i] if i in free else 0 for i in range(3))
-            )
-            return found
-
         nx, _, _ = self.deflected.sizes
-        rates, parts = self.deflected.dynamics(strain), self.deflected.parts
+        rates, parts = self.deflected.dynamics(self.strain), self.deflected.parts
         change = rates[nx:]
         return rates, ca.jacobian(change, parts["xi"]), ca.jacobian(change, parts["gamma"])
 
     @cached_property
     def _states(self) -> ca.Function:
-        """Function (load, a, b) of x (nx, STEPS + 1) and of all solutions, column by column."""
+        """Function (load, a, b) of what is so between two stations, one triple after another.
+
+        States x (nx, k), all solutions (nx (nx + nc), k), column by column, arclengths (1, k).
+        """
         deflected, parts = self.deflected, self.deflected.parts
         nx, nc, _ = deflected.sizes
         rates, by_xi, by_gamma = self._symbolic
         numbers = [parts["load"], parts["a"], parts["b"]]
-        s = deflected.ribbon.position
+        given = [ca.MX.sym("given", part.numel()) for part in numbers]
+        s, h = deflected.ribbon.position, ca.SX.sym("h")
         Y = ca.SX.sym("Y", nx, nx + nc)
         slope = ca.mtimes(by_xi, Y) + ca.horzcat(ca.SX.zeros(nx, nx), by_gamma)
         still = [parts["xi"], parts["gamma"]]
         both = ca.vertcat(rates[:nx], ca.vec(ca.densify(slope)))
         both = ca.substitute([both], still, [ca.SX.zeros(nx), ca.SX.zeros(nc)])[0]
         state = ca.vertcat(parts["x"], ca.vec(Y))
-        f = ca.Function("f", [state, s, *numbers], [both])
-        start, end = deflected.interval
-        h = (end - start) / STEPS
-        k1 = f(state, s, *numbers)
-        k2 = f(state + h / 2 * k1, s + h / 2, *numbers)
-        k3 = f(state + h / 2 * k2, s + h / 2, *numbers)
-        k4 = f(state + h * k3, s + h, *numbers)
-        following = ca.vertcat(state + h / 6 * (k1 + 2 * k2 + 2 * k3 + k4), s + h)
-        step = ca.Function("step", [ca.vertcat(state, s), *numbers], [following])
-        given = [ca.MX.sym(part.name(), part.numel()) for part in numbers[:1]]
-        given += [ca.MX.sym(name, parts[name].numel()) for name in ("a", "b")]
         x0, _, _ = deflected.base
-        begin = ca.Function("begin", numbers, [ca.vertcat(x0, start)])(*given)
-        first = ca.vertcat(begin[:nx], ca.vec(ca.DM(np.eye(nx, nx + nc))), begin[nx])
-        repeated = [ca.repmat(part, 1, STEPS) for part in given]
-        found = ca.horzcat(first, step.mapaccum(STEPS)(first, *repeated))
-        return ca.Function("states", given, [found[:nx, :], found[nx:-1, :]])
+        begin = ca.Function("begin", numbers, [x0, ca.vertcat(*deflected.places)])
+        x, places = begin(*given)
+        last = ca.vertcat(x, ca.vec(ca.DM(np.eye(nx, nx + nc))), places[0])
+        result: list[ca.MX] = []
+        for i, share in enumerate(np.diff(self.ends(0.0))):
+            count = max(FEWEST, round(STEPS * share))
+            f = ca.Function("f", [state, s, *numbers], [deflected.before(both, i)])
+            k1 = f(state, s, *numbers)
+            k2 = f(state + h / 2 * k1, s + h / 2, *numbers)
+            k3 = f(state + h / 2 * k2, s + h / 2, *numbers)
+            k4 = f(state + h * k3, s + h, *numbers)
+            following = ca.vertcat(state + h / 6 * (k1 + 2 * k2 + 2 * k3 + k4), s + h)
+            step = ca.Function("step", [ca.vertcat(state, s), h, *numbers], [following])
+            width = (places[i + 1] - places[i]) / count
+            repeated = [ca.repmat(part, 1, count) for part in (width, *given)]
+            found = ca.horzcat(last, step.mapaccum(count)(last, *repeated))
+            last = found[:, -1]
+            result += [found[:nx, :], found[nx:-1, :], found[-1, :]]
+        return ca.Function("states", given, result)
 
     @cached_property
     def _matrix(self) -> ca.Function:
@@ -141,19 +176,17 @@ class RodBuckling:
         deflected, parts = self.deflected, self.deflected.parts
         nx, nc, _ = deflected.sizes
         numbers = [parts["load"], parts["a"], parts["b"]]
-        ends = ca.SX.sym("start", 2 * nx), ca.SX.sym("end", 2 * nx)
-        named = list(deflected.conditions(*ends).values())[nx:]
-        column = ca.vertcat(*named)
-        jacobians = [
-            ca.jacobian(column, ends[0][nx:]),
-            ca.jacobian(column, ends[1][nx:]),
-            ca.jacobian(column, parts["gamma"]),
-        ]
-        inputs = [ends[0][:nx], ends[1][:nx], *numbers]
+        points = [ca.SX.sym(f"point{i}", 2 * nx) for i in range(len(deflected.places))]
+        column = ca.vertcat(*list(deflected.conditions(points).values())[nx:])
+        jacobians = [ca.jacobian(column, part) for part in (*points, parts["gamma"])]
+        jacobians = [part[:, nx:] for part in jacobians[:-1]] + jacobians[-1:]
+        inputs = [*(point[:nx] for point in points), *numbers]
         linear = ca.Function("linear", inputs, [ca.densify(part) for part in jacobians])
         given = [ca.MX.sym("given", part.numel()) for part in numbers]
-        x, Y = self._states(*given)
-        at_start, at_end, by_gamma = linear(x[:, 0], x[:, -1], *given)
-        last = ca.reshape(Y[:, -1], nx, nx + nc)
-        matrix = ca.horzcat(at_start, by_gamma) + ca.mtimes(at_end, last)
+        states = self._states(*given)
+        x, Y = states[::3], states[1::3]
+        *at, by_gamma = linear(x[0][:, 0], *(part[:, -1] for part in x), *given)
+        matrix = ca.horzcat(at[0], by_gamma)
+        for jacobian, part in zip(at[1:], Y, strict=True):
+            matrix += ca.mtimes(jacobian, ca.reshape(part[:, -1], nx, nx + nc))
         return ca.Function("matrix", given, [matrix])

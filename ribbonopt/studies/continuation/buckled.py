@@ -14,6 +14,8 @@ from ribbonopt.pipeline.prepared import Prepared
 from ribbonopt.solution.solution import Solution
 
 from .curve import Curve
+from .relaid import in_other_phases
+from .walk.departure import Departure
 from .walk.points import BUCKLING, Point
 from .walk.protocol import Equations
 
@@ -59,9 +61,30 @@ class StageBuckling:
                 found.append(replace(straight, kind=BUCKLING, note=""))
         return found
 
-    def direction(self, attempt: Attempt, point: Point[Solution]) -> Array:
-        """Direction (n + 1,) of the deflection at a buckling point; the attempt is beside it."""
+    def departure(
+        self, equations: Equations[Solution], point: Point[Solution]
+    ) -> Departure[Solution]:
+        """Return the deflection at a buckling point, and that point in phases that it needs."""
         value, loads = self.curve.value(point.position), self.loads(point.solution)
         load = min(loads, key=lambda one: abs(one.value - value))
-        bent, straight = (attempt.unknowns(load.guess(a)) for a in (AMPLITUDE, 0.0))
-        return np.append(bent - straight, 0.0)
+        search = self.prepared.search(self.curve.posed_at(point.position))
+        mode, old = load.mode, point.solution
+        if mode.pieces is None or not search.needs_phases:
+            attempt = search.on_mesh(old.sheets, old.mesh, old.trajectory.ends[1:-1])
+            return Departure(_direction(attempt, load), point, point)
+        ahead = equations.restored(old, point.unknowns + point.tangent)
+        sides, switches = [], mode.trajectory.ends[1:-1]
+        for sign in (1, -1):
+            kinds = tuple(sign * kind for kind in mode.pieces.kinds)
+            attempt, w = in_other_phases(search, old, kinds, switches)
+            tangent = np.append(attempt.unknowns(ahead) - w, point.tangent[-1])
+            unknowns = np.append(w, point.position)
+            straight = replace(point, solution=attempt.restored(w), unknowns=unknowns)
+            sides.append(replace(straight, tangent=tangent))
+        return Departure(_direction(attempt, load), *sides)
+
+
+def _direction(attempt: Attempt, load: Buckling) -> Array:
+    """Direction (n + 1,) of a deflection, in the layout of an attempt."""
+    bent, straight = (attempt.unknowns(load.guess(a)) for a in (AMPLITUDE, 0.0))
+    return np.append(bent - straight, 0.0)

@@ -8,6 +8,7 @@ from __future__ import annotations
 import numpy as np
 
 from ribbonopt.arrays import Array
+from ribbonopt.problem import BoundaryValueProblem
 from ribbonopt.solution.solution import Solution
 
 from .curve import Curve
@@ -21,7 +22,7 @@ def reduced(solution: Solution, extended: Array) -> Array:
     """
     layout = solution.dense.blocks.layout
     nodes, _, c = layout.unpack(extended[:-1])
-    rod = layout.nc - len(layout.elements) + 1 - solution.problem.slack
+    rod = layout.nc - solution.problem.kept(_lengths) - solution.problem.slack
     return np.concatenate([nodes[0], nodes[-1], c[:rod], extended[-1:]])
 
 
@@ -48,3 +49,8 @@ def metric_at(solution: Solution, curve: Curve) -> Metric:
     sizes[2 * nx :] = sizes[2 * nx :].max(initial=1.0)
     sizes[-1] = curve.span
     return Metric(sizes)
+
+
+def _lengths(problem: BoundaryValueProblem) -> int:
+    """Return how many constants are lengths of phases; those between stations are known."""
+    return problem.lengths

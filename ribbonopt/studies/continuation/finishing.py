@@ -25,17 +25,30 @@ if TYPE_CHECKING:
 
 GENTLE = 0.3  # share of the position in the tangent, from where on no fold is near
 STEEP = 0.1  # of the error at a given position: one along the branch that tells of a fold
+SINGULAR = "the equations are singular at this very point: branches cross there, or one turns"
 NEXT_TO_CROSSING = "next to where branches cross: the error is above the tolerance"
 
 
 def finished(
     equations: RibbonEquations, origin: Point[Solution], trial: Trial[Solution]
 ) -> Trial[Solution]:
-    """Return a solution verified, to tolerance, in the phases it needs."""
+    """Return a solution verified, to tolerance, in the phases it needs.
+
+    None converged where the equations are singular to the last digit: another step is not.
+    """
+    try:
+        return _finished(equations, origin, trial)
+    except np.linalg.LinAlgError:
+        return replace(trial, converged=False, message=SINGULAR)
+
+
+def _finished(
+    equations: RibbonEquations, origin: Point[Solution], trial: Trial[Solution]
+) -> Trial[Solution]:
     found, note, prepared = trial.solution, "", equations.prepared
     tolerance = found.scene.tolerance
     search = prepared.search(found.posed)
-    if not found.sheets and search.phases_help and search.changes_sign(found):
+    if not found.sheets and search.phases_help and search.better_in_phases(found):
         found = prepared.solve(found.posed, guess=found, fallback=False)
     elif equations.unbent(found):  # no error can be told of it
         found = verified(found, prepared.ribbon)

@@ -29,6 +29,7 @@ from .leaving import leaving
 from .passage import passage
 from .phases import orientation
 from .trials import checked, trial_of, without_last
+from .walk.departure import Departure
 from .walk.metric import Metric
 from .walk.points import BUCKLING, POINT, Point
 from .walk.protocol import Passage, Trial
@@ -149,13 +150,9 @@ class RibbonEquations:
 
         return unexplained(a, b, changes)
 
-    def departure(self, point: Point[Solution]) -> Array | None:
+    def departure(self, point: Point[Solution]) -> Departure[Solution] | None:
         """Return the infinitesimal deflection at a buckling point, None at others."""
-        if point.kind != BUCKLING:
-            return None
-        attempt = self._beside(point.solution, point.position)
-        direction = self.buckling.direction(attempt, point)
-        return np.asarray(direction / self.metric.length(reduced(point.solution, direction)))
+        return self.buckling.departure(self, point) if point.kind == BUCKLING else None
 
     @property
     def buckling(self) -> StageBuckling:

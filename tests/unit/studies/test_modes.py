@@ -3,6 +3,7 @@
 from types import SimpleNamespace
 from typing import Any
 
+import casadi as ca
 import numpy as np
 import pytest
 
@@ -10,7 +11,8 @@ from ribbonopt.problem import Posed, Ribbon
 from ribbonopt.scene import loads_scene
 from ribbonopt.studies.buckling.buckling import SETTLED, _States
 from ribbonopt.studies.buckling.mode import Mode
-from ribbonopt.studies.buckling.rod import pure_stiffnesses
+from ribbonopt.studies.buckling.rod import pure_compliances
+from ribbonopt.studies.buckling.square import Pieces
 
 TEXT = """
 name: strip
@@ -33,8 +35,11 @@ def test_the_rod_is_as_stiff_as_the_ribbon_bent_or_twisted_alone(
     law: str, bending: float, twist: float
 ) -> None:
     posed = Posed.of(loads_scene(TEXT % law))
-    found = pure_stiffnesses(Ribbon.of(posed), posed.values)
-    np.testing.assert_allclose(found, [1.0, bending, twist], rtol=1e-9)
+    ribbon = Ribbon.of(posed)
+    found = pure_compliances(ribbon, posed.values)
+    numbers = ca.Function("numbers", [ribbon.parameters], [found])(posed.values)
+    expected = [[0.0], [1 / bending], [1 / twist]]
+    np.testing.assert_allclose(numbers.full(), expected, rtol=1e-9)
 
 
 @pytest.mark.parametrize(
@@ -54,7 +59,30 @@ def test_modes_are_admitted_where_m2_has_the_sign_of_their_phases(
     m = np.stack([np.zeros(4), np.array(m2), np.full(4, 0.3)], axis=1)
     phases = np.array([0, 0, 1, 1]) if kinds else np.zeros(4, int)
     trajectory: Any = SimpleNamespace(at_stages={"m": m}, stages=(None, None, None, phases))
-    assert Mode(1.0, 0.0, trajectory, kinds).admissible == admitted
+    assert Mode(1.0, 0.0, trajectory, Pieces(kinds) if kinds else None).admissible == admitted
+
+
+@pytest.mark.parametrize(
+    ("m2", "pieces", "places"),
+    [
+        ([1, 0.5, 0.25, 0.1], Pieces((1, 1), (1,)), [0.5]),
+        ([1, -1, -1, -1], Pieces((1, -1, -1), (2,)), [0.25, 0.5]),  # a zero before the station
+        ([1, 1, -1, -1], Pieces((1, -1), (1,)), [0.5]),  # a couple takes m2 over zero
+        ([-1, -1, 0, 0], Pieces((-1, -1), (1,)), [0.5]),  # nothing acts behind the station
+        ([0, 0, -1, 1], Pieces((1, -1, 1), (1,)), [0.5, 0.75]),
+    ],
+)
+def test_phases_of_a_mode_meet_at_stations_too(
+    m2: list[float], pieces: Pieces, places: list[float]
+) -> None:
+    m = np.stack([np.zeros(4), np.array(m2), np.full(4, 0.3)], axis=1)
+    stages = None, np.array([0.125, 0.375, 0.625, 0.875]), None, np.array([0, 0, 1, 1])
+    trajectory: Any = SimpleNamespace(
+        at_stages={"m": m}, stages=stages, ends=np.array([0.0, 0.5, 1.0])
+    )
+    found, at = Mode(1.0, 0.0, trajectory).signs
+    assert found == pieces
+    np.testing.assert_allclose(at, places)
 
 
 @pytest.mark.parametrize(("low", "high"), [(1.0, 9.0), (-4.0, -1.0)])

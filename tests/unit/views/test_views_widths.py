@@ -52,3 +52,11 @@ def test_the_figure_of_a_tapered_strip_says_so(solved: Callable[..., Solution]) 
     np.testing.assert_allclose(piece.widths, 1 - 0.7 * piece.s, rtol=1e-12)
     figure = draw_ribbon(subject_of(found, complete=True))
     assert "half-width 0.05 w(s) along" in " ".join(text.get_text() for text in figure.texts)
+
+
+def test_a_straight_strip_is_drawn_as_a_rectangle(solved: Callable[..., Solution]) -> None:
+    """Its strains are rounding, and so would be the slope of its generatrices."""
+    found = solved("lateral_buckling")
+    assert 0 < np.abs(found.at_stages["u"]).max() < 1e-12
+    (piece,) = subject_of(found, complete=True).solved
+    assert (piece.eta == 0).all()

@@ -16,6 +16,7 @@ from typing import Any, Generic, Protocol
 
 from ribbonopt.arrays import Array
 
+from .departure import Departure
 from .metric import Metric
 from .points import Point, S
 
@@ -154,8 +155,8 @@ class Equations(Protocol[S]):
     def leaving(self, point: Point[S]) -> list[Point[S]]:
         """Return the first points on the branches that leave a KINK, the main branch's first."""
 
-    def departure(self, point: Point[S]) -> Array | None:
-        """Direction (n + k,) of a branch that crosses there, None for the null direction."""
+    def departure(self, point: Point[S]) -> Departure[S] | None:
+        """How a branch that crosses leaves a point, None where the null direction tells it."""
 
     def finer(self, origin: S, unknowns: Array) -> tuple[S, Array] | None:
         """Return a solution and its unknowns in a layout twice as fine, not corrected there.

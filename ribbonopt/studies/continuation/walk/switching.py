@@ -36,8 +36,11 @@ def switched(
     if point.kind == KINK:
         return _left(equations, point, sign)
     known = equations.departure(point)
-    direction = null_direction(equations, point) if known is None else known
-    direction = sign * _oriented(equations, point, direction)
+    if known is None:
+        direction = sign * _oriented(equations, point, null_direction(equations, point))
+    else:
+        direction = sign * _oriented(equations, known.along, known.direction)
+        point = known.along if direction @ known.direction > 0 else known.against
     away, own = AWAY, None
     while away > LEAST_AWAY:
         guess = point.unknowns + away * direction
@@ -123,9 +126,13 @@ def null_direction(equations: Equations[S], point: Point[S]) -> Array:
             found, _ = near(equations, solution, unknowns, ahead)
         except np.linalg.LinAlgError:  # singular to the last digit
             continue
-        # Singular to rounding, or nearly: what any side gives is the null direction.
-        direction = found.kernel()
-        break
+        # Singular to rounding, or nearly: what any side gives is the null direction, times so much
+        # that its square may be no number.
+        kernel = found.kernel()
+        largest = float(np.abs(kernel).max())
+        if np.isfinite(largest):
+            direction = kernel / largest
+            break
     direction = (
         direction
         - metric.product(equations.reduced(point.solution, direction), ahead) * point.tangent
