@@ -54,7 +54,10 @@ def test_margins_are_positive_in_the_right_phases(turned: Solution) -> None:
 
 @pytest.mark.parametrize(
     ("kinds", "sign"),
-    [((1,), 1), ((1, -1), -1), ((1, -1, 1), -1), ((-1, 1, -1, 1, -1), 1), ((1, 0, 1), 1)],
+    [
+        *(((1,), 1), ((1, -1), -1), ((1, -1, 1), -1), ((-1, 1, -1, 1, -1), 1), ((1, 0, 1), 1)),
+        *(((-1, -1), 1), ((1, 1, -1, -1), -1)),  # those of one kind meet at stations
+    ],
 )
 def test_orientation(kinds: tuple[int, ...], sign: int) -> None:
     assert orientation(kinds) == sign
