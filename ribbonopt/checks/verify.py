@@ -92,7 +92,7 @@ def verify(solution: Solution, ribbon: Ribbon) -> Verification:
 
         problems += loop_problems(solution, loop, residual)
     law = float(solution.at_stages["law_residual"].max())
-    law /= max(_size(nodes["u"]), np.finfo(float).tiny)  # a straight ribbon has no strains
+    law /= max(_size(nodes["u"]), LEAST)  # a straight ribbon has no strains
     return Verification(tuple(problems), worst, residual, law, drift)
 
 

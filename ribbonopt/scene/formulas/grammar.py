@@ -167,6 +167,9 @@ class Parser:
             self._refuse(node, message)
         if name in FUNCTIONS:
             self._refuse(node, f"{name!r} is a function; write {name}(...)")
+        if name == ARCLENGTH:
+            known = "is the arclength, which is known in loads, natural and width only"
+            self._refuse(node, f"{name!r} {known}: expected one number here")
         self._unknown(node, "name", name, [*self.names, *AXES, *CONSTANTS])
 
     def _call(self, node: ast.Call, function: str, depth: int, exponent: bool) -> Node:
