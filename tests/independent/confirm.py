@@ -24,7 +24,7 @@ CHECKED = 16  # places at least
 RTOL = 1e-12
 SAMPLES = 40  # of each phase: the sign of T
 ZERO = 1e-7  # of moments: a T as small as that all along a phase is that of a mixture
-BESIDE = 1e-13  # of the length, in front of a station
+BESIDE = 1e-13  # of the length, in front of a station or behind it
 
 
 @dataclass(frozen=True)
@@ -79,9 +79,12 @@ class Samples:
     b: float
 
     def __call__(self, s: float, side: int = 1) -> Array:
-        """State (20, 1) at an arclength; side -1: in front of what acts or switches there."""
+        """State (20, 1) at an arclength; side -1: in front of what acts or switches there.
+
+        Else behind it, by as little: the phases of a solution meet there but for rounding.
+        """
         x = (s - self.a) / (self.b - self.a)
-        at = self.solution.trajectory.outputs(np.clip([x + min(side, 0) * BESIDE], 0, 1))
+        at = self.solution.trajectory.outputs(np.clip([x + side * BESIDE], 0, 1))
         y = np.zeros((ROWS, 1))
         for i, name in enumerate(("r", "d1", "d2", "d3", "n", "m")):
             y[3 * i : 3 * i + 3, 0] = at[name][0]
