@@ -93,6 +93,8 @@ class Field:
             length = theta(f"{self.name}.length") if isinstance(self.value, Scaled) else 1
             total = _picked(knots, totals, end) - _picked(knots, totals, begin)
             return total / (unit * length)
+        if self.uniform:
+            return self.at(s, theta) * (s - start)
         degree = 0 if self._tree is None else _degree(self._tree)
         if degree is None or degree > HIGHEST:
             return None
