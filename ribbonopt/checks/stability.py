@@ -17,7 +17,7 @@ import numpy as np
 from ribbonopt.accuracy.spin import SPIN, spins
 from ribbonopt.mechanics.laws.catalogue import capabilities
 from ribbonopt.problem import BoundaryValueProblem, Ribbon
-from ribbonopt.problem.energy import without_potential
+from ribbonopt.problem.potentials import without_potential
 from ribbonopt.solution.solution import Solution
 
 from .arcs import NEGLIGIBLE, sign_changes

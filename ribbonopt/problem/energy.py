@@ -18,13 +18,12 @@ that costate is n - Q.
 
 from __future__ import annotations
 
-from collections.abc import Sequence
-from typing import TYPE_CHECKING, NamedTuple
+from typing import NamedTuple
 
 import casadi as ca
 
 from ribbonopt.errors import ModelError
-from ribbonopt.mechanics.ends.conditions import Component, Condition
+from ribbonopt.mechanics.ends.conditions import Component
 from ribbonopt.mechanics.ends.placement import LoadAlong
 from ribbonopt.mechanics.laws.law import ConstitutiveLaw, Stress
 from ribbonopt.mechanics.outputs import outputs
@@ -35,10 +34,8 @@ from .equilibrium import local_stress
 from .held import held_between
 from .imposed import residuals
 from .posed import RECOVERED, Posed
+from .potentials import Refusal, is_dead_force, without_potential
 from .ribbon import Ribbon
-
-if TYPE_CHECKING:
-    from ribbonopt.mechanics.stations import Station
 
 WITHOUT = {
     "full": "costates of nine director components are not unique",
@@ -144,7 +141,7 @@ def dead_force(ribbon: Ribbon) -> ca.SX:
     given = {
         c.axis: ribbon.theta[c.name]
         for c in ribbon.conditions
-        if isinstance(c, Component) and _is_dead_force(ribbon.conditions, c)
+        if isinstance(c, Component) and is_dead_force(ribbon.conditions, c)
     }
     force = ca.vertcat(*(given.get(axis, ca.SX(0)) for axis in "xyz"))
     for condition in ribbon.conditions:
@@ -153,29 +150,12 @@ def dead_force(ribbon: Ribbon) -> ca.SX:
     return force
 
 
-def _is_dead_force(conditions: Sequence[Condition], condition: Component) -> bool:
-    held = [
-        c
-        for c in conditions
-        if isinstance(c, Component) and (c.quantity, c.axis) == ("position", condition.axis)
-    ]
-    return condition.quantity == "force" and condition.axis in "xyz" and len(held) < 2
-
-
 def _loads(start: ca.SX, costate: ca.SX, dead: ca.SX, ribbon: Ribbon) -> list[ca.SX]:
     """Force and moment about the reference (lab frame) from the costates at the start."""
     n, q = costate[:3] + dead, ca.vertsplit(start[3:7])
     basis = ((0, 1, 0, 0), (0, 0, 1, 0), (0, 0, 0, 1))
     m = ca.vertcat(*(ca.dot(costate[3:7], ca.vertcat(*product(e, q))) / 2 for e in basis))
     return ca.vertsplit(ca.vertcat(n, m - ca.cross(n, start[:3] - ribbon.reference)))
-
-
-class Refusal(NamedTuple):
-    """Why a ribbon is no minimum of an energy, what to do, and the key of the scene to blame."""
-
-    reason: str
-    remedy: str
-    key: str
 
 
 def refusal(ribbon: Ribbon, posed: Posed) -> Refusal | None:
@@ -189,48 +169,3 @@ def refusal(ribbon: Ribbon, posed: Posed) -> Refusal | None:
     if posed.scene.states in WITHOUT:
         return Refusal(WITHOUT[posed.scene.states], "use states: reduced", "formulation")
     return without_potential(ribbon)
-
-
-def without_potential(ribbon: Ribbon) -> Refusal | None:
-    """Return why what acts on a ribbon has no potential; None where it has one."""
-    return (
-        _load_without_potential(ribbon)
-        or point_without_potential(ribbon.stations)
-        or end_without_potential(ribbon.conditions)
-    )
-
-
-def _load_without_potential(ribbon: Ribbon) -> Refusal | None:
-    for load in ribbon.loads:
-        if load.without_potential:
-            reason = f"{load.name} {load.without_potential}"
-            return Refusal(reason, "use another formulation", load.name)
-    return None
-
-
-def point_without_potential(stations: Sequence[Station]) -> Refusal | None:
-    """Return why what acts at single places has no potential; None where it has one."""
-    for station in stations:
-        for action in station.actions:
-            if action.without_potential:
-                return Refusal(
-                    f"{action.path}: {action.without_potential}",
-                    "use another formulation",
-                    action.path,
-                )
-    return None
-
-
-def end_without_potential(conditions: Sequence[Condition]) -> Refusal | None:
-    """Return why what is prescribed at the ends has no potential; None where it has one."""
-    for condition in conditions:
-        if not isinstance(condition, Component) or condition.kinematic or not condition.value:
-            continue
-        if not _is_dead_force(conditions, condition):
-            return Refusal(
-                f"{condition.name}, other than zero, has no potential here (only a dead force, in "
-                "lab components, on an end free to follow it has)",
-                "use another formulation",
-                condition.name,
-            )
-    return None

@@ -14,8 +14,9 @@ import casadi as ca
 import numpy as np
 
 from ribbonopt.arrays import Array
+from ribbonopt.mechanics.actions import Held
 from ribbonopt.mechanics.section import Section
-from ribbonopt.mechanics.stations import AXES, Held
+from ribbonopt.mechanics.stations import AXES
 
 from .ribbon import Ribbon
 

@@ -12,7 +12,7 @@ from ribbonopt.arrays import Array
 from ribbonopt.mechanics.ends.conditions import Component, Equation
 from ribbonopt.mechanics.ends.placement import LoadAlong
 from ribbonopt.problem import Posed
-from ribbonopt.problem.energy import end_without_potential, point_without_potential
+from ribbonopt.problem.potentials import end_without_potential, point_without_potential
 
 from .solution import Solution
 

@@ -2,16 +2,9 @@
 
 from __future__ import annotations
 
+from ribbonopt.mechanics.actions import DeadPoint, FollowingPoint, Held
 from ribbonopt.mechanics.ends.frames import components, number
-from ribbonopt.mechanics.stations import (
-    DIRECTORS,
-    Action,
-    DeadPoint,
-    FollowingPoint,
-    Held,
-    Station,
-    gathered,
-)
+from ribbonopt.mechanics.stations import DIRECTORS, Action, Station, gathered
 from ribbonopt.scene import Scene
 
 
