@@ -47,7 +47,8 @@ def spins(solution: Solution) -> bool:
 def _spins(solution: Solution) -> bool:
     if not solution.status.converged or solution.scene.states == "planar":
         return False
-    if not capabilities(solution.posed.scene).spins:
+    square, may = solution.problem.square, solution.problem.neutral
+    if (square and not may) or not capabilities(solution.posed.scene).spins:
         return False
     tangents = solution.trajectory.at_nodes["d3"]
     if np.linalg.norm(tangents - tangents[0], axis=1).max() < STRAIGHT:
