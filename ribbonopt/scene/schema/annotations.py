@@ -86,7 +86,9 @@ def tag_chooser(annotation: Any) -> Callable[[Any], str | None]:
     def choose(value: Any) -> str | None:
         if not isinstance(value, dict) or not classes:
             tag = _tag_of_value(value)
-            named = isinstance(known.get(tag), type) and not isinstance(value, known[tag])
+            cls = known.get(tag)
+            # In Python 3.10 a parameterized tuple is a type, too.
+            named = isinstance(cls, type) and not get_origin(cls) and not isinstance(value, cls)
             mine = own if named or tag not in known else {}
             return next((name for name, cls in mine.items() if isinstance(value, cls)), tag)
         if len(classes) == 1:
