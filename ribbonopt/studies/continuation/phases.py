@@ -59,7 +59,9 @@ def margins(solution: Solution) -> dict[Change, float]:
     last, lengths = len(kinds) - 1, np.diff(solution.trajectory.ends)
     stations = stations_among(kinds, len(solution.posed.stations))
     for i, kind in enumerate(kinds):
-        if last and _may_go(kinds, i):
+        # What is gone beside a station is born behind it: a trial in these phases fails there, and
+        # the search for others begins anew.
+        if last and _may_go(kinds, i) and not {i, i + 1} & set(stations):
             ends = {0: What.GONE_AT_START, last: What.GONE_AT_END}
             found[Change(ends.get(i, What.GONE_INSIDE), i)] = float(lengths[i])
         if kind == 0:
