@@ -22,9 +22,7 @@ def originals(tmp_path_factory: pytest.TempPathFactory) -> Originals:
 
 
 @pytest.mark.parametrize("kind", FILES)
-@pytest.mark.parametrize(
-    ("seed", "count"), [(1, 40), pytest.param(2, 500, marks=pytest.mark.slow)]
-)
+@pytest.mark.parametrize(("seed", "count"), [(1, 40), pytest.param(2, 500, marks=pytest.mark.slow)])
 @pytest.mark.filterwarnings("default")
 def test_spoiled_files_are_read_or_refused(
     originals: Originals,
