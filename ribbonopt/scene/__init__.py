@@ -19,6 +19,7 @@ from .ends import (
     Value,
 )
 from .laws import (
+    Extensible,
     Homotopy,
     Kirchhoff,
     Law,
@@ -26,8 +27,10 @@ from .laws import (
     Regularized,
     Rod,
     Sadowsky,
+    Sano,
     SingleSheet,
     Variational,
+    Wunderlich,
 )
 from .loads import Loads, OwnLoad
 from .model import (
@@ -75,6 +78,7 @@ __all__ = [
     "ContinuationStage",
     "Directors",
     "End",
+    "Extensible",
     "Guess",
     "Helix",
     "HelixGuess",
@@ -101,6 +105,7 @@ __all__ = [
     "Rotation",
     "RotationVector",
     "Sadowsky",
+    "Sano",
     "Scaled",
     "Scene",
     "Shooting",
@@ -115,6 +120,7 @@ __all__ = [
     "Turns",
     "Value",
     "Variational",
+    "Wunderlich",
     "dump_scene",
     "json_schema",
     "load_scene",

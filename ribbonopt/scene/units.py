@@ -18,7 +18,7 @@ from typing import Any
 
 from .along import scaled
 from .ends import Boundary, End, LabVector, Triple
-from .laws import Law, OwnLaw, Stiff
+from .laws import Law, OwnLaw, Sized, Stiff
 from .loads import AlongAxes, AlongVector, Loads
 from .model import Guess, LoadGuess, Reference, RibbonSizes, Scene, StrainGuess
 from .natural import Natural
@@ -106,7 +106,7 @@ def in_special_units(scene: Scene, units: Units | None = None) -> Scene:
     own = {UNIT_LENGTH: units.length, UNIT_FORCE: units.force} if boundary.also else {}
     return replace(
         scene,
-        law=_law(scene.law, units),
+        law=_law(scene, units),
         interval=(start / units.length, end / units.length),
         parameters=parameters | own,
         boundary=_boundary(boundary, units, parameters),
@@ -124,9 +124,13 @@ def in_special_units(scene: Scene, units: Units | None = None) -> Scene:
     )
 
 
-def _law(law: Law, units: Units) -> Law:
-    """Return a law in units of its own stiffness: those that have none are as they are."""
-    return law.in_units(units.stiffness, units.strain) if isinstance(law, Stiff) else law
+def _law(scene: Scene, units: Units) -> Law:
+    """Return a law in units of its own stiffness, with the numbers that are the ribbon's."""
+    law, ribbon = scene.law, scene.ribbon
+    if isinstance(law, Sized) and ribbon is not None:
+        law = law.of_sizes(ribbon.width, ribbon.thickness, ribbon.poisson_ratio)
+    known = isinstance(law, Stiff | Sized)
+    return law.in_units(units.stiffness, 1 / units.length) if known else law  # type: ignore[union-attr]
 
 
 def _boundary(boundary: Boundary, units: Units, parameters: Mapping[str, float]) -> Boundary:

@@ -35,6 +35,9 @@ LAWS: Mapping[str, tuple[str, str]] = {
     "regularized": ("blended", "RegularizedLaw"),
     "homotopy": ("blended", "HomotopyLaw"),
     "variational": ("variational", "VariationalLaw"),
+    "wunderlich": ("wunderlich", "WunderlichLaw"),
+    "extensible": ("extensible", "ExtensibleLaw"),
+    "sano": ("sano", "SanoLaw"),
 }
 
 
@@ -51,7 +54,19 @@ def always_the_same(law: Law) -> bool:
 
 
 def numbers_of(law: Law) -> dict[str, float]:
-    """Return the numbers of a scene's law by name; of triples, along directors, as B.d1."""
+    """Return the numbers of a scene's law by name; of triples, along directors, as B.d1.
+
+    Those that are the ribbon's, and stand in a law in units Dw = L = 1 only, are left out.
+    """
+    named = {name: value for name, value in _numbers(law).items() if value is not None}
+    for name, value in named.items():
+        if not (isinstance(value, Real) and math.isfinite(value)):
+            raise ModelError(f"law.{name}: found {value!r}, expected a number", f"law.{name}")
+    return {name: float(value) for name, value in named.items()}
+
+
+def _numbers(law: Law) -> dict[str, Any]:
+    """Return the numbers of a scene's law by name, None where the ribbon tells them."""
     named: dict[str, Any] = {}
     for f in fields(law):
         value = getattr(law, f.name)
@@ -59,10 +74,7 @@ def numbers_of(law: Law) -> dict[str, float]:
             named |= {f"{f.name}.d{i}": item for i, item in enumerate(value, start=1)}
         elif f.name != "type":
             named[f.name] = value
-    for name, value in named.items():
-        if not (isinstance(value, Real) and math.isfinite(value)):
-            raise ModelError(f"law.{name}: found {value!r}, expected a number", f"law.{name}")
-    return {name: float(value) for name, value in named.items()}
+    return named
 
 
 def law_of(law: Law, numbers: Mapping[str, ca.SX], position: ca.SX) -> ConstitutiveLaw:
@@ -102,7 +114,7 @@ def relation_of(scene: Scene, theta: Callable[[str], ca.SX], position: ca.SX) ->
 
     `theta` gives the symbols of its numbers by name, `position` is the symbol of the arclength s.
     """
-    numbers = {name: theta(f"law.{name}") for name in numbers_of(scene.law)}
+    numbers = {name: theta(f"law.{name}") for name in _numbers(scene.law)}
     law = law_of(scene.law, numbers, position)
     along = {field.name: field.at(position, theta) for field in fields_of(scene)}
     if scene.natural is not None:
@@ -153,7 +165,7 @@ def capabilities(scene: Scene) -> ConstitutiveLaw:
 
 def is_linear(law: Law) -> bool:
     """Whether a law by itself has an energy that is smooth at m = 0: a start may begin with it."""
-    found = law_of(law, {name: ca.SX.sym(name) for name in numbers_of(law)}, ca.SX.sym("s"))
+    found = law_of(law, {name: ca.SX.sym(name) for name in _numbers(law)}, ca.SX.sym("s"))
     return found.linear_at_zero and found.variational
 
 

@@ -18,7 +18,18 @@ from ribbonopt.scene.schema.annotations import key_of
 from ribbonopt.scene.units import Units, units_of
 
 _OURS = __name__.partition(".checks")[0]
-_NEVER_ZERO = ("ribbon", "B", "B2", "B3", "first", "smallest", "largest", "tolerance", "distance")
+_NEVER_ZERO = (
+    "ribbon",
+    "B",
+    "B2",
+    "B3",
+    "zeta",
+    "first",
+    "smallest",
+    "largest",
+    "tolerance",
+    "distance",
+)
 
 
 class _Kind(NamedTuple):
@@ -81,6 +92,9 @@ _KINDS: dict[KeyPath, _Kind] = {
     ("reference", "m0"): _MOMENT,
     ("law", "epsilon"): _SMOOTHING,
     ("law", "natural"): _STRAIN,
+    ("law", "width"): _LENGTH,
+    ("law", "thickness"): _LENGTH,
+    ("law", "zeta"): _LENGTH,
     ("width",): _WIDTH,
 }
 

@@ -13,6 +13,7 @@ from typing import Any, get_origin
 from ribbonopt.scene.along import is_along, numbers_along
 from ribbonopt.scene.ends import Boundary
 from ribbonopt.scene.faults import KeyPath, Problem, shown
+from ribbonopt.scene.laws import Sized
 from ribbonopt.scene.loads import Loads
 from ribbonopt.scene.model import Guess, MoebiusGuess, RibbonSizes, Scene
 from ribbonopt.scene.schema.annotations import branches, hints, inside
@@ -64,6 +65,10 @@ def check(scene: Scene) -> list[Problem]:
         problems += check_loop(boundary.loop, boundary, scene.guess)
     else:
         problems += check_supports(boundary, values)
+    if isinstance(scene.law, Sized):
+        from .sized import check_sized  # laws that depend on the sizes of the ribbon
+
+        problems += check_sized(scene.law, scene)
     if scene.natural is not None:
         from .natural import check_natural  # few scenes have natural strains
 

@@ -72,7 +72,8 @@ def _place(cls: type, error: ErrorDetails) -> _Place:
     owner: Any = None
     for step in error["loc"]:
         if branches(annotation):
-            union, annotation = annotation, branches(annotation)[str(step)]
+            # A name that stands for a dataclass is no branch of its own.
+            union, annotation = annotation, branches(annotation).get(str(step), annotation)
         elif step != _KEY_OF_MAPPING:
             owner, annotation = annotation, inside(annotation, step)
             path = (*path, step)
@@ -98,7 +99,7 @@ def _problem(place: _Place, error: ErrorDetails) -> Problem:
     if isinstance(value, float) and not math.isfinite(value):
         remedy = "; it must be finite"
     elif isinstance(value, str):
-        remedy = suggestion(value, _words(annotation))
+        remedy = suggestion(value, [*_words(annotation), *types_of(annotation)])
         if not remedy:
             annotation = union if error["loc"][-1:] == ("text",) else annotation
             remedy = _as_mapping(value, annotation)
@@ -143,7 +144,7 @@ def _expected_of_union(annotation: Any) -> str:
         elif not (grouped and is_dataclass(branch)):
             parts.append(expected(branch))
     if types:
-        parts.append(f"a mapping whose `type` is {_one_of(types)}")
+        parts.append(f"a mapping whose `type` is {_one_of(types)}, or that name alone")
     elif grouped:
         keys = ", or ".join(", ".join(written_keys(member)) for member in classes)
         parts.append(f"a mapping with keys {keys}")

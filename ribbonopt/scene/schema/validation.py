@@ -18,7 +18,7 @@ from pydantic_core.core_schema import CoreSchema
 
 from ribbonopt.scene.faults import InvalidSceneError
 
-from .annotations import branches, classes_of, hints, key_of, tag_chooser
+from .annotations import branches, classes_of, hints, key_of, tag_chooser, types_of
 from .bounds import Bounds, InPython
 
 T = TypeVar("T")
@@ -177,4 +177,10 @@ def _union(annotation: Any) -> CoreSchema:
         tag: schema_of(branch, type_required=several and is_dataclass(branch))
         for tag, branch in tagged.items()
     }
+    if several and (types := types_of(annotation)) and "text" not in tagged:
+        # A name alone stands for the dataclass of that type, with nothing but defaults.
+        named = {name: tagged[tag] for name, tag in types.items()}
+        choices["text"] = core_schema.no_info_after_validator_function(
+            lambda name: named[name](type=name), core_schema.literal_schema(list(named))
+        )
     return core_schema.tagged_union_schema(choices, tag_chooser(annotation))

@@ -218,8 +218,10 @@ def test_json_schema_describes_the_shorthands() -> None:
     assert schema["$schema"].startswith("https://json-schema.org/")
     assert set(schema["properties"]) == {member.name for member in dataclasses.fields(Scene)}
     assert set(schema["required"]) == {"name", "law", "boundary"}
-    laws = schema["properties"]["law"]["oneOf"]
-    assert {law["properties"]["type"]["const"] for law in laws} == {
+    *laws, names = schema["properties"]["law"]["oneOf"]
+    types = {law["properties"]["type"]["const"] for law in laws}
+    assert set(names["enum"]) == types
+    assert types == {
         "kirchhoff",
         "rod",
         "sadowsky",
@@ -227,6 +229,9 @@ def test_json_schema_describes_the_shorthands() -> None:
         "regularized",
         "homotopy",
         "variational",
+        "wunderlich",
+        "extensible",
+        "sano",
     }
     assert all(law["required"] == ["type"] for law in laws)
     end = schema["properties"]["boundary"]["properties"]["end"]["properties"]

@@ -140,7 +140,7 @@ COLLOCATION = {"type": "collocation"}
         ({"law": {"type": "sadowski"}}, "law.type", "did you mean 'sadowsky'?"),
         ({"law": {}}, "law.type", "missing; expected 'kirchhoff', "),
         ({"law": {"type": ["sadowsky"]}}, "law.type", "found ['sadowsky'], expected 'kirchhoff'"),
-        ({"law": "sadowsky"}, "law", "expected a mapping whose `type` is 'kirchhoff'"),
+        ({"law": "sadowski"}, "law", "expected a mapping whose `type` is 'kirchhoff'"),
         (
             {"law": {"type": "sadowsky", "epsilon": 1}},
             "law.epsilon",
@@ -194,7 +194,7 @@ COLLOCATION = {"type": "collocation"}
         ({"guess": {"arc": 1, "force": [0] * 3}}, "guess.arc", "cannot stand beside force, moment"),
         ({"guess": {"helix": {"turns": 3}}}, "guess.helix.rise", "missing; expected a number from"),
         ({"guess": {"helix": {"turns": 3, "rise": 2}}}, "guess.helix.rise", "from -1 to 1"),
-        ({"solver": "newton"}, "solver", "did you mean {type: newton}?"),
+        ({"solver": "newtn"}, "solver", "or that name alone; did you mean 'newton'?"),
         ({"starts": 0}, "starts", "found 0, expected a whole number >= 1"),
         ({"seed": -1}, "seed", "found -1, expected a whole number >= 0"),
         ({"boundary": None}, "boundary", "found null, expected a mapping with keys among start"),
