@@ -40,10 +40,8 @@ class Direct:
         """Its equations, without loads that have no potential."""
         return Structure.least_energy(self.posed)
 
-    def guesses(
-        self, others: Callable[..., Iterable[Guess]]
-    ) -> Callable[..., Iterator[Guess]]:
-        """Return what gives the minima near the solutions that others give, and the rest as it is."""
+    def guesses(self, others: Callable[..., Iterable[Guess]]) -> Callable[..., Iterator[Guess]]:
+        """Return what gives minima near the solutions that others give, and the rest as it is."""
 
         def found(**shape: Any) -> Iterator[Guess]:
             for guess in others(**shape):

@@ -34,4 +34,8 @@ def edge_of(end: End) -> Edge | None:
     if not turned:
         return "free"
     loaded = end.force is not None or end.moment is not None
-    return "straight" if end.directors is not None and end.position is not None and not loaded else None
+    return (
+        "straight"
+        if end.directors is not None and end.position is not None and not loaded
+        else None
+    )

@@ -1,4 +1,4 @@
-"""Wunderlich's law, an inextensible ribbon of finite width w (section 6.3), with any natural strains.
+"""Wunderlich's law: an inextensible ribbon of finite width w (section 6.3), any natural strains.
 
 Energy per length W = u2^2 e^2 phi / 2, e = 1 + eta^2, phi = xi coth(xi), with the slope eta of the
 generatrices as a state of its own, u3 = eta u2 and eta' = (2 / w) tanh(xi). What is stationary over
@@ -59,7 +59,7 @@ class WunderlichLaw(ConstitutiveLaw):
         return ca.vertcat(0, u2, eta * u2)
 
     def moment(self, u: ca.SX) -> ca.SX:
-        """Moments of Sadowsky's law, for guesses: those of this one are not of the strains alone."""
+        """Moments of Sadowsky's law, for guesses: these are not of the strains alone."""
         m2, m3 = sheet_moment(u[1], u[2])
         if self.k is None:
             return ca.vertcat(m2, m3)
@@ -129,7 +129,9 @@ class WunderlichLaw(ConstitutiveLaw):
 
     def linear(self, eta: ca.SX) -> ca.SX:
         """Return K11 + 2 K12 eta + K22 eta^2."""
-        return ca.SX(0) if self.k is None else self.k.K11 + (2 * self.k.K12 + self.k.K22 * eta) * eta
+        return (
+            ca.SX(0) if self.k is None else self.k.K11 + (2 * self.k.K12 + self.k.K22 * eta) * eta
+        )
 
     def linear_slope(self, eta: ca.SX) -> ca.SX:
         """Return half its derivative."""

@@ -11,7 +11,7 @@ from ribbonopt.scene.model import Scene
 
 
 def check_edges(scene: Scene) -> Iterator[Problem]:
-    """Yield ends whose edges are said of a law without any, and ends that leave open what to say."""
+    """Yield ends whose edges are said of a law without any, and ends that leave theirs open."""
     boundary = scene.boundary
     for name in ("start", "end"):
         end, path = getattr(boundary, name), ("boundary", name, "edge")
