@@ -64,6 +64,8 @@ class ConstitutiveLaw(ABC):
     kinked: bool = False
     #: its sides are two sheets that may mix, as Sadowsky's
     sheeted: bool = False
+    #: strains fade away with a logarithm where it switches, which a mesh must gather to
+    fades: bool = False
     #: what `switching` is called in words
     switch_name: str = "m2"
     #: `moment` is exact and a closed form, cheap to differentiate; else it serves guesses only

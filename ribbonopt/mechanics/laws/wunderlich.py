@@ -38,6 +38,7 @@ class WunderlichLaw(ConstitutiveLaw):
     k: NaturalStrains | None = None
     smooth = False
     kinked = True
+    fades = True
     closed_moment = False
     switch_name = "m2 + eta m3"
     states = ("eta", "p")
@@ -92,7 +93,7 @@ class WunderlichLaw(ConstitutiveLaw):
         return ca.vertcat(LARGEST * eta, 0)
 
     def singular(self, stress: Stress) -> tuple[Singular, ...]:
-        return (Singular(self.force(stress), ca.SX(0), self._leap(stress)),)
+        return (Singular(self.force(stress), ca.SX(0), self._leap(stress), fades=1.0),)
 
     def switching(self, stress: Stress) -> Switch:
         return Switch(self.force(stress), self._leap(stress))
