@@ -84,7 +84,9 @@ class Search(Tried):
         if done and self.structure.ribbon.law.fades:
             # A start on small elements leads nowhere before it is known where phases meet.
             gathered = found.mesh.gathered(LEVELS, RATIO)
-            finer = structure.attempt(self.posed, self.ledger, gathered, found.trajectory.ends[1:-1])
+            finer = structure.attempt(
+                self.posed, self.ledger, gathered, found.trajectory.ends[1:-1]
+            )
             if finer.run(found, quick=True):
                 attempt = finer
         self._kept(attempt)

@@ -49,7 +49,7 @@ class Phase:
     outputs : mapping of str to SX
         Expressions to sample on a solution.
     singular : SX (k, 4)
-        Rows (a, b, size, fades): where a + ib is zero at complex s, the equations are singular, by as
+        Rows (a, b, size, fades): where a + ib is zero at complex s, equations are singular, by as
         much as size says. Of use to meshes and error bars.
     """
 

@@ -153,6 +153,7 @@ class DirectWunderlichLaw(WunderlichLaw):
     """
 
     states = ("eta",)  # type: ignore[assignment]
+    controls = ("u2", "xi")
 
     def direct(self) -> ConstitutiveLaw:
         return self
@@ -172,6 +173,13 @@ class DirectWunderlichLaw(WunderlichLaw):
 
     def own_guess(self, stress: Stress) -> ca.SX:
         return super().own_guess(stress)[0]
+
+    def most_rate(self) -> ca.SX:
+        return 2 / self.width
+
+    def controls_for(self, stress: Stress, rates: ca.SX) -> ca.SX:
+        xi = ca.atanh(rates * self.width / 2)
+        return ca.vertcat(self.bending(stress, xi), xi)
 
     def relaxed(self, stress: Stress) -> Relaxed:
         z, eta = ca.SX.sym("u2 and xi", 2), stress.own[0]
