@@ -1,1 +1,1 @@
-"""The figures of the paper, a module for each, and its misprints: see `scripts/paper_figures.py`."""
+"""Figures of the paper, a module for each, and its misprints: see `scripts/paper_figures.py`."""

@@ -48,7 +48,9 @@ def _patch(chi: int, side: int) -> tuple[Array, ...]:
 def _surface(component: int) -> Callable[[Any], None]:
     def draw(axes: Any) -> None:
         top = REACH + 0.3 if component == 0 else REACH / 2 + 0.15
-        space = Space(np.array([[-REACH, REACH], [-REACH, REACH], [-top, top]]), 24, VIEWS[component])
+        space = Space(
+            np.array([[-REACH, REACH], [-REACH, REACH], [-top, top]]), 24, VIEWS[component]
+        )
         for chi in (1, -1):
             for side in (1, -1):
                 colour = GREEN if chi == side else ORANGE

@@ -100,7 +100,7 @@ def worst_level() -> float:
 
 def least_at_twist(u3: float) -> tuple[float, float]:
     """Return the bending u2 > 0 of least W_S at a twist, and that energy, by a fine search."""
-    u2 = np.linspace(0.2, 3, 280001) * u3
+    u2 = np.linspace(0.2, 3, 28001) * u3
     W = on_arrays(sheet(1).stored, u2, u3)[0]
     return float(u2[W.argmin()]), float(W.min())
 
@@ -109,7 +109,9 @@ def _levels() -> list[Number]:
     return [
         Number("$W_S$ at $u = (1, 1/2)$", float(on_arrays(sheet(1).stored, 1.0, 0.5)[0])),
         Number("$W_S$ at $u = (1, 1)$, the border", float(on_arrays(sheet(1).stored, 1.0, 1.0)[0])),
-        Number("$W_S$ at $u = (1/2, 1)$, forbidden", float(on_arrays(sheet(1).stored, 0.5, 1.0)[0])),
+        Number(
+            "$W_S$ at $u = (1/2, 1)$, forbidden", float(on_arrays(sheet(1).stored, 0.5, 1.0)[0])
+        ),
         Number(r"largest error of $W_S$ on the levels", worst_level()),
     ]
 

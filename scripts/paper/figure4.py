@@ -14,7 +14,7 @@ from ribbonopt.views.ribbon import paint, scale_bar
 from ribbonopt.views.subject import subject_of
 from ribbonopt.views.surface import sweep
 
-from .found import MIDDLE, Found, Rows, answers, half_of
+from .found import MIDDLE, Answers, Found, Rows, half_of
 from .numbers import Number
 from .page import BENDING, FAINT, GREEN, INK, SOFT, TWIST, Panel
 from .parts import label_strains, shade_plane
@@ -84,7 +84,12 @@ def _ribbon(solution: Solution) -> Callable[[Any], None]:
         low, high = (f(drawing.corners, axis=(0, 1)) for f in (np.min, np.max))
         size = float(high[0] - low[0])
         paint(axes, drawing)
-        box = (low[0] - 0.04 * size, high[0] + 0.04 * size, low[1] - 0.14 * size, high[1] + 0.04 * size)
+        box = (
+            low[0] - 0.04 * size,
+            high[0] + 0.04 * size,
+            low[1] - 0.14 * size,
+            high[1] + 0.04 * size,
+        )
         axes.set(xlim=box[:2], ylim=box[2:], aspect="equal")
         axes.set_axis_off()
         scale_bar(axes, box, size, r" $L$")
@@ -120,18 +125,21 @@ def draw_sheets(space: Space) -> None:
 
 
 def _of_strains(solution: Solution) -> list[Number]:
-    values, bars = answers(solution)
-    middle = {name: float(solution.sample(MIDDLE, name)) for name in ("u2", "u3")}
+    answers = Answers(solution)
+    u2, u3 = (float(solution.sample(MIDDLE, name)) for name in ("u2", "u3"))
     return [
-        Number("$u_2(0)$", values["u2"], "3.3866", bars["u2"]),
-        Number("$u_3(0)$", values["u3"], "", bars["u3"]),
-        Number("$u_2(1/2^-)$", middle["u2"], "", _along(solution)),
-        Number("$u_3(1/2)$", middle["u3"], "", _along(solution)),
+        answers.number("$u_2(0)$", "u2", "3.3866"),
+        answers.number("$u_3(0)$", "u3"),
+        Number("$u_2(1/2^-)$", u2, "", answers.bars["u"]),
+        Number("$u_3(1/2)$", u3, "", answers.bars["u"]),
     ]
 
 
 def _of_plane(solution: Solution, rows: Rows) -> list[Number]:
-    eta = [float(solution.sample(MIDDLE, "eta")), float(rows.mirrored().u3[0] / rows.mirrored().u2[0])]
+    eta = [
+        float(solution.sample(MIDDLE, "eta")),
+        float(rows.mirrored().u3[0] / rows.mirrored().u2[0]),
+    ]
     return [
         Number(r"$\eta(1/2^-)$", eta[0], "1"),
         Number(r"$\eta(1/2^+)$", eta[1], "-1"),
@@ -141,40 +149,21 @@ def _of_plane(solution: Solution, rows: Rows) -> list[Number]:
 
 
 def _of_ribbon(solution: Solution) -> list[Number]:
-    values, bars = answers(solution)
+    answers = Answers(solution)
     r = solution.sample(MIDDLE, "r")
-    energy = bars["energy"]
     return [
-        Number("$x(1/2)$", float(r[0]), "", answer_bar(solution)),
+        Number("$x(1/2)$", float(r[0]), "", answers.bars["states"]),
         Number("$|y(1/2)| + |z(1/2)|$", float(np.abs(r[1:]).sum())),
         Number("twist of the whole, turns", 2 * abs(solution.twist)),
-        Number("$H$", values["H0"], "57.5", bars["H0"]),
-        Number("energy of the whole", 2 * values["energy"], "", None if energy is None else 2 * energy),
+        answers.number("$H$", "H0", "57.5"),
+        answers.number("energy of the whole", "whole"),
     ]
 
 
 def _of_space(solution: Solution) -> list[Number]:
-    values, bars = answers(solution)
-    printed = {"n0x": "0", "n0y": "43.5", "n0z": "42.1", "m0x": "0", "m0y": "2.01", "m0z": "-8.87"}
+    answers = Answers(solution)
+    printed = {"n0y": "43.5", "n0z": "42.1", "m0y": "2.01", "m0z": "-8.87"}
     rows = [
-        Number(f"${name[0]}_{name[2]}(0)$", values[name], printed[name], bars[name])
-        for name in ("n0y", "n0z", "m0y", "m0z")
+        answers.number(f"${key[0]}_{key[2]}(0)$", key, digits) for key, digits in printed.items()
     ]
-    m3 = float(solution.sample(MIDDLE, "m3"))
-    return [*rows, Number("$m_3(1/2) = 4 u_3$", m3)]
-
-
-def answer_bar(solution: Solution) -> float | None:
-    """Return the bar of positions along the ribbon."""
-    from ribbonopt import summarize
-
-    bar: float | None = summarize(solution)["error_estimate"]["states"]
-    return bar
-
-
-def _along(solution: Solution) -> float | None:
-    """Return the bar of strains along the ribbon."""
-    from ribbonopt import summarize
-
-    bar: float | None = summarize(solution)["error_estimate"]["u"]
-    return bar
+    return [*rows, Number("$m_3(1/2) = 4 u_3$", float(solution.sample(MIDDLE, "m3")))]

@@ -10,7 +10,7 @@ import numpy as np
 from ribbonopt import Solution
 
 from .figure4 import MOMENTS
-from .found import MIDDLE, Found, Rows, answers, half_of, where
+from .found import MIDDLE, Answers, Found, Rows, half_of, where
 from .numbers import Number
 from .page import BENDING, FAINT, GREEN, INK, ORANGE, TWIST, Panel
 from .parts import label_strains, shade_plane
@@ -26,7 +26,7 @@ RED = "#b91c1c"
 def panels(found: Found) -> list[Panel]:
     """Return the four panels."""
     rows = half_of(found.regularized)
-    wide = None if found.wunderlich is None else half_of(found.wunderlich)
+    wide = half_of(found.wunderlich)
     plane = r"in the plane $(u_2, u_3)$"
     space = r"in $(m_2, m_3, u_2)$, with the surface (6.1)"
     limit = r"$u_2(0)$ as $\varepsilon \to 0$"
@@ -41,10 +41,8 @@ def panels(found: Found) -> list[Panel]:
 def columns(found: Found) -> dict[str, Any]:
     """Return the curves as columns, those of Wunderlich's law behind."""
     named = half_of(found.regularized)._asdict()
-    if found.wunderlich is not None:
-        wide = half_of(found.wunderlich)._asdict()
-        named |= {f"wunderlich_{name}": column for name, column in wide.items() if name != "s"}
-    return named
+    wide = half_of(found.wunderlich)._asdict()
+    return named | {f"wunderlich_{name}": wide[name] for name in wide if name != "s"}
 
 
 def entry(solution: Solution) -> float:
@@ -75,37 +73,36 @@ def order(branch: list[dict[str, Any]], limit: float) -> float:
 
 
 def _branch(branch: list[dict[str, Any]]) -> tuple[Array, Array]:
-    return tuple(np.array([row[name] for row in branch]) for name in ("law.epsilon", "u2"))  # type: ignore[return-value]
+    values, u2 = (np.array([row[name] for row in branch]) for name in ("law.epsilon", "u2"))
+    return values, u2
 
 
 def _whole(rows: Rows) -> Rows:
     return Rows(*(np.concatenate(pair) for pair in zip(rows, rows.mirrored(), strict=True)))
 
 
-def _strains(rows: Rows, wide: Rows | None) -> Callable[[Any], None]:
+def _strains(rows: Rows, wide: Rows) -> Callable[[Any], None]:
     def draw(axes: Any) -> None:
         for name, colour in (("u2", BENDING), ("u3", TWIST)):
             whole = _whole(rows)
             label = f"$u_{name[1]}$, regularised"
             axes.plot(whole.s, getattr(whole, name), color=colour, lw=1.8, label=label)
-        if wide is not None:
-            whole = _whole(wide)
-            for name in ("u2", "u3"):
-                axes.plot(whole.s, getattr(whole, name), color="black", lw=1.2, ls=DASHED)
-            axes.plot([], [], color="black", lw=1.2, ls=DASHED, label="Wunderlich")
+        whole = _whole(wide)
+        for name in ("u2", "u3"):
+            axes.plot(whole.s, getattr(whole, name), color="black", lw=1.2, ls=DASHED)
+        axes.plot([], [], color="black", lw=1.2, ls=DASHED, label="Wunderlich")
         label_strains(axes)
 
     return draw
 
 
-def _plane(found: Found, rows: Rows, wide: Rows | None) -> Callable[[Any], None]:
+def _plane(found: Found, rows: Rows, wide: Rows) -> Callable[[Any], None]:
     def draw(axes: Any) -> None:
         shade_plane(axes)
         whole = _whole(rows)
         axes.plot(whole.u2, whole.u3, color=BENDING, lw=1.9, label="regularised")
-        if wide is not None:
-            whole = _whole(wide)
-            axes.plot(whole.u2, whole.u3, color="black", lw=1.2, ls=DASHED, label="Wunderlich")
+        whole = _whole(wide)
+        axes.plot(whole.u2, whole.u3, color="black", lw=1.2, ls=DASHED, label="Wunderlich")
         s = entry(found.regularized)
         u2, u3 = (float(found.regularized.sample(s, name)) for name in ("u2", "u3"))
         for sign, name in ((1, "$W^+$"), (-1, "$W^-$")):
@@ -113,9 +110,9 @@ def _plane(found: Found, rows: Rows, wide: Rows | None) -> Callable[[Any], None]
             axes.annotate(
                 name,
                 (sign * u2, u3),
-                (sign * 7, 3),
+                (-sign * 3, 6),
                 textcoords="offset points",
-                ha="left" if sign > 0 else "right",
+                ha="right" if sign > 0 else "left",
                 fontsize=9.5,
                 color=INK,
             )
@@ -124,12 +121,16 @@ def _plane(found: Found, rows: Rows, wide: Rows | None) -> Callable[[Any], None]
     return draw
 
 
-def _space(rows: Rows, wide: Rows | None) -> Callable[[Any], None]:
+def _space(rows: Rows, wide: Rows) -> Callable[[Any], None]:
     def draw(axes: Any) -> None:
         space = Space(MOMENTS, 24, -128)
         law, ratio = regularized(EPSILON), border()
         m3 = np.unique(np.concatenate([np.linspace(*MOMENTS[1], 37), [0.0]]))
-        for low, high, colour in ((ratio, None, GREEN), (-ratio, ratio, ORANGE), (None, -ratio, GREEN)):
+        for low, high, colour in (
+            (ratio, None, GREEN),
+            (-ratio, ratio, ORANGE),
+            (None, -ratio, GREEN),
+        ):
             ends = [
                 sign * MOMENTS[0, 1] + 0 * m3 if end is None else end * np.abs(m3)
                 for end, sign in ((low, -1), (high, 1))
@@ -140,9 +141,8 @@ def _space(rows: Rows, wide: Rows | None) -> Callable[[Any], None]:
             space.surface(m2, np.broadcast_to(m3, m2.shape), u2, colour, mesh=6)
         whole = _whole(rows)
         space.curve(whole.m2, whole.m3, whole.u2, BENDING, 2)
-        if wide is not None:
-            whole = _whole(wide)
-            space.curve(whole.m2, whole.m3, whole.u2, "black", 1.3, (0.02, 0.014), lift=0.1)
+        whole = _whole(wide)
+        space.curve(whole.m2, whole.m3, whole.u2, "black", 1.3, (0.024, 0.016), lift=0.1)
         space.paint(axes, ("$m_2$", "$m_3$", "$u_2$"))
 
     return draw
@@ -155,12 +155,11 @@ def _limit(found: Found) -> Callable[[Any], None]:
         label = "regularised (6.1)"
         axes.semilogx(values, u2, "o-", color=BENDING, lw=1.6, ms=4, label=label)
         axes.axhline(limit, color=RED, lw=1.2, label="Sadowsky")
-        if found.wunderlich is not None:
-            wide = float(found.wunderlich.u0[1])
-            axes.axhline(wide, color="black", lw=1.1, ls=DASHED, label="Wunderlich")
-        axes.set(xlabel=r"$\varepsilon$", ylabel="$u_2(0)$  ($1/L$)", ylim=(2.9, 3.45))
-        axes.legend(frameon=False, fontsize=8.5, loc=(0.66, 0.7))
-        inner = axes.inset_axes((0.13, 0.13, 0.4, 0.48))
+        wide = float(found.wunderlich.u0[1])
+        axes.axhline(wide, color="black", lw=1.1, ls=DASHED, label="Wunderlich")
+        axes.set(xlabel=r"$\varepsilon$", ylabel="$u_2(0)$  ($1/L$)", ylim=(3.2, 3.41))
+        axes.legend(frameon=False, fontsize=8.5, loc=(0.1, 0.66))
+        inner = axes.inset_axes((0.14, 0.14, 0.44, 0.42))
         inner.loglog(values, limit - u2, "o-", color=BENDING, lw=1.2, ms=2.5)
         inner.set_title("distance from Sadowsky's", fontsize=8, color=INK)
         inner.tick_params(labelsize=7, colors=INK)
@@ -171,79 +170,51 @@ def _limit(found: Found) -> Callable[[Any], None]:
 
 
 def _of_strains(found: Found) -> list[Number]:
-    values, bars = answers(found.regularized)
-    u3 = float(found.regularized.sample(MIDDLE, "u3"))
-    rows = [
-        Number("$u_2(0)$", values["u2"], "", bars["u2"]),
-        Number("$u_3(0)$", values["u3"], "", bars["u3"]),
-        Number("$u_3(1/2)$", u3),
-    ]
-    if found.wunderlich is None:
-        return rows
-    values, bars = answers(found.wunderlich)
-    middle = float(found.wunderlich.sample(MIDDLE, "u3"))
+    regular, wide = Answers(found.regularized), Answers(found.wunderlich)
+    u3 = [float(ribbon.sample(MIDDLE, "u3")) for ribbon in (found.regularized, found.wunderlich)]
     return [
-        *rows,
-        Number("Wunderlich: $u_2(0)$", values["u2"], "", bars["u2"]),
-        Number("Wunderlich: $u_3(1/2)$", middle, "0"),
+        regular.number("$u_2(0)$", "u2"),
+        regular.number("$u_3(0)$", "u3"),
+        Number("$u_3(1/2)$", u3[0]),
+        wide.number("Wunderlich: $u_2(0)$", "u2"),
+        Number("Wunderlich: $u_3(1/2)$", u3[1], "0"),
     ]
 
 
 def _of_plane(found: Found) -> list[Number]:
-    s = entry(found.regularized)
-    rows = [Number("$W^+$ at $s$", s), Number("$W^-$ at $s$", 1 - s)]
-    rows.append(Number(r"$u_2 = u_3$ at $W^+$", float(found.regularized.sample(s, "u3"))))
-    if found.wunderlich is None:
-        return rows
-    wide = half_of(found.wunderlich)
-    eta = wide.u3 / wide.u2
+    s, wide = entry(found.regularized), half_of(found.wunderlich)
     gap = np.abs(half_of(found.regularized).u2 - wide.u2)[wide.s <= 0.4].max()
     return [
-        *rows,
-        Number(r"Wunderlich: largest $|\eta|$", float(np.abs(eta).max())),
-        Number(r"Wunderlich: largest difference of $u_2$, $s \leq 0.4$", float(gap)),
+        Number("$W^+$ at $s$", s),
+        Number("$W^-$ at $s$", 1 - s),
+        Number(r"$u_2 = u_3$ at $W^+$", float(found.regularized.sample(s, "u3"))),
+        Number(r"Wunderlich: largest $|\eta|$", float(np.abs(wide.u3 / wide.u2).max())),
+        Number(r"largest difference of $u_2$, $s \leq 0.4$", float(gap)),
     ]
 
 
 def _of_space(found: Found) -> list[Number]:
-    values, bars = answers(found.regularized)
+    regular, wide = Answers(found.regularized), Answers(found.wunderlich)
     printed = {"n0y": "43.1", "n0z": "43.0", "m0y": "2.15", "m0z": "-8.65"}
-    rows = [
-        Number(f"${name[0]}_{name[2]}(0)$", values[name], digits, bars[name])
-        for name, digits in printed.items()
-    ]
-    drift = float(found.regularized.sample(MIDDLE, "H"))
-    rows.append(Number("$H(0)$, no invariant", values["H0"], "", bars["H0"]))
-    rows.append(Number("$H(1/2)$", drift))
-    if found.wunderlich is None:
-        return rows
-    values, bars = answers(found.wunderlich)
-    return rows + [
-        Number(f"Wunderlich: ${name[0]}_{name[2]}(0)$", values[name], "", bars[name])
-        for name in printed
+    names = {key: f"${key[0]}_{key[2]}(0)$" for key in printed}
+    return [
+        *(regular.number(names[key], key, digits) for key, digits in printed.items()),
+        regular.number("$H(0)$, no invariant", "H0"),
+        Number("$H(1/2)$", float(found.regularized.sample(MIDDLE, "H"))),
+        *(wide.number(f"Wunderlich: {name}", key) for key, name in names.items()),
     ]
 
 
 def _of_limit(found: Found) -> list[Number]:
-    limit = float(found.sadowsky.u0[1])
-    at = {row["law.epsilon"]: row for row in found.branch}
-    rows = [Number("limit, Sadowsky", limit, "3.3866", answers(found.sadowsky)[1]["u2"])]
-    for epsilon in (1e-2, 1e-3, 1e-7):
-        row = next(row for value, row in at.items() if np.isclose(value, epsilon))
+    limit, wide = Answers(found.sadowsky), Answers(found.wunderlich)
+    rows = [limit.number("limit, Sadowsky", "u2", "3.3866")]
+    for power in (-2, -3, -7):
+        row = next(r for r in found.branch if np.isclose(r["law.epsilon"], 10.0**power))
         bar = row["error"] * abs(row["u2"])
-        rows.append(Number(rf"at $\varepsilon = 10^{{{round(np.log10(epsilon))}}}$", row["u2"], "", bar))
-    rows.append(Number(r"order in $\varepsilon$", order(found.branch, limit)))
-    if found.wunderlich is None:
-        return rows
-    values, bars = answers(found.wunderlich)
-    energy = bars["energy"]
+        rows.append(Number(rf"at $\varepsilon = 10^{{{power}}}$", row["u2"], "", bar))
     return [
         *rows,
-        Number("Wunderlich: $H$", values["H0"], "", bars["H0"]),
-        Number(
-            "Wunderlich: energy of the whole",
-            2 * values["energy"],
-            "",
-            None if energy is None else 2 * energy,
-        ),
+        Number(r"order in $\varepsilon$", order(found.branch, limit.value("u2"))),
+        wide.number("Wunderlich: $H$", "H0"),
+        wide.number("Wunderlich: energy of the whole", "whole"),
     ]

@@ -11,7 +11,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ribbonopt import Continuation, Solution, load_scene, solve, summarize
-from ribbonopt.errors import RibbonError
+
+from .numbers import Number
 
 Array = NDArray[np.float64]
 
@@ -49,13 +50,14 @@ class Found:
         return _solved("moebius_regularized")
 
     @cached_property
-    def wunderlich(self) -> Solution | None:
-        """Half of a band of finite width, figure 5; None where its law is missing."""
-        try:
-            return _solved("moebius_wunderlich")
-        except (RibbonError, ImportError) as error:
-            print(f"figure 5 without Wunderlich's ribbon: {error}")
-            return None
+    def wunderlich(self) -> Solution:
+        """Half of a band of finite width, figure 5."""
+        return _solved("moebius_wunderlich")
+
+    @cached_property
+    def printed_whole(self) -> Solution:
+        """What the ends (6.2) lead to as they are printed."""
+        return _solved("printed_whole")
 
     @cached_property
     def branch(self) -> list[dict[str, Any]]:
@@ -75,18 +77,35 @@ def half_of(solution: Solution) -> Rows:
     return Rows(s, *(solution.sample(s, name) for name in NAMES))
 
 
-def answers(solution: Solution) -> tuple[Mapping[str, float], Mapping[str, float | None]]:
-    """Return numbers at the start of a solution (n0y, u2, H0, ...) and their bars by name."""
-    summary = summarize(solution)
-    bars = summary["error_estimate"]
-    values: dict[str, float] = {"H0": summary["H0"], "energy": summary["energy"]}
-    errors: dict[str, float | None] = {"H0": bars["H0"], "energy": bars["energy"]}
-    for group, names in (("n0", ("n0x", "n0y", "n0z")), ("m0", ("m0x", "m0y", "m0z"))):
-        values |= dict(zip(names, summary[group], strict=True))
-        errors |= dict.fromkeys(names, bars[group])
-    values |= dict(zip(("u1", "u2", "u3"), summary["u0"], strict=True))
-    errors |= dict.fromkeys(("u1", "u2", "u3"), bars["u0"])
-    return values, errors
+class Answers:
+    """Numbers of a solution, with their bars.
+
+    Keys are n0x ... m0z (lab frame), u1, u2, u3 (directors), H0, at the start; energy; whole, the
+    energy of a band of which the solution is half.
+    """
+
+    def __init__(self, solution: Solution) -> None:
+        summary = summarize(solution)
+        self.bars: Mapping[str, float | None] = summary["error_estimate"]
+        self._found = {"H0": (summary["H0"], "H0", 1), "energy": (summary["energy"], "energy", 1)}
+        self._found["whole"] = (summary["energy"], "energy", 2)
+        for group, names in (
+            ("n0", ("n0x", "n0y", "n0z")),
+            ("m0", ("m0x", "m0y", "m0z")),
+            ("u0", ("u1", "u2", "u3")),
+        ):
+            for name, value in zip(names, summary[group], strict=True):
+                self._found[name] = (value, group, 1)
+
+    def number(self, name: str, key: str, paper: str = "") -> Number:
+        """Return the number of a key under the name that is written beside it."""
+        value, group, times = self._found[key]
+        bar = self.bars[group]
+        return Number(name, times * value, paper, None if bar is None else times * bar)
+
+    def value(self, key: str) -> float:
+        """Return the number of a key alone."""
+        return self.number("", key).value
 
 
 def where(function: Callable[[float], float], low: float, high: float) -> float:

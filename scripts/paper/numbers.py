@@ -50,7 +50,7 @@ class Number(NamedTuple):
         if not self.paper:
             return ""
         decimals = len(self.paper.partition(".")[2])
-        return f"{self.value:.{decimals}f}"
+        return f"{round(self.value, decimals) + 0.0:.{decimals}f}"  # + 0.0: no -0
 
 
 class Table(NamedTuple):
@@ -77,11 +77,18 @@ def write_columns(columns: Mapping[str, Sequence[Any]], path: Path) -> None:
         writer.writerows(zip(*columns.values(), strict=True))
 
 
+def plain(name: str) -> str:
+    """Return a name without the marks of mathematics."""
+    for mark, word in (("$", ""), (r"\leq", "<="), ("\\", "")):
+        name = name.replace(mark, word)
+    return name
+
+
 def _row(table: Table, number: Number) -> dict[str, Any]:
     return {
         "figure": table.figure,
         "panel": table.panel,
-        "name": number.name.replace("$", "").replace("\\", ""),
+        "name": plain(number.name),
         "value": number.value,
         "bar": number.bar,
         "paper": number.paper,

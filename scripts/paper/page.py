@@ -1,4 +1,4 @@
-"""A figure as a page of panels, two in a row, each above the table of its numbers."""
+"""A figure as a page of panels, two in a row, each above the table of its numbers (inches)."""
 
 from __future__ import annotations
 
@@ -19,6 +19,7 @@ GREEN, ORANGE = "#7fbf7b", "#f2a65a"  # the paper's: |eta| <= 1, and beyond
 PALE_GREEN, PALE_ORANGE = "#e2f2df", "#fde6cc"
 SOFT = (0, (5, 2.5))  # dashes of what follows by symmetry
 DPI = 180
+MINUS = "\N{MINUS SIGN}"
 CELL, PANEL, ROW = 5.4, 3.7, 0.205  # inches: width of a cell, height of a panel, of a row
 TOP, HEADING, GAP = 0.42, 0.34, 0.62  # over all panels, over each, between panel and table
 LEFT, RIGHT = 0.72, 0.22  # margins of a panel in its cell
@@ -36,9 +37,9 @@ class Panel:
     letter, title
         As in the paper, and what it shows.
     draw
-        Draws it into axes, of three dimensions where `solid`.
+        Draws it into axes, of three dimensions where `solid`, without frame where `bare`.
     rows
-        The numbers beside it.
+        The numbers below it.
     """
 
     letter: str
@@ -106,7 +107,7 @@ def _table(axes: Axes, rows: Sequence[Number]) -> None:
     axes.set_axis_off()
     printed = any(number.paper for number in rows)
     heads = ("", "computed", "paper" if printed else "")
-    cells = [heads, *((n.name, n.written.replace("-", "−"), _paper(n)) for n in rows)]
+    cells = [heads, *((n.name, n.written.replace("-", MINUS), _paper(n)) for n in rows)]
     for i, line in enumerate(cells):
         for x, text in zip(COLUMNS, line, strict=True):
             axes.text(x, i + 0.5, text, fontsize=8.6, va="center", color=INK if i else FAINT)
@@ -117,4 +118,4 @@ def _paper(number: Number) -> str:
     if not number.paper:
         return ""
     agrees = number.as_printed == number.paper
-    return number.paper.replace("-", "−") + ("" if agrees else "  (!)")
+    return number.paper.replace("-", MINUS) + ("" if agrees else "  (!)")

@@ -72,9 +72,7 @@ class Space:
         """Add a polyline; `dashes`: lengths of dash and gap, as shares of the box."""
         points = np.stack(np.broadcast_arrays(*map(np.asarray, (x, y, z))), axis=-1).astype(float)
         scaled = self._scaled(points)
-        length = np.concatenate(
-            [[0], np.cumsum(np.linalg.norm(np.diff(scaled, axis=0), axis=1))]
-        )
+        length = np.concatenate([[0], np.cumsum(np.linalg.norm(np.diff(scaled, axis=0), axis=1))])
         fine = np.linspace(0, length[-1], max(2, int(length[-1] / 0.008)))
         points = np.stack([np.interp(fine, length, column) for column in points.T], axis=-1)
         segments = np.stack([points[:-1], points[1:], points[1:], points[:-1]], axis=1)
@@ -120,15 +118,15 @@ class Space:
         self.parts.append((corners, faces, edges, np.full(len(corners), width)))
 
     def _scaled(self, points: Array) -> Array:
-        """Points in a box of size 1, with the aspect of the picture."""
+        """Return points in a box of size 1, with the aspect of the picture."""
         scaled = (points - self.limits[:, 0]) / np.ptp(self.limits, axis=1) * self.aspect
         return np.asarray(scaled)
 
     def _towards(self) -> Array:
-        """Unit step to the viewer, as shares of the limits."""
+        """Return the unit step to the viewer, as shares of the limits."""
         return self._viewer() / np.array(self.aspect)
 
     def _viewer(self) -> Array:
-        """Unit vector to the viewer, in the box of size 1."""
+        """Return the unit vector to the viewer, in the box of size 1."""
         e, a = np.radians([self.elevation, self.azimuth])
         return np.array([np.cos(e) * np.cos(a), np.cos(e) * np.sin(a), np.sin(e)])
