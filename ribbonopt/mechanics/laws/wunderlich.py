@@ -151,7 +151,7 @@ class DirectWunderlichLaw(WunderlichLaw):
     law is that of parallel generatrices.
     """
 
-    states = ("eta",)
+    states = ("eta",)  # type: ignore[assignment]
 
     def direct(self) -> ConstitutiveLaw:
         return self
