@@ -67,7 +67,7 @@ def _plane(rows: Rows) -> Callable[[Any], None]:
             axes.annotate("", *places, arrowprops=arrow)
         below = {"textcoords": "offset points", "ha": "center", "fontsize": 8.5, "color": INK}
         axes.annotate(r"jump at $s = 1/2$", (0, rows.u3[-1]), (0, 6), **below)
-        axes.annotate(r"$s = 1$ is $s = 0$, turned over", (0, rows.u3[0]), (0, -13), **below)
+        axes.annotate(r"$s = 1$ is $s = 0$, turned over", (0, rows.u3[0]), (0, -16), **below)
         axes.plot(rows.u2[0], rows.u3[0], "o", color=BENDING, ms=6)
         axes.annotate("$s = 0$", (rows.u2[0], rows.u3[0]), (0, 7), **below)
 
@@ -110,6 +110,7 @@ def _space(rows: Rows) -> Callable[[Any], None]:
             jump = [[curve.m2[k], curve.m3[k], curve.u2[k]] for curve, k in (start, end)]
             space.curve(*np.transpose(jump), FAINT, 1.1, (0.012, 0.012), lift=0.2)
         space.paint(axes, ("$m_2$", "$m_3$", "$u_2$"))
+        axes.text2D(0.05, 0.95, "dashed: by symmetry", transform=axes.transAxes, fontsize=8.5)
 
     return draw
 

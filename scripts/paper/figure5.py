@@ -144,6 +144,8 @@ def _space(rows: Rows, wide: Rows) -> Callable[[Any], None]:
         whole = _whole(wide)
         space.curve(whole.m2, whole.m3, whole.u2, "black", 1.3, (0.024, 0.016), lift=0.1)
         space.paint(axes, ("$m_2$", "$m_3$", "$u_2$"))
+        words = "blue: regularised\ndashed: Wunderlich"
+        axes.text2D(0.05, 0.98, words, transform=axes.transAxes, fontsize=8.5, va="top")
 
     return draw
 
