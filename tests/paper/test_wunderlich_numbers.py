@@ -18,8 +18,8 @@ from ribbonopt.solution.solution import Solution
 CONFIGS = Path(__file__).parents[2] / "configs"
 BAND = replace(load_scene(CONFIGS / "wunderlich_moebius.yaml"), continuation=None, tolerance=1e-9)
 
-#: w / L: n2, n3, m2, m3, u2, eta at the start, energy of the whole band, H, p at the end, by multiple
-#: shooting of another program; they confirm WUNDERLICH.md but for three last digits
+#: w / L: n2, n3, m2, m3, u2, eta at the start, energy of the whole band, H, p at the end, by
+#: multiple shooting of another program
 TABLE = {
     0.01: (
         *(43.5095034741, 42.5050020113, 1.937429962352, -9.014081731556, 3.37647461523),

@@ -1,4 +1,4 @@
-"""Wunderlich's law against its energy: what is stationary, its functions in many digits, its limits."""
+"""Wunderlich's law against its energy: what is stationary, and its functions in many digits."""
 
 from typing import Any
 
