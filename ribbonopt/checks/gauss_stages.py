@@ -11,6 +11,8 @@ from numpy.typing import NDArray
 
 from ribbonopt.accuracy.estimate import relative_error
 from ribbonopt.arrays import Array
+from ribbonopt.mechanics.laws.law import Stress
+from ribbonopt.mechanics.outputs import own_name
 from ribbonopt.mechanics.section import RodFields
 from ribbonopt.problem import Ribbon
 from ribbonopt.problem.held import held_between
@@ -38,7 +40,8 @@ class GaussStages:
     places : (N K,) array
         Fractions at which the stages are.
     x, z : (N K, nx), (N K, nz) arrays
-        States of the reduced model, and moments along the directors of the free strains.
+        States of the reduced model and of the law's energy form, and the controls of that: moments
+        along the directors of the free strains, or what else the law says.
     ends : (2, nx) array
         States at the start and at the end.
     firsts : (k,) integer array
@@ -92,15 +95,16 @@ def gauss_stages(solution: Solution, ribbon: Ribbon) -> GaussStages:
     points = {k: v[[0, *(firsts // parts), -1]] for k, v in trajectory.at_nodes.items()}
     # Packed together, in order, for quaternions that do not change their sign.
     at = np.concatenate([[0], degree * firsts, [len(places)]])
-    pairs = zip(_fields(along), _fields(points), strict=True)
-    r, frames, n, m = (np.insert(a, at, b, axis=0) for a, b in pairs)
+    every = {k: np.insert(along[k], at, points[k], axis=0) for k in along}
+    r, frames, n, m = _fields(every)
     fields = RodFields(r, frames, n, m)
     # Any point of reference will do: it is for constants, which the energy does without.
     x, _ = ribbon.model.pack(fields, fields.r[0])
     if ribbon.stations:
         ends = trajectory.ends[[0, *turns, -1]]
         x = np.hstack([x, _held(solution, ribbon, np.insert(places, at, ends), fields.r)])
-    z = np.einsum("ki,kij->kj", fields.m, fields.frames)[:, list(ribbon.law.components)]
+    x = np.hstack([x, *(every[own_name(name)][:, None] for name in ribbon.law.states)])
+    z = _controls(every, ribbon, solution, np.insert(places, at, trajectory.ends[[0, *turns, -1]]))
     rows = at + np.arange(len(at))
     inside = np.delete(np.arange(len(x)), rows)
     between = rows[1:-1]
@@ -117,6 +121,25 @@ def gauss_stages(solution: Solution, ribbon: Ribbon) -> GaussStages:
         along["switching"],
         error or 0.0,
     )
+
+
+def _controls(o: Mapping[str, Array], ribbon: Ribbon, solution: Solution, places: Array) -> Array:
+    """Return the controls (k, nz) of named outputs (k, ...) at fractions (k,)."""
+    law, m = ribbon.law, np.column_stack([o["m1"], o["m2"], o["m3"]])
+    if not law.controls:
+        return m[:, list(law.components)]
+    n = np.column_stack([o["n1"], o["n2"], o["n3"]])
+    own = np.column_stack([o[own_name(name)] for name in law.indirect().states])
+    symbols = [
+        ca.SX.sym(name, size) for name, size in zip("nmo", (3, 3, own.shape[1]), strict=True)
+    ]
+    inputs = [*symbols, ribbon.parameters, ribbon.position]
+    function = ca.Function("controls", inputs, [law.controls_at(Stress(*symbols))])
+    known = dict(zip(solution.problem.parameter_names, solution.dense.theta, strict=True))
+    theta = np.array([known.get(name, 0.0) for name in ribbon.theta])
+    s = solution.posed.scene.interval[0] + solution.posed.length * places
+    repeated = np.repeat(theta[:, None], len(s), axis=1)
+    return np.array(function.map(len(s))(n.T, m.T, own.T, repeated, s[None])).T
 
 
 def _held(solution: Solution, ribbon: Ribbon, fraction: Array, r: Array) -> Array:

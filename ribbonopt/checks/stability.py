@@ -113,7 +113,7 @@ def variation_of(solution: Solution) -> Variation | str:
     name, law = solution.scene.law.type, capabilities(solution.scene)
     if not law.variational:
         return f"the law {name} has no energy"
-    if law.states:
+    if law.states and law.direct() is law:
         return f"the law {name} has states of its own, which its energy here does without"
     none = f"the energy of the law {name} has no second derivatives"
     if unbent_share(solution, law):

@@ -97,8 +97,10 @@ class Energy:
     def of(cls, ribbon: Ribbon) -> Energy:
         """Build for the mechanics of a structure of scenes, stated as a minimum of the energy."""
         law, switches = ribbon.law, None
-        problems = {0: minimum(ribbon)} if law.smooth else _sides(ribbon)
-        if not law.smooth:
+        # Where strains fade away nothing leaps, and the place needs no variation of its own.
+        smooth = law.smooth or law.fades
+        problems = {0: minimum(ribbon)} if smooth else _sides(ribbon)
+        if not smooth:
             switches = MovingSwitches.of(ribbon, problems)
         ends = condition_functions(next(iter(problems.values())))
         bent = ca.densify(ca.triu2symm(ends.lagrangian_hessian))

@@ -153,6 +153,10 @@ class ConstitutiveLaw(ABC):
         """Return what controls of its energy form, `controls` by name, give its states rates."""
         return ca.SX(0, 1)
 
+    def controls_at(self, stress: Stress) -> ca.SX:
+        """Return the controls of its energy form at a stress with all own states."""
+        return stress.m[list(self.components)]
+
     # Switching: of use to kinked laws, and to find phases for them on solutions of smooth ones.
 
     def switching(self, stress: Stress) -> Switch:
