@@ -11,11 +11,13 @@ from numpy.typing import NDArray
 
 from ribbonopt.accuracy.estimate import relative_error
 from ribbonopt.arrays import Array
+from ribbonopt.mechanics.laws.law import Stress
 from ribbonopt.mechanics.section import RodFields
 from ribbonopt.problem import Ribbon
 from ribbonopt.problem.held import held_between
 from ribbonopt.solution.solution import Solution
 from ribbonopt.transcription import Tableau, gauss
+from ribbonopt.transcription.buffered import Mapped
 from ribbonopt.transcription.tableaus import MAX_DEGREE
 
 from .zero_moment import lacks_linearisation
@@ -38,13 +40,13 @@ class GaussStages:
     places : (N K,) array
         Fractions at which the stages are.
     x, z : (N K, nx), (N K, nz) arrays
-        States of the reduced model, and moments along the directors of the free strains.
+        States of the reduced model, and the law's controls: moments of the free strains.
     ends : (2, nx) array
         States at the start and at the end.
     firsts : (k,) integer array
         Elements that begin at a switch.
     x_switch, z_switch : (k, nx), (k, nz) arrays
-        States and moments there.
+        States and controls there.
     switching : (N K,) array
         What changes its sign where the law switches.
     error : float
@@ -64,12 +66,12 @@ class GaussStages:
     error: float
 
 
-def gauss_stages(solution: Solution, ribbon: Ribbon) -> GaussStages:
+def gauss_stages(solution: Solution, ribbon: Ribbon, theta: Array) -> GaussStages:
     """Return a solution at its own stages where they are those of a Gauss scheme, else at others.
 
     At its own stages it is an equilibrium of the discrete energy too, to rounding, whatever its
     mesh: there the estimated error tells how near it is to the true one. At others it is not, and
-    the gradient of the energy tells.
+    the gradient of the energy tells. `theta` are the numbers of the ribbon.
     """
     trajectory, degree = solution.trajectory, solution.dense.blocks.degree
     widths, parts = np.diff(trajectory.nodes), 1
@@ -99,7 +101,7 @@ def gauss_stages(solution: Solution, ribbon: Ribbon) -> GaussStages:
     if ribbon.stations:
         ends = trajectory.ends[[0, *turns, -1]]
         x = np.hstack([x, _held(solution, ribbon, np.insert(places, at, ends), fields.r)])
-    z = np.einsum("ki,kij->kj", fields.m, fields.frames)[:, list(ribbon.law.components)]
+    z = _controls(ribbon, fields, np.insert(places, at, trajectory.ends[[0, *turns, -1]]), theta)
     rows = at + np.arange(len(at))
     inside = np.delete(np.arange(len(x)), rows)
     between = rows[1:-1]
@@ -116,6 +118,20 @@ def gauss_stages(solution: Solution, ribbon: Ribbon) -> GaussStages:
         along["switching"],
         error or 0.0,
     )
+
+
+def _controls(ribbon: Ribbon, fields: RodFields, fraction: Array, theta: Array) -> Array:
+    """Return the controls (k, nz) of the law at fractions (k,) of the length."""
+    local, (start, end) = ca.SX.sym("local", 6), ribbon.interval
+    stress = Stress(local[:3], local[3:], ca.SX.zeros(len(ribbon.law.states)))
+    share = ca.SX.sym("share")
+    place = start + share * (end - start)
+    controls = ca.substitute(ribbon.law.controls(stress), ribbon.position, place)
+    inputs = [local, ca.SX(0, 1), ribbon.parameters, share]
+    function = Mapped(ca.Function("controls", inputs, [ca.densify(controls)]))
+    loads = (np.einsum("ki,kij->kj", load, fields.frames) for load in (fields.n, fields.m))
+    (found,) = function(np.hstack(list(loads)), np.empty(0), theta, fraction)
+    return found.reshape(len(fraction), -1)
 
 
 def _held(solution: Solution, ribbon: Ribbon, fraction: Array, r: Array) -> Array:

@@ -15,7 +15,8 @@ from .laws.law import Stress
 class Section:
     """One cross section: lab-frame vectors (3,), arclength, and the law's own states (k,).
 
-    `stepped` is the force (3,) of what acts at single places up to here, if anything does.
+    `stepped` is the force (3,) of what acts at single places up to here, if anything does;
+    `extension` is that of the centre line, so that r' is `tangent`.
     """
 
     r: ca.SX
@@ -27,6 +28,12 @@ class Section:
     s: ca.SX
     own: ca.SX
     stepped: ca.SX | None = None
+    extension: ca.SX | float = 0.0
+
+    @property
+    def tangent(self) -> ca.SX:
+        """R' (3,), lab frame: of unit length where nothing stretches."""
+        return (1 + self.extension) * self.d3
 
     def along(self, vector: ca.SX) -> ca.SX:
         """Components (3,) of a lab vector along the directors."""

@@ -60,6 +60,8 @@ class ConstitutiveLaw(ABC):
     natural: bool = False
     #: turning all sections by one angle about d3 changes nothing, or may: a rod that spins freely
     spins: bool = False
+    #: the centre line stretches: r' = (1 + e) d3, `extension`
+    stretches: bool = False
     #: strains have a kink or a jump where `switching` changes sign; `branch` continues either side
     kinked: bool = False
     #: its sides are two sheets that may mix, as Sadowsky's
@@ -113,6 +115,18 @@ class ConstitutiveLaw(ABC):
         work = ca.dot(stress.m, u)
         found = self.complementary_energy(stress)
         return (work / 2, work / 2) if found is None else (work - found, found)
+
+    def extension(self, stress: Stress) -> ca.SX:
+        """Extension e of the centre line, r' = (1 + e) d3."""
+        return ca.SX(0)
+
+    def controls(self, stress: Stress) -> ca.SX:
+        """Return what the energy form has for controls, of a stress."""
+        return stress.m[list(self.components)]
+
+    def controlled(self, z: ca.SX, own: ca.SX) -> Stress:
+        """Return the stress that controls stand for."""
+        return Stress(ca.SX.zeros(3), self.whole(z), own)
 
     def relaxed(self, stress: Stress) -> Relaxed | None:
         """Return the program of the convexified energy where the law is not smooth, or None."""

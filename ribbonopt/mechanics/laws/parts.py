@@ -7,6 +7,23 @@ from typing import NamedTuple
 
 import casadi as ca
 
+#: what a law declares of itself, but for its own states: a law around it declares the same
+DECLARED = (
+    "components",
+    "variational",
+    "bounds_eta",
+    "developable",
+    "smooth",
+    "linear_at_zero",
+    "natural",
+    "spins",
+    "stretches",
+    "kinked",
+    "sheeted",
+    "switch_name",
+    "closed_moment",
+)
+
 
 class Switch(NamedTuple):
     """Where the strains of a kinked law leap: where `value` changes sign and `leap` is not zero.
@@ -35,7 +52,7 @@ class Relaxed:
     """A convexified energy as a smooth program over controls along the ribbon.
 
     `controls` (nz,) symbols; `u` (3,) strains, `cost` per length and `path` (<= 0) as expressions
-    of them; `estimate` (nz,), where to start, of the stress.
+    of them; `estimate` (nz,), where to start, of the stress; `extension`, of the centre line.
     """
 
     controls: ca.SX
@@ -43,3 +60,4 @@ class Relaxed:
     cost: ca.SX
     path: ca.SX
     estimate: ca.SX
+    extension: ca.SX | float = 0.0

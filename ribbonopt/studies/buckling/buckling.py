@@ -196,7 +196,7 @@ class _States:
     @cached_property
     def _rod(self) -> Prepared | None:
         law, scene = self.prepared.ribbon.law, self.straight.scene
-        return twin_of(scene) if has_twin(law, self.parameter) else None
+        return twin_of(scene) if has_twin(law, scene, self.parameter) else None
 
     @cached_property
     def ribbon(self) -> Ribbon:
