@@ -148,7 +148,7 @@ class Ribbon:
         r, d1, d2, d3, n, m, own, u, e, *stepped = self.section_function(
             x, c, self.parameters, s, *more
         )
-        rod = Section(r, d1, d2, d3, n, m, s, own, *stepped, extension=e)
+        rod = Section(r, d1, d2, d3, n, m, s, own, stepped[0] if stepped else None, e)
         return CrossSection(self.model, x[:count], rod, u)
 
     @cached_property

@@ -62,8 +62,9 @@ def in_units(
         return None
     if ribbon is None:
         # Without a ribbon `membrane: ribbon` says nothing, which is refused elsewhere.
-        said = isinstance(membrane, Membrane)
-        return membrane.over(units.stiffness, units.force) if said else membrane
+        if not isinstance(membrane, Membrane):
+            return membrane
+        return membrane.over(units.stiffness, units.force)
     if not isinstance(membrane, Membrane):
         membrane = of_sizes(ribbon.length, ribbon.width, ribbon.thickness, ribbon.poisson_ratio)
     return membrane.over(units.stiffness, units.stiffness)
