@@ -31,9 +31,14 @@ class Section:
     extension: ca.SX | float = 0.0
 
     @property
+    def stretched(self) -> ca.SX:
+        """Length of the centre line over what it is without stretch, 1 where nothing does."""
+        return 1 + ca.SX(self.extension)
+
+    @property
     def tangent(self) -> ca.SX:
-        """R' (3,), lab frame: of unit length where nothing stretches."""
-        return (1 + self.extension) * self.d3
+        """The derivative r' (3,), lab frame."""
+        return self.stretched * self.d3
 
     def along(self, vector: ca.SX) -> ca.SX:
         """Components (3,) of a lab vector along the directors."""

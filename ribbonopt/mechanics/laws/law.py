@@ -60,6 +60,8 @@ class ConstitutiveLaw(ABC):
     natural: bool = False
     #: turning all sections by one angle about d3 changes nothing, or may: a rod that spins freely
     spins: bool = False
+    #: u1 = m1 / B1 beside a ribbon's law, which knows nothing of it
+    edgewise: bool = False
     #: the centre line stretches: r' = (1 + e) d3, `extension`
     stretches: bool = False
     #: strains have a kink or a jump where `switching` changes sign; `branch` continues either side

@@ -79,6 +79,7 @@ class MembraneLaw(ConstitutiveLaw):
         if self._bends:
             object.__setattr__(self, "components", (0, *self.base.components))
             object.__setattr__(self, "spins", self._may_spin())
+        object.__setattr__(self, "edgewise", self._bends)
         object.__setattr__(self, "stretches", not self.long.is_zero())
 
     def strain(self, stress: Stress) -> ca.SX:

@@ -17,6 +17,7 @@ DECLARED = (
     "linear_at_zero",
     "natural",
     "spins",
+    "edgewise",
     "stretches",
     "kinked",
     "sheeted",
