@@ -1,18 +1,18 @@
 """Stretch of the centre line: what is known in closed form, and planar elasticas shot again."""
 
-from dataclasses import replace
-from typing import Any
+from functools import cache
 
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
 from scipy.optimize import brentq
+from scipy.special import ellipe, ellipk
 
-from ribbonopt import continue_scene, loads_scene, solve
+from ribbonopt import Continuation, loads_scene, solve
 from ribbonopt.checks.conserved import conserved
-from ribbonopt.checks.stability import negative_directions
 from ribbonopt.errors import ConvergenceError, ModelError
-from ribbonopt.scene import Membrane, Scene
+from ribbonopt.studies.continuation.recorded import value_of
+from ribbonopt.studies.continuation.walk.points import BRANCH_POINT, POINT, Point
 
 EA = 500.0
 PULLED = """name: pulled
@@ -48,12 +48,17 @@ def test_held_further_apart_than_it_stretches() -> None:
     with pytest.raises(ConvergenceError, match=r"1 long \(interval\), which may stretch by 10%"):
         solve(scene)
     with pytest.raises(ConvergenceError, match=r"1\.03 apart .* 1 long \(interval\); bring"):
-        solve(loads_scene(PULLED.format(law="kirchhoff", end=held_at(1.03))
-                          .replace("stretching: 500", "bending: 500")))
+        solve(
+            loads_scene(
+                PULLED.format(law="kirchhoff", end=held_at(1.03)).replace(
+                    "stretching: 500", "bending: 500"
+                )
+            )
+        )
     text = PULLED.format(law="kirchhoff", end=held_at(0.9))
     text += "continuation: {parameter: boundary.end.position.z, to: 1.3}\n"
     with pytest.raises(ModelError, match=r"1\.3 .* may stretch by 10%; .* = 1\.1$"):
-        continue_scene(loads_scene(text))
+        Continuation(loads_scene(text))
 
 
 COLUMN = """name: column
@@ -70,12 +75,107 @@ continuation: {{parameter: parameters.P, from: 9.5, to: 11.5, switch: true}}
 """
 
 
+@cache
+def walked(scene: str) -> tuple[Point, ...]:
+    found = tuple(Continuation(loads_scene(scene)))
+    assert all(point.solution.verified for point in found)
+    return found
+
+
 @pytest.mark.parametrize("stiffness", [100.0, 500.0, 1e5])
 def test_a_column_that_shortens_before_it_buckles(stiffness: float) -> None:
-    """P (1 - P / EA) = pi^2: the linearised equation B y'' + P (1 - P / EA) y = 0."""
-    branch = continue_scene(loads_scene(COLUMN.format(EA=stiffness)))
-    (point,) = branch.special
+    """P (1 - P / EA) = pi^2, from the linearised equation B y'' + P (1 - P / EA) y = 0."""
+    points = walked(COLUMN.format(EA=stiffness))
+    (found,) = (point for point in points if point.kind == BRANCH_POINT)
     critical = stiffness / 2 * (1 - np.sqrt(1 - 4 * np.pi**2 / stiffness))
-    assert point.value == pytest.approx(critical, abs=1e-8)
-    counts = [negative_directions(one.solution) for one in branch.points]
-    assert counts[0] == 0 and max(counts) == 1
+    assert value_of(found.row) == pytest.approx(critical, abs=1e-8)
+    straight = [point for point in points if point.branch == 0 and point.kind == POINT]
+    for point in straight:
+        assert point.row["negative"] == (value_of(point.row) > critical)
+        shortening = value_of(point.row) / stiffness
+        assert point.row["shortening"] == pytest.approx(shortening, abs=1e-11)
+
+
+def shot(P: float, stiffness: float) -> tuple[float, float]:
+    """Shortening and deflection of the buckled column: x, z, angle and its rate, shot from 0."""
+
+    def rates(s: float, y: np.ndarray) -> list[float]:
+        _, _, angle, bent = y
+        axial = -P * np.cos(angle)
+        stretch = 1 + axial / stiffness
+        return [
+            stretch * np.sin(angle),
+            stretch * np.cos(angle),
+            bent,
+            -stretch * P * np.sin(angle),
+        ]
+
+    def at(s: float, angle: float) -> np.ndarray:
+        run = solve_ivp(rates, (0, s), [0, 0, angle, 0], "DOP853", rtol=1e-12, atol=1e-13)
+        return run.y[:, -1]
+
+    angle = brentq(lambda a: at(1.0, a)[3], 0.3, 2.0, xtol=1e-13)
+    return 1 - at(1.0, angle)[1], at(0.5, angle)[0]
+
+
+def test_the_buckled_column_by_shooting() -> None:
+    points = walked(COLUMN.format(EA=500.0))
+    last = {point.branch: point for point in points if point.kind == POINT and point.branch}
+    assert len(last) == 2
+    for point in last.values():
+        assert value_of(point.row) == 11.5 and point.row["negative"] == 0
+        shortening, deflection = shot(11.5, 500.0)
+        assert point.row["shortening"] == pytest.approx(shortening, abs=1e-9)
+        assert abs(point.row["deflection"]) == pytest.approx(deflection, abs=1e-9)
+
+
+RING = """name: ring
+law: {{type: kirchhoff}}
+states: planar
+membrane: {{stretching: {EA}}}
+interval: [0, 3.141592653589793]
+boundary:
+  start: {{position: [0, 0, 0], directors: {{d1: [0, 0, 1], d3: [1, 0, 0]}}}}
+  end: {{position: {{x: 0}}, directors: {{d1: [0, 0, -1], d3: [-1, 0, 0]}}, force: {{z: 0}}}}
+loads: {{pressure: 2.8}}
+tolerance: 1e-9
+record: {{across: "dot(r, ez) at 3.141592653589793"}}
+continuation: {{parameter: loads.pressure, to: 3.4, switch: true}}
+"""
+
+
+@pytest.mark.parametrize("stiffness", [50.0, 500.0])
+def test_a_ring_under_pressure(stiffness: float) -> None:
+    """Pressure acts on the stretched length: round, 1 + e = 1 / (1 + p / EA), k = B = 1.
+
+    Linearised about that, strains vary as cos(2 s) where 3 = p / EA + p (1 + e)^2.
+    """
+    points = walked(RING.format(EA=stiffness))
+    (found,) = (point for point in points if point.kind == BRANCH_POINT)
+
+    def mode(p: float) -> float:
+        return p / stiffness + p / (1 + p / stiffness) ** 2 - 3
+
+    assert value_of(found.row) == pytest.approx(brentq(mode, 2.0, 3.5, xtol=1e-14), abs=1e-8)
+    for point in points:
+        if point.branch == 0 and point.kind == POINT:
+            across = 2 / (1 + value_of(point.row) / stiffness)
+            assert point.row["across"] == pytest.approx(across, abs=1e-10)
+            assert point.row["negative"] == (value_of(point.row) > value_of(found.row))
+    last = points[-1].solution
+    known = conserved(last, uniform=True)
+    assert {"H", "n^2/2 - p m2"} <= set(known)
+    assert all(one.drift < 1e-8 for one in known.values())
+
+
+def test_as_one_over_the_stiffness() -> None:
+    """Buckled under the same load, from the rigid column: elliptic integrals."""
+    k = brentq(lambda k: 4 * ellipk(k**2) ** 2 - 11.5, 0.1, 0.9)
+    rigid = 2 - 2 * ellipe(k**2) / ellipk(k**2), k / ellipk(k**2)
+    gaps = [np.array(shot(11.5, EA)) - rigid for EA in (1e4, 1e5)]
+    np.testing.assert_allclose(gaps[0], 10 * gaps[1], rtol=0.05)
+    points = walked(COLUMN.format(EA=1e5))
+    for point in points:
+        if point.kind == POINT and point.branch and value_of(point.row) == 11.5:
+            gap = np.array([point.row["shortening"], abs(point.row["deflection"])]) - rigid
+            np.testing.assert_allclose(gap, gaps[1], rtol=1e-3)
