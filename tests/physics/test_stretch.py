@@ -34,9 +34,23 @@ def test_a_straight_pull(law: str) -> None:
     np.testing.assert_allclose(found.sample(1.0, "r"), (0, 0, 1 + 20 / EA), atol=1e-13)
     assert found.energy == pytest.approx(20**2 / (2 * EA), abs=1e-12)
     assert found.sample(0.3, "H") == pytest.approx(20 + 20**2 / (2 * EA), abs=1e-11)
-    held = solve(loads_scene(PULLED.format(law=law, end=held_at(1.03))))
+
+
+@pytest.mark.parametrize("law", ["kirchhoff", "variational"])
+def test_held_longer_than_it_is(law: str) -> None:
+    """Clamps straighten it, and B1 must be finite for them to bear no force across it."""
+    text = PULLED.format(law=law, end=held_at(1.03))
+    held = solve(loads_scene(text.replace("500}", "500, bending: 100}")))
     assert held.verified and held.sample(0.5, "extension") == pytest.approx(0.03, abs=1e-13)
     np.testing.assert_allclose(held.n0, (0, 0, 0.03 * EA), atol=1e-10)
+    with pytest.raises(ConvergenceError, match="held straight: it cannot bend in its own plane"):
+        solve(loads_scene(text))
+
+
+def test_one_that_cannot_stretch_and_is_straight_bears_any_force_along_it() -> None:
+    text = PULLED.format(law="variational", end=held_at(1.0)).replace("stretching", "bending")
+    with pytest.raises(ConvergenceError, match="it cannot stretch, so that the force along it is"):
+        solve(loads_scene(text))
 
 
 def held_at(z: float) -> str:

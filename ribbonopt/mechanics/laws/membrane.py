@@ -214,6 +214,8 @@ class MembraneLaw(ConstitutiveLaw):
         if not self.base.linear_at_zero or self.base.natural:
             return False
         u2 = self.base.strain(Stress.of_moment(ca.SX([0.0, 1.0, 0.0])))[1]
+        if ca.depends_on(ca.vertcat(u2, self.soft), self.position):
+            return False  # B1 is as the cube of the width
         return not u2.is_constant() or not self.soft.is_constant() or bool(u2 == self.soft)
 
     def _as_rigid(self, stress: Stress) -> Stress:

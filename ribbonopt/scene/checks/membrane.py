@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from ribbonopt.scene import limits
-from ribbonopt.scene.faults import Problem
+from ribbonopt.scene.faults import Problem, shown
 from ribbonopt.scene.laws import Rod
 from ribbonopt.scene.membrane import AnyMembrane, Membrane, in_units, stiffnesses
 from ribbonopt.scene.model import Scene
@@ -17,7 +17,7 @@ def check_membrane(scene: Scene, membrane: AnyMembrane) -> Iterator[Problem]:
     if not isinstance(membrane, Membrane) and scene.ribbon is None:
         message = "takes its numbers from `ribbon`, which this scene has not; write `ribbon` with "
         message += 'its sizes, or numbers, such as "membrane: {bending: 900, stretching: 120000}"'
-        yield Problem(("membrane",), message, membrane)
+        yield Problem(("membrane",), message, shown(membrane))
         return
     if not stiffnesses(membrane):
         message = "says nothing; expected bending (B1), stretching (EA) or both, such as "
@@ -28,7 +28,7 @@ def check_membrane(scene: Scene, membrane: AnyMembrane) -> Iterator[Problem]:
             yield Problem(("membrane", "bending"), message + "remove this", f"{membrane.bending:g}")
         else:
             message += 'write "membrane: {stretching: ...}"'
-            yield Problem(("membrane",), message, membrane)
+            yield Problem(("membrane",), message, shown(membrane))
     if isinstance(membrane, Membrane):
         yield from _sizes(scene, membrane)
 
