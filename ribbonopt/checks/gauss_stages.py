@@ -95,7 +95,8 @@ def gauss_stages(solution: Solution, ribbon: Ribbon, theta: Array) -> GaussStage
     # Packed together, in order, for quaternions that do not change their sign.
     at = np.concatenate([[0], degree * firsts, [len(places)]])
     pairs = zip(_fields(along), _fields(points), strict=True)
-    fields = RodFields(*(np.insert(a, at, b, axis=0) for a, b in pairs))
+    r, frames, n, m = (np.insert(a, at, b, axis=0) for a, b in pairs)
+    fields = RodFields(r, frames, n, m)
     # Any point of reference will do: it is for constants, which the energy does without.
     x, _ = ribbon.model.pack(fields, fields.r[0])
     if ribbon.stations:
@@ -126,7 +127,7 @@ def _controls(ribbon: Ribbon, fields: RodFields, fraction: Array, theta: Array) 
     stress = Stress(local[:3], local[3:], ca.SX.zeros(len(ribbon.law.states)))
     share = ca.SX.sym("share")
     place = start + share * (end - start)
-    controls = ca.substitute(ribbon.law.controls(stress), ribbon.position, place)
+    controls = ca.substitute(ribbon.law.loads_of(stress), ribbon.position, place)
     inputs = [local, ca.SX(0, 1), ribbon.parameters, share]
     function = Mapped(ca.Function("controls", inputs, [ca.densify(controls)]))
     loads = (np.einsum("ki,kij->kj", load, fields.frames) for load in (fields.n, fields.m))

@@ -76,7 +76,7 @@ class MovingSwitches:
         inputs = list(above.inputs)
         change = above.equations - below.values(*inputs)
         free = problem.algebraic.numel()
-        stress = law.controlled(inputs[0][-free:], ca.SX.zeros(len(law.states)))
+        stress = law.stress_of(inputs[0][-free:], ca.SX.zeros(len(law.states)))
         strains = law.branch(1).strain(stress) - law.branch(-1).strain(stress)
         # Both sides have an energy, so that the second of each is W_Leg.
         (_, up), (_, down) = (law.branch(kind).densities(stress, strains) for kind in (1, -1))

@@ -17,6 +17,7 @@ from ribbonopt.errors import ModelError
 
 from .implicit import ImplicitLaw
 from .law import ConstitutiveLaw, Stress
+from .membrane_mixture import rigid_stress
 from .parts import DECLARED, Relaxed, Singular, Switch
 
 BENDING, STRETCHING = "bending", "stretching"
@@ -60,11 +61,7 @@ def with_membrane(
 
 @dataclass(frozen=True, eq=False)
 class MembraneLaw(ConstitutiveLaw):
-    """A law of a compliance in edgewise bending, 1 / B1, and one in stretch, 1 / EA; 0 is none.
-
-    Of a mixture of both sides m2' = -(1 + e) n1 - m1 u3 + u1 m3 is zero, as if n1 were
-    (1 + e) n1 - u1 m3: `_as_rigid`.
-    """
+    """A law of a compliance in edgewise bending, 1 / B1, and one in stretch, 1 / EA; 0 is none."""
 
     base: ConstitutiveLaw
     soft: ca.SX
@@ -74,7 +71,7 @@ class MembraneLaw(ConstitutiveLaw):
 
     def __post_init__(self) -> None:
         """Declare what the other law declares, and what is new."""
-        for name in (*DECLARED, "states"):
+        for name in (*DECLARED, "states", "controls"):
             object.__setattr__(self, name, getattr(self.base, name))
         if self._bends:
             object.__setattr__(self, "components", (0, *self.base.components))
@@ -120,47 +117,39 @@ class MembraneLaw(ConstitutiveLaw):
             ca.vertcat(bent, found.estimate),
         )
 
+    def direct(self) -> ConstitutiveLaw:
+        return self._around(self.base.direct())
+
+    def indirect(self) -> ConstitutiveLaw:
+        return self._around(self.base.indirect())
+
     def relaxed(self, stress: Stress) -> Relaxed | None:
         found = self.base.relaxed(stress)
         if found is None:
             return None
-        bent, long = ca.SX.sym("m1"), ca.SX.sym("n3")
-        first, last = self._scaled(stress)
-        if self._bends:
-            found = Relaxed(
-                ca.vertcat(bent, found.controls),
-                found.u + ca.vertcat(ca.sqrt(self.soft) * bent, 0, 0),
-                found.cost + bent**2 / 2,
-                found.path,
-                ca.vertcat(first, found.estimate),
-            )
-        if not self.stretches:
-            return found
-        return Relaxed(
-            ca.vertcat(found.controls, long),
-            found.u,
-            found.cost + long**2 / 2,
-            found.path,
-            ca.vertcat(found.estimate, last),
-            ca.sqrt(self.long) * long,
+        given = ca.SX.sym("in plane", self._scaled(stress).numel())
+        there = self._unscaled(given)
+        bent = ca.vertcat(self.soft * there.m[0], 0, 0)
+        of_stress = ca.vertcat(self.soft * stress.m[0], 0, 0)
+        strain, dual = found.strain, found.complementary
+        return replace(
+            found,
+            controls=ca.vertcat(given, found.controls),
+            u=found.u + bent,
+            cost=found.cost + ca.sumsqr(given) / 2,
+            estimate=ca.vertcat(self._scaled(stress), found.estimate),
+            extension=self.extension(there),
+            strain=None if strain is None else strain + of_stress,
+            complementary=None if dual is None else dual + self._stored(stress),
         )
 
-    def controls(self, stress: Stress) -> ca.SX:
-        first, last = self._scaled(stress)
-        inner = self.base.controls(stress)
-        return ca.vertcat(
-            first if self._bends else ca.SX(0, 1), inner, last if self.stretches else ca.SX(0, 1)
-        )
+    def loads_of(self, stress: Stress) -> ca.SX:
+        return ca.vertcat(self._scaled(stress), self.base.loads_of(stress))
 
-    def controlled(self, z: ca.SX, own: ca.SX) -> Stress:
-        begin, end = int(self._bends), z.numel() - int(self.stretches)
-        found = self.base.controlled(z[begin:end], own)
-        n, m = found.n, found.m
-        if self._bends:
-            m += ca.vertcat(z[0] / ca.sqrt(self.soft), 0, 0)
-        if self.stretches:
-            n += ca.vertcat(0, 0, z[-1] / ca.sqrt(self.long))
-        return found._replace(n=n, m=m)
+    def stress_of(self, z: ca.SX, own: ca.SX) -> Stress:
+        count = int(self._bends) + int(self.stretches)
+        found, there = self.base.stress_of(z[count:], own), self._unscaled(z[:count])
+        return found._replace(n=found.n + there.n, m=found.m + there.m)
 
     def sheet_slope(self, stress: Stress, u: ca.SX) -> ca.SX | None:
         return self.base.sheet_slope(stress, u)
@@ -173,6 +162,12 @@ class MembraneLaw(ConstitutiveLaw):
 
     def own_guess(self, stress: Stress) -> ca.SX:
         return self.base.own_guess(stress)
+
+    def most_rate(self) -> ca.SX:
+        return self.base.most_rate()
+
+    def controls_for(self, stress: Stress, rates: ca.SX) -> ca.SX:
+        return self.base.controls_for(stress, rates)
 
     def singular(self, stress: Stress) -> tuple[Singular, ...]:
         return self.base.singular(self._as_rigid(stress) if self.mixture else stress)
@@ -198,9 +193,23 @@ class MembraneLaw(ConstitutiveLaw):
         """Whether B1 is finite."""
         return not self.soft.is_zero()
 
-    def _scaled(self, stress: Stress) -> tuple[ca.SX, ca.SX]:
-        """Return m1 and n3 as controls of an energy of which each has half its square."""
-        return ca.sqrt(self.soft) * stress.m[0], ca.sqrt(self.long) * stress.n[2]
+    def _around(self, base: ConstitutiveLaw) -> ConstitutiveLaw:
+        return self if base is self.base else replace(self, base=base)
+
+    def _scaled(self, stress: Stress) -> ca.SX:
+        """Return m1 and n3, those that do work, as controls whose energies are half their squares.
+
+        They come first: those of the other law may be known by their names, from the end.
+        """
+        both = [ca.sqrt(self.soft) * stress.m[0]] if self._bends else []
+        both += [ca.sqrt(self.long) * stress.n[2]] if self.stretches else []
+        return ca.vertcat(ca.SX(0, 1), *both)
+
+    def _unscaled(self, given: ca.SX) -> Stress:
+        """Return the stress of such controls alone."""
+        m1 = given[0] / ca.sqrt(self.soft) if self._bends else 0
+        n3 = given[-1] / ca.sqrt(self.long) if self.stretches else 0
+        return Stress(ca.vertcat(0, 0, n3), ca.vertcat(m1, 0, 0), ca.SX(0, 1))
 
     def _without(self, u: ca.SX) -> ca.SX:
         """Return strains without u1, if that is none of the other law's."""
@@ -219,27 +228,6 @@ class MembraneLaw(ConstitutiveLaw):
         return not u2.is_constant() or not self.soft.is_constant() or bool(u2 == self.soft)
 
     def _as_rigid(self, stress: Stress) -> Stress:
-        """Return the stress under which a rigid mixture is what this one is.
-
-        What a mixture keeps zero is D = n1* + m1 u3 + c2 - K', n1* = (1 + e) n1 - u1 m3. In D' the
-        strain u2 has the factor -(n3* + m3 u3 - m1^2 t), t = du3 / dm3, and the rest of what is new
-        there acts as a load along d1.
-        """
-        n, m, own, load, couple = stress
-        soft, long = self.soft, self.long
-        rigid, moment = self.base if self.mixture else self.base.branch(0), ca.SX.sym("m", 3)
-        torsion = rigid.strain(stress._replace(m=moment))[2]
-        along = ca.jtimes(torsion, moment, ca.SX([0.0, 0.0, 1.0]))
-        u3, t = ca.substitute([torsion, along], [moment], [m])
-        u1, e = soft * m[0], long * n[2]
-        f, c = (ca.SX.zeros(3) if some is None else some for some in (load, couple))
-        n1 = (1 + e) * n[0] - u1 * m[2]
-        n3 = (1 + e) * n[2] - long * n[0] ** 2 - soft * (m[2] ** 2 - m[0] ** 2)
-        slopes = (ca.jacobian(some, self.position) for some in (soft, long))
-        soft_rate, long_rate = slopes
-        new = e * (2 * n[1] * u3 - f[0])
-        new += n[0] * (long_rate * n[2] - long * (u1 * n[1] + f[2]))
-        new += soft * m[2] * (c[0] - u3 * m[1] - (1 + e) * n[1]) + u1 * (2 * c[2] + u1 * m[1])
-        new -= m[0] * (t * u1 * m[1] + soft_rate * m[2])
-        force = ca.vertcat(f[0] - new, f[1], f[2])
-        return Stress(ca.vertcat(n1, n[1], n3), m, own, force, couple)
+        """Return the stress under which a rigid mixture is what this one is."""
+        rigid = self.base if self.mixture else self.base.branch(0)
+        return rigid_stress(rigid, self.soft, self.long, self.position, stress)
