@@ -127,7 +127,7 @@ class Chord(Shape):
         """Whether these ends hold a straight ribbon longer than it is."""
         (start, first), (end, _) = self.start, self.end
         length = float((end - start) @ first[:, 2])
-        return length > self.length and self._along(length)
+        return length > self.length and self._along(length) and not self.straight
 
     def _along(self, length: float) -> bool:
         """Whether the end is that of a straight ribbon of a length."""

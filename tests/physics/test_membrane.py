@@ -5,13 +5,17 @@ from typing import Any
 
 import numpy as np
 import pytest
-from membrane_truth import Law, integrated, rod, sheet, smoothed
+from membrane_truth import Law, integrated, rod, sheet, smoothed, turned
+from scipy.integrate import solve_ivp
 from scipy.spatial.transform import Rotation
+from test_mixture import clamp as random_clamp
+from test_mixture import draw
 
 from ribbonopt import prepare, solve, summarize
 from ribbonopt.checks.stability import negative_directions, second_variation
 from ribbonopt.scene import (
     Boundary,
+    Collocation,
     Directors,
     End,
     Kirchhoff,
@@ -22,6 +26,7 @@ from ribbonopt.scene import (
     Sadowsky,
     Scene,
     Variational,
+    Wunderlich,
 )
 from ribbonopt.solution.solution import Solution
 
@@ -187,3 +192,57 @@ def test_its_equations_serve_any_stiffness() -> None:
     prepared = prepare(scene)
     other = replace(scene, membrane=Membrane(bending=50.0, stretching=2e4))
     assert off(prepared.solve(other), (sheet(1),), *C[:2], B1=50.0, EA=2e4) < 1e-9
+
+
+def test_wunderlichs_law_by_both_forms() -> None:
+    """States of the law's own go through; equilibrium and least energy share no equations of it."""
+    scene = clamp(Wunderlich(width=0.05), *C[:2], membrane=Membrane(**FINITE), tolerance=1e-9)
+    found = solve(scene)
+    mesh = Collocation(intervals=40)
+    least = solve(replace(scene, formulation="energy", tolerance=None, transcription=mesh))
+    assert found.verified and least.verified
+    assert least.energy == pytest.approx(found.energy, abs=1e-8)
+    np.testing.assert_allclose(least.n0, found.n0, atol=1e-5)
+    s = np.linspace(0, 1, 9)
+    for name in ("H", "n_dot_m"):
+        assert np.ptp(found.sample(s, name)) < 1e-9
+    np.testing.assert_allclose(found.sample(s, "u1"), found.sample(s, "m1") / 7, atol=1e-12)
+    sadowsky = solve(replace(scene, law=Sadowsky()))
+    narrow = solve(replace(scene, law=Wunderlich(width=0.01)))
+    gaps = [np.abs(one.n0 - sadowsky.n0).max() for one in (found, narrow)]
+    assert gaps[1] < gaps[0] / 5 < 0.05
+
+
+@pytest.mark.parametrize(("number", "kinds"), [(4, (-1, 0, 1, -1)), (5, (1, 0, 1))])
+def test_mixtures_integrated_again(number: int, kinds: tuple[int, ...]) -> None:
+    """Along them u2 is what keeps D = (1 + e) n1 + m1 m3 (1/4 - 1/B1) zero, written out here."""
+    place, frame = draw(number)
+    B1, EA = 100.0, 1e5
+    scene = replace(random_clamp(place, frame), membrane=Membrane(B1, EA))
+    found = solve(scene)
+    assert found.verified and found.sheets == kinds
+    ends = [0.0, *found.switch_points, 1.0]
+    i = kinds.index(0)
+
+    def mixed(n: Array, m: Array) -> Array:
+        e, share = n[2] / EA, 1 / 4 - 1 / B1
+        K = (1 + e) * n[2] - n[0] ** 2 / EA + share * (m[2] ** 2 - m[0] ** 2)
+        turning = (1 + e) * n[1] * (m[2] / 4 + share * m[2]) - n[0] * n[1] * m[0] / (B1 * EA)
+        return np.array([m[0] / B1, turning / K, m[2] / 4])
+
+    def rates(s: float, y: Array) -> Array:
+        R, n, m = y[3:12].reshape(3, 3), y[12:15], y[15:18]
+        along = (1 + R[:, 2] @ n / EA) * R[:, 2]
+        turn = R @ turned(mixed(R.T @ n, R.T @ m))
+        return np.concatenate([along, turn.ravel(), np.zeros(3), np.cross(n, along)])
+
+    def state(s: float) -> Array:
+        R = np.stack([found.sample(s, f"d{j}") for j in (1, 2, 3)], axis=1)
+        return np.concatenate([found.sample(s, "r"), R.ravel(), *map(found.sample, (s, s), "nm")])
+
+    run = solve_ivp(rates, ends[i : i + 2], state(ends[i]), "DOP853", rtol=1e-12, atol=1e-12)
+    last = state(ends[i + 1])
+    np.testing.assert_allclose(run.y[:12, -1], last[:12], rtol=0, atol=1e-7)
+    np.testing.assert_allclose(run.y[12:, -1], last[12:], rtol=1e-7, atol=1e-6)
+    m2 = np.einsum("ik,ik->k", run.y[4:12:3], run.y[15:])
+    assert np.abs(m2).max() < 1e-6 * np.abs(run.y[15:]).max()
