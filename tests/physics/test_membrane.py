@@ -1,6 +1,7 @@
 """Finite stiffness in the ribbon's own plane: clamps integrated again, rods, limits, mixtures."""
 
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -11,11 +12,12 @@ from scipy.spatial.transform import Rotation
 from test_mixture import clamp as random_clamp
 from test_mixture import draw
 
-from ribbonopt import prepare, solve, summarize
+from ribbonopt import Continuation, buckling_loads, load_scene, prepare, solve, summarize
 from ribbonopt.checks.stability import negative_directions, second_variation
 from ribbonopt.scene import (
     Boundary,
     Collocation,
+    ContinuationStage,
     Directors,
     End,
     Kirchhoff,
@@ -29,6 +31,7 @@ from ribbonopt.scene import (
     Wunderlich,
 )
 from ribbonopt.solution.solution import Solution
+from ribbonopt.studies.continuation.walk.points import BRANCH_POINT
 
 Array = np.ndarray
 #: end position, rotation vector, and the sheets of Sadowsky's ribbon: SCIENCE-NEXT, head
@@ -246,3 +249,19 @@ def test_mixtures_integrated_again(number: int, kinds: tuple[int, ...]) -> None:
     np.testing.assert_allclose(run.y[12:, -1], last[12:], rtol=1e-7, atol=1e-6)
     m2 = np.einsum("ik,ik->k", run.y[4:12:3], run.y[15:])
     assert np.abs(m2).max() < 1e-6 * np.abs(run.y[15:]).max()
+
+
+def test_it_sinks_in_its_plane_before_it_buckles_sideways(configs: Path) -> None:
+    """Two searches that share none of it: an infinitesimal deflection, and a branch point.
+
+    The smooth law at delta = 1 is the rod with B2 = B3 = 1 but has no linearisation at m = 0.
+    """
+    scene = replace(load_scene(configs / "lateral_buckling.yaml"), record={})
+    scene = replace(scene, membrane=Membrane(bending=10.0), parameters={"q": 13.0})
+    bare = replace(scene, law=Variational(delta=1.0), continuation=None)
+    (found, *_) = buckling_loads(bare, "parameters.q", 10.0, 30.0)
+    stage = ContinuationStage("parameters.q", to=16.0, from_=13.0, largest=1.0)
+    walk = Continuation(replace(scene, law=Kirchhoff(B2=1.0, B3=1.0), continuation=stage))
+    (point,) = (p for p in walk if p.kind == BRANCH_POINT)
+    assert found.value == pytest.approx(point.row["parameters.q"], abs=1e-8)
+    assert found.value > 12.85376332 * 1.1  # rigid in its plane: SCIENCE-NEXT, section 7
