@@ -16,11 +16,12 @@ from typing import TYPE_CHECKING
 import casadi as ca
 
 from .implicit import ImplicitLaw
-from .parts import Relaxed, Singular, Switch
-from .parts import Stress as Stress
+from .parts import Relaxed, Singular, Stress, Switch
 
 if TYPE_CHECKING:
     from .natural import NaturalStrains
+
+__all__ = ["ConstitutiveLaw", "RibbonLaw", "Stress"]
 
 
 class ConstitutiveLaw(ABC):

@@ -1,4 +1,4 @@
-"""What laws read, and what they hand to generic code: stress; switches, singularities, programs."""
+"""What laws read, and what they hand to generic code: switches, singularities, programs."""
 
 from __future__ import annotations
 
