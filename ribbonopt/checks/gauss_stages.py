@@ -18,6 +18,7 @@ from ribbonopt.problem import Ribbon
 from ribbonopt.problem.held import held_between
 from ribbonopt.solution.solution import Solution
 from ribbonopt.transcription import Tableau, gauss
+from ribbonopt.transcription.buffered import Mapped
 from ribbonopt.transcription.tableaus import MAX_DEGREE
 
 from .zero_moment import lacks_linearisation
@@ -47,7 +48,7 @@ class GaussStages:
     firsts : (k,) integer array
         Elements that begin at a switch.
     x_switch, z_switch : (k, nx), (k, nz) arrays
-        States and moments there.
+        States and controls there.
     switching : (N K,) array
         What changes its sign where the law switches.
     error : float
@@ -67,12 +68,12 @@ class GaussStages:
     error: float
 
 
-def gauss_stages(solution: Solution, ribbon: Ribbon) -> GaussStages:
+def gauss_stages(solution: Solution, ribbon: Ribbon, theta: Array) -> GaussStages:
     """Return a solution at its own stages where they are those of a Gauss scheme, else at others.
 
     At its own stages it is an equilibrium of the discrete energy too, to rounding, whatever its
     mesh: there the estimated error tells how near it is to the true one. At others it is not, and
-    the gradient of the energy tells.
+    the gradient of the energy tells. `theta` are the numbers of the ribbon.
     """
     trajectory, degree = solution.trajectory, solution.dense.blocks.degree
     widths, parts = np.diff(trajectory.nodes), 1
@@ -104,7 +105,7 @@ def gauss_stages(solution: Solution, ribbon: Ribbon) -> GaussStages:
         ends = trajectory.ends[[0, *turns, -1]]
         x = np.hstack([x, _held(solution, ribbon, np.insert(places, at, ends), fields.r)])
     x = np.hstack([x, *(every[own_name(name)][:, None] for name in ribbon.law.states)])
-    z = _controls(every, ribbon, solution, np.insert(places, at, trajectory.ends[[0, *turns, -1]]))
+    z = _controls(every, ribbon, np.insert(places, at, trajectory.ends[[0, *turns, -1]]), theta)
     rows = at + np.arange(len(at))
     inside = np.delete(np.arange(len(x)), rows)
     between = rows[1:-1]
@@ -123,23 +124,20 @@ def gauss_stages(solution: Solution, ribbon: Ribbon) -> GaussStages:
     )
 
 
-def _controls(o: Mapping[str, Array], ribbon: Ribbon, solution: Solution, places: Array) -> Array:
-    """Return the controls (k, nz) of named outputs (k, ...) at fractions (k,)."""
-    law, m = ribbon.law, np.column_stack([o["m1"], o["m2"], o["m3"]])
-    if not law.controls:
-        return m[:, list(law.components)]
-    n = np.column_stack([o["n1"], o["n2"], o["n3"]])
-    own = np.column_stack([o[own_name(name)] for name in law.indirect().states])
-    symbols = [
-        ca.SX.sym(name, size) for name, size in zip("nmo", (3, 3, own.shape[1]), strict=True)
-    ]
-    inputs = [*symbols, ribbon.parameters, ribbon.position]
-    function = ca.Function("controls", inputs, [law.controls_at(Stress(*symbols))])
-    known = dict(zip(solution.problem.parameter_names, solution.dense.theta, strict=True))
-    theta = np.array([known.get(name, 0.0) for name in ribbon.theta])
-    s = solution.posed.scene.interval[0] + solution.posed.length * places
-    repeated = np.repeat(theta[:, None], len(s), axis=1)
-    return np.array(function.map(len(s))(n.T, m.T, own.T, repeated, s[None])).T
+def _controls(o: Mapping[str, Array], ribbon: Ribbon, fraction: Array, theta: Array) -> Array:
+    """Return the controls (k, nz) of the law, of named outputs at fractions (k,) of the length."""
+    states = [own_name(name) for name in ribbon.law.indirect().states]
+    local, (start, end) = ca.SX.sym("local", 6 + len(states)), ribbon.interval
+    share = ca.SX.sym("share")
+    place = start + share * (end - start)
+    controls = ribbon.law.controls_at(Stress(local[:3], local[3:6], local[6:]))
+    controls = ca.densify(ca.substitute(controls, ribbon.position, place))
+    function = Mapped(
+        ca.Function("controls", [local, ca.SX(0, 1), ribbon.parameters, share], [controls])
+    )
+    given = [o[f"{load}{i}"] for load in "nm" for i in (1, 2, 3)] + [o[name] for name in states]
+    (found,) = function(np.column_stack(given), np.empty(0), theta, fraction)
+    return found.reshape(len(fraction), -1)
 
 
 def _held(solution: Solution, ribbon: Ribbon, fraction: Array, r: Array) -> Array:

@@ -114,7 +114,7 @@ class Energy:
 
     def variation(self, solution: Solution, theta: Array) -> Variation:
         """Return the second variation at a solution, which has phases if its law needs them."""
-        at, none = gauss_stages(solution, self.ribbon), np.empty(0)
+        at, none = gauss_stages(solution, self.ribbon, theta), np.empty(0)
         N, K, nx = len(at.widths), at.tableau.degree, at.x.shape[1]
         v, kinds = np.hstack([at.x, at.z]), self._kinds(solution, at)
         nv = v.shape[1]

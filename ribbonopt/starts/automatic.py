@@ -17,7 +17,6 @@ import numpy as np
 
 from ribbonopt.attempt.ledger import Ledger
 from ribbonopt.attempt.structure import Structure
-from ribbonopt.errors import ConvergenceError
 from ribbonopt.guess import Guess, ShapeGuess
 from ribbonopt.guess.shapes import Chord, Shape
 from ribbonopt.mechanics.laws.catalogue import capabilities
@@ -34,7 +33,7 @@ from ribbonopt.scene import Law, Variational
 from ribbonopt.solution.solution import Solution
 
 from .energy import MESH, least_energy_of
-from .first_shape import compresses, follower_loads, loaded, shapes_for
+from .first_shape import compresses, follower_loads, indeterminate, loaded, shapes_for
 from .homotopy import HomotopyPath, follow
 from .loops import closed_posed, fundamental_scene
 from .tracking import smooth_of
@@ -130,16 +129,11 @@ class Automatic:
         own = posed.scene.law
         law, guess = first_law(own, FIRST), ShapeGuess(shape)
         last = sharpness(own, self._last)
-        if isinstance(shape, Chord) and shape.straight and not _bends(posed, shape):
+        if isinstance(shape, Chord) and _fits(posed, shape) and not _bends(posed, shape):
             # At this delta the law is linear: it can be bent from a straight ribbon.
             started = self._from_straight(posed, shape, ledger)
             if not started and not loaded(posed):
-                raise ConvergenceError(
-                    "the ribbon is straight and without stress: it cannot bend in its own plane, "
-                    "so that the loads of its ends there are not determined; shorten or turn it, "
-                    "if only a little",
-                    "indeterminate",
-                )
+                raise indeterminate(posed, shape)
             return started
         points: list[Solution] = []
         start: Guess = guess
@@ -193,6 +187,11 @@ class Automatic:
         step = f"newton in {followed.steps} steps{reached}{lost}"
         ledger.note(step, time.perf_counter() - started, followed.iterations)
         return followed
+
+
+def _fits(posed: Posed, chord: Chord) -> bool:
+    """Whether a straight ribbon fits the ends of a chord, stretched if it can be."""
+    return chord.straight or (chord.taut and capabilities(posed.scene).stretches)
 
 
 def _bends(posed: Posed, chord: Chord) -> bool:

@@ -15,22 +15,7 @@ from ribbonopt.errors import ModelError
 
 from .implicit import ImplicitLaw
 from .law import ConstitutiveLaw, Stress
-from .parts import Relaxed, Singular, Switch
-
-_DECLARED = (
-    "components",
-    "variational",
-    "bounds_eta",
-    "developable",
-    "smooth",
-    "linear_at_zero",
-    "natural",
-    "spins",
-    "kinked",
-    "sheeted",
-    "switch_name",
-    "closed_moment",
-)
+from .parts import DECLARED, Relaxed, Singular, Switch
 
 
 def tapered(law: ConstitutiveLaw, width: ca.SX, position: ca.SX) -> ConstitutiveLaw:
@@ -64,7 +49,7 @@ class TaperedLaw(ConstitutiveLaw):
     mixture: bool = False
 
     def __post_init__(self) -> None:
-        for name in _DECLARED:
+        for name in DECLARED:
             object.__setattr__(self, name, getattr(self.law, name))
 
     def strain(self, stress: Stress) -> ca.SX:
