@@ -10,7 +10,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
@@ -53,6 +53,8 @@ class Automatic:
     """Everything that is built for the automatic start of one structure of scenes, when needed."""
 
     posed: Posed
+    _energies: dict[type, Structure] = field(default_factory=dict)
+    _homotopies: dict[type, Structure] = field(default_factory=dict)
 
     def guesses(self, posed: Posed, ledger: Ledger, shape: Shape | None = None) -> Iterator[Guess]:
         """Yield guesses for a scene of this structure, the best first; each is made when asked for.
@@ -88,16 +90,17 @@ class Automatic:
         if straight and not _is_bent(straight[-1]):
             yield from reversed(straight[last])
 
-    @cached_property
-    def _energy(self) -> Structure:
-        closed = closed_posed(self.posed)
-        return Structure.least_energy(
-            least_energy_of(closed, first_law(self.posed.scene.law, FIRST))
-        )
+    def _energy(self, law: Law) -> Structure:
+        """What finds least energies; the numbers of a law may tell with which it begins."""
+        if type(law) not in self._energies:
+            least = least_energy_of(closed_posed(self.posed), law)
+            self._energies[type(law)] = Structure.least_energy(least)
+        return self._energies[type(law)]
 
-    @cached_property
-    def _homotopy(self) -> Structure:
-        return Structure.of(smooth_of(self.posed, first_law(self.posed.scene.law, FIRST)))
+    def _homotopy(self, law: Law) -> Structure:
+        if type(law) not in self._homotopies:
+            self._homotopies[type(law)] = Structure.of(smooth_of(self.posed, law))
+        return self._homotopies[type(law)]
 
     @cached_property
     def _piece(self) -> Automatic | None:
@@ -167,7 +170,7 @@ class Automatic:
 
     def _least(self, posed: Posed, law: Law, start: Guess, ledger: Ledger) -> Solution:
         """Least energy from a guess; worth nothing unless converged."""
-        attempt = self._energy.attempt(least_energy_of(closed_posed(posed), law))
+        attempt = self._energy(law).attempt(least_energy_of(closed_posed(posed), law))
         attempt.run(start, check=False)
         assert attempt.best is not None  # whether converged or not
         (report,) = attempt.ledger.reports
@@ -180,7 +183,7 @@ class Automatic:
         self, posed: Posed, law: Law, guess: Guess, last: float, ledger: Ledger
     ) -> HomotopyPath:
         started = time.perf_counter()
-        followed = follow(self._homotopy, posed, law, guess, last)
+        followed = follow(self._homotopy(law), posed, law, guess, last)
         reached = _delta(followed.points[-1].scene.law) if followed.points else " (lost at once)"
         lost = "" if followed.complete or not followed.points else " (lost there)"
         step = f"newton in {followed.steps} steps{reached}{lost}"
