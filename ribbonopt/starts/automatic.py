@@ -91,7 +91,7 @@ class Automatic:
             yield from reversed(straight[last])
 
     def _energy(self, law: Law) -> Structure:
-        """What finds least energies; the numbers of a law may tell with which it begins."""
+        """Return what finds least energies: the numbers of a law may tell which it begins with."""
         if type(law) not in self._energies:
             least = least_energy_of(closed_posed(self.posed), law)
             self._energies[type(law)] = Structure.least_energy(least)

@@ -175,7 +175,7 @@ def is_linear(law: Law, up_to: float = math.inf) -> bool:
         return False
     if found.smooth:
         return True
-    leap = found.switching(Stress.of_moment(ca.DM([0, 0, up_to]))).leap
+    leap = found.switching(Stress.of_moment(ca.SX(ca.DM([0, 0, up_to])))).leap
     return bool(ca.evalf(leap) == 0)
 
 
