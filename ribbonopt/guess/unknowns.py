@@ -88,7 +88,13 @@ def _from_fields(
     x, constants = ribbon.model.pack(fields, reference)
     start, end = (problem.parameter_names.index(f"interval.{e}") for e in ("start", "end"))
     s = theta[start] + (theta[end] - theta[start]) * unique
-    return np.hstack([x, _estimates(problem, fields, theta, s)])[where], constants
+    estimates = _estimates(problem, fields, theta, s)
+    first, law = estimates.shape[1] - len(ribbon.law.controls), ribbon.law
+    places = {name: i for i, name in enumerate(law.states)}
+    places |= {name: first + i for i, name in enumerate(law.controls)}
+    for name in places.keys() & fields.own.keys():
+        estimates[:, places[name]] = fields.own[name]
+    return np.hstack([x, estimates])[where], constants
 
 
 def _estimates(problem: BoundaryValueProblem, fields: RodFields, theta: Array, s: Array) -> Array:

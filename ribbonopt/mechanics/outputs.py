@@ -16,6 +16,7 @@ from .ends.conditions import CrossSection
 from .laws.law import ConstitutiveLaw, Stress
 from .section import Section
 
+OWN = "own."  # before the name of a state of the law's own
 SLOPE = "slope"  # at most 1 where one sheet allows the strains; in its absence |eta| tells
 
 
@@ -60,14 +61,14 @@ def sheet_slopes(values: Mapping[str, Array]) -> Array:
 
 
 def singular(law: ConstitutiveLaw, stress: Stress) -> ca.SX:
-    """Where a law is singular at complex s, rows (re, im, size): `laws.law.Singular`."""
+    """Where a law is singular at complex s, rows (re, im, size, fades): `laws.law.Singular`."""
     rows = [ca.horzcat(*where) for where in law.singular(stress)]
-    return ca.vertcat(ca.SX(0, 3), *rows)
+    return ca.vertcat(ca.SX(0, 4), *rows)
 
 
 def own_name(state: str) -> str:
     """Name of the output that holds a state of the law's own."""
-    return f"own.{state}"
+    return OWN + state
 
 
 def _gram_error(rod: Section) -> ca.SX:

@@ -34,6 +34,8 @@ from ribbonopt.transcription import Mesh
 from .intervals import intervals_for
 from .tried import Tried, bluntness
 
+# Elements beside the end of a phase where strains fade away: to a millionth of one.
+LEVELS, RATIO = 7, 0.15
 COARSER = 3  # intervals of starts, of degree 3, to one of a scene
 
 
@@ -82,6 +84,14 @@ class Search(Tried):
         if done and self._leaps_nowhere(found) and self.plain.run(found, quick=True):
             self._kept(self.plain)
             return True
+        if done and self.structure.ribbon.law.fades:
+            # A start on small elements leads nowhere before it is known where phases meet.
+            gathered = found.mesh.gathered(LEVELS, RATIO)
+            finer = structure.attempt(
+                self.posed, self.ledger, gathered, found.trajectory.ends[1:-1]
+            )
+            if finer.run(found, quick=True):
+                attempt = finer
         self._kept(attempt)
         return done
 
@@ -120,12 +130,19 @@ class Search(Tried):
                     self.tried.add(arcs.kinds)
         return sharp is not guess and self.run(guess, quick=True)
 
+    def run_minimum(self, guess: Solution) -> bool:
+        """Try what minimises the energy of the law itself, in the phases that it shows."""
+        if self.phases_help and self.changes_sign(guess):
+            return self.run_in(sign_changes(guess), guess)
+        return self.plain.run(guess, quick=True)
+
     def run_all(self, guesses: Iterable[Guess]) -> bool:
         """Try the guesses of an automatic start, equilibria of the smooth law among them."""
         first: Guess | None = None
         for guess in guesses:
             if isinstance(guess, Solution):
-                done = self.run_smooth(guess)
+                minimum = bool(guess.problem.recovered)
+                done = self.run_minimum(guess) if minimum else self.run_smooth(guess)
             else:
                 done = self.run(guess, quick=True)
             if done:

@@ -15,6 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ribbonopt.arrays import Array
+from ribbonopt.mechanics.outputs import OWN
+from ribbonopt.mechanics.section import RodFields
 from ribbonopt.problem import BoundaryValueProblem
 from ribbonopt.transcription.buffered import Buffered, Mapped
 from ribbonopt.transcription.known import sampled
@@ -87,6 +89,13 @@ class Trajectory:
                 v[rows, nx:] = self.dense.algebraic(i, local[rows])
         return self._named(v, fraction, phase)
 
+    def fields(self, fraction: Array) -> RodFields:
+        """Fields at fractions (k,), own states of the law among them, if it has any."""
+        o = self.outputs(fraction)
+        own = {name[len(OWN) :]: value for name, value in o.items() if name.startswith(OWN)}
+        frames = np.stack([o["d1"], o["d2"], o["d3"]], axis=2)
+        return RodFields(o["r"], frames, o["n"], o["m"], own)
+
     def states(self, fraction: Array) -> Array:
         """States (k, nx) at fractions."""
         phase, local = self._local(fraction)
@@ -124,10 +133,10 @@ class Trajectory:
         return self._named(self.dense.at_nodes, self.nodes, phase)
 
     def singular_at_stages(self, phase: int) -> Array:
-        """Rows (k, q, 3) of (a, b, size) at the stages of a phase: see `Phase.singular`."""
+        """Rows (k, q, 4) of (a, b, size, fades) at the stages of a phase: see `Phase.singular`."""
         count = self.problem.phases[phase].singular.shape[0]
         if not count:
-            return np.empty((0, 0, 3))
+            return np.empty((0, 0, 4))
         v, fraction, _, phases = self.stages
         if len(self.problem.phases) > 1:
             rows = phases == phase
@@ -135,7 +144,7 @@ class Trajectory:
         places = self._places(phase, fraction, self._extent[0] + self.length * fraction)
         function = self.problem.kept(_singular)[phase]
         (found,) = function(v, self.dense.constants, self.dense.theta, places)
-        return found.reshape(-1, count, 3)
+        return found.reshape(-1, count, 4)
 
     @property
     def length(self) -> float:

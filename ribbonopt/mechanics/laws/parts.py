@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import casadi as ca
@@ -22,12 +23,14 @@ class Singular(NamedTuple):
     """Where strains are singular as functions of complex s: where `re` + i `im` is zero.
 
     `re` and `im` have one dimension, whichever; `size` says by how much strains change there, as a
-    moment. Near the real axis that is a layer, which a mesh must resolve to be of use.
+    moment. Near the real axis that is a layer, which a mesh must resolve to be of use. Where it
+    `fades` (1, else 0) strains change there in proportion to the distance, but for a logarithm.
     """
 
     re: ca.SX
     im: ca.SX
     size: ca.SX
+    fades: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -36,6 +39,10 @@ class Relaxed:
 
     `controls` (nz,) symbols; `u` (3,) strains, `cost` per length and `path` (<= 0) as expressions
     of them; `estimate` (nz,), where to start, of the stress.
+
+    A law with states of its own says of these controls also the `rates` of its states, and at a
+    stress: the `strain` (3,) that they should be, the `complementary` energy, and `own`, states of
+    the law that are costates here, by name.
     """
 
     controls: ca.SX
@@ -43,3 +50,7 @@ class Relaxed:
     cost: ca.SX
     path: ca.SX
     estimate: ca.SX
+    rates: ca.SX | None = None
+    strain: ca.SX | None = None
+    complementary: ca.SX | None = None
+    own: Mapping[str, ca.SX] = field(default_factory=dict)
