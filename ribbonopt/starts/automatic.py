@@ -24,6 +24,7 @@ from ribbonopt.mechanics.laws.catalogue import capabilities
 from ribbonopt.mechanics.laws.smooth import (
     ROD,
     first_law,
+    first_laws,
     in_family,
     named,
     sharpened,
@@ -81,13 +82,14 @@ class Automatic:
                 what = "shape that fits the ends" if number == 1 else "shapes that fit the ends"
                 first = f"the first {'' if number == 1 else f'{number} '}{what} led nowhere"
                 ledger.fall_back("shape", f"{first}; the automatic start went on from another")
-            points = self._points(posed, start, ledger, met)
-            if not points and not straight and isinstance(start, Chord) and start.straight:
-                # Far from where the energy began: its loads are brought on from none.
-                straight = self._from_straight(posed, replace(start, bow=0.0), ledger)
-                # What stays straight may be the top of a hill: other shapes come first.
-                points = straight if straight and _is_bent(straight[-1]) else []
-            yield from reversed(points[last])
+            for law in first_laws(posed.scene.law, FIRST):
+                points = self._points(posed, start, law, ledger, met)
+                if not points and not straight and isinstance(start, Chord) and start.straight:
+                    # Far from where the energy began: its loads are brought on from none.
+                    straight = self._from_straight(posed, replace(start, bow=0.0), ledger)
+                    # What stays straight may be the top of a hill: other shapes come first.
+                    points = straight if straight and _is_bent(straight[-1]) else []
+                yield from reversed(points[last])
         if straight and not _is_bent(straight[-1]):
             yield from reversed(straight[last])
 
@@ -124,14 +126,14 @@ class Automatic:
                 yield unfolded(guess, posed)
 
     def _points(
-        self, posed: Posed, shape: Shape, ledger: Ledger, met: list[float]
+        self, posed: Posed, shape: Shape, law: Law, ledger: Ledger, met: list[float]
     ) -> list[Solution]:
-        """Equilibria on the way down, the nearest to the scene's law last.
+        """Equilibria on the way down from a smooth law, the nearest to the scene's law last.
 
         `met` are energies of rods from which others led nowhere; this one's is added.
         """
         own = posed.scene.law
-        law, guess = first_law(own, FIRST), ShapeGuess(shape)
+        guess = ShapeGuess(shape)
         last = sharpness(own, self._last)
         if isinstance(shape, Chord) and shape.straight and not _bends(posed, shape):
             # At this delta the law is linear: it can be bent from a straight ribbon.

@@ -34,6 +34,15 @@ def first_law(law: Law, delta: float) -> Law:
     return Variational(delta=max(delta, sharpness(law, 0.0)))
 
 
+def first_laws(law: Law, delta: float) -> tuple[Law, ...]:
+    """Return the smooth laws to begin with, each where those before it lead nowhere.
+
+    One that may leap at moments beyond the usual ones is not the only one.
+    """
+    first = first_law(law, delta)
+    return (first,) if is_linear(first) or in_family(first) else (first, Variational(delta=delta))
+
+
 def sharpness(law: Law, other: float) -> float:
     """Return delta of a smooth law, the ratio of an uneven rod, `other` of any other law."""
     if isinstance(law, Variational):
