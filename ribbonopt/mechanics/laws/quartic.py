@@ -189,8 +189,8 @@ def _inverse(phi: Stiffening, side: int) -> ca.Function:
 
 
 def _held(value: ca.SX) -> ca.SX:
-    """Return a value to `QUANTUM` without its derivatives, which are those of steps."""
-    return ca.floor(value / QUANTUM) * QUANTUM
+    """Return a value to `QUANTUM`, odd in it, without derivatives: those of steps, zero."""
+    return ca.sign(value) * ca.floor(ca.fabs(value) / QUANTUM) * QUANTUM
 
 
 def _nonzero(value: ca.SX) -> ca.SX:
