@@ -1,4 +1,4 @@
-"""Extensible ribbons and Sano's in scenes: numbers of the science notes, limits, sides that leap."""
+"""Extensible ribbons and Sano's in scenes: numbers of the notes, limits, sides that leap."""
 
 from __future__ import annotations
 
@@ -16,7 +16,9 @@ from ribbonopt.errors import SceneError
 from ribbonopt.pipeline.prepared import solve
 from ribbonopt.scene import load_scene, loads_scene
 from ribbonopt.solution.solution import Solution
-from ribbonopt.studies.buckling.buckling import buckling_loads
+from ribbonopt.studies.continuation.continuation import Continuation
+from ribbonopt.studies.continuation.recorded import value_of
+from ribbonopt.studies.continuation.walk.points import BRANCH_POINT
 
 Solved = Callable[..., Solution]
 Array = np.ndarray
@@ -31,7 +33,10 @@ name: s-clamp
 law: {{type: {law}}}
 boundary:
   start: {{support: clamped, position: [0, 0, 0], directors: identity}}
-  end: {{support: clamped, position: [0.3, 0.06, 0.9], directors: {{rotation_vector: [0, -0.6, 0.5]}}}}
+  end:
+    support: clamped
+    position: [0.3, 0.06, 0.9]
+    directors: {{rotation_vector: [0, -0.6, 0.5]}}
 {more}
 """
 WIDE = "extensible, width: 0.05, thickness: 2.0e-5, poisson_ratio: 0.3"  # k* = 0.0024
@@ -162,9 +167,12 @@ def test_clamps_tend_to_those_of_sadowsky_and_of_rods(solved: Solved) -> None:
 def test_lateral_buckling_begins_at_the_load_of_the_rod(
     configs: Path, law: str, stiffnesses: float
 ) -> None:
-    scene = load_scene(configs / "lateral_buckling.yaml", [f"law={{type: {law}}}"])
-    first, *_ = buckling_loads(scene, "parameters.q", 1, 20)
-    assert first.value == pytest.approx(12.85376332 * np.sqrt(stiffnesses), rel=1e-8)
+    overrides = [f"law={{type: {law}}}", "parameters.q=13"]
+    stage = "continuation={parameter: parameters.q, from: 13, to: 16, switch: false}"
+    scene = load_scene(configs / "lateral_buckling.yaml", [*overrides, stage])
+    (crossing,) = [point for point in Continuation(scene) if point.kind == BRANCH_POINT]
+    expected = 12.85376332 * np.sqrt(stiffnesses)
+    assert value_of(crossing.row) == pytest.approx(expected, abs=1e-7)
 
 
 # What stands in a scene beside the law.
@@ -207,7 +215,7 @@ def test_natural_curvature_shifts_moments_and_needs_no_curvature_across(solved: 
 def test_numbers_of_a_ribbon_in_metres_are_those_of_its_law(configs: Path) -> None:
     """L = 0.3 m, w = 10 mm, h = 0.1 mm, nu = 0.38."""
     path = configs / "ribbon_si.yaml"
-    zeta = np.sqrt((1 - 0.38**2) / 60) * 0.01**2 / 1e-4
+    zeta = ((1 - 0.38**2) / 60) ** 0.5 * 0.01**2 / 1e-4
     said = {
         "extensible": "width: 0.01, thickness: 1.0e-4, poisson_ratio: 0.38",
         "sano": f"B2: {1 - 0.38**2}, B3: {2 * 0.62}, zeta: {zeta!r}",
