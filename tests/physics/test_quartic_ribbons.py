@@ -8,6 +8,7 @@ from pathlib import Path
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
+from scipy.spatial.transform import Rotation
 
 from ribbonopt.accuracy.estimate import estimate_error
 from ribbonopt.checks.stability import negative_directions
@@ -127,6 +128,33 @@ def test_a_leap_without_phases_is_no_solution() -> None:
     found = s_clamp(WIDE, "switching: off")
     assert not found.verified
     assert any("strains jump" in problem for problem in found.verification.problems)
+
+
+def test_a_mixture_of_a_wide_ribbon_tends_to_sadowskys() -> None:
+    """A clamp whose ribbon by Sadowsky's law is a mixture in its middle (test_mixture.py)."""
+    rng = np.random.default_rng(1)
+    for _ in range(5):
+        q, distance, v = rng.normal(size=4), rng.uniform(0.3, 0.95), rng.normal(size=3)
+    turn = Rotation.from_quat(q[[1, 2, 3, 0]]).as_rotvec().tolist()
+    place = (distance * v / np.linalg.norm(v)).tolist()
+
+    def solved_with(law: str) -> Solution:
+        end = f"{{support: clamped, position: {place}, directors: {{rotation_vector: {turn}}}}}"
+        start = "{support: clamped, position: [0, 0, 0], directors: identity}"
+        text = f"name: mixture\nlaw: {{type: {law}}}\ntolerance: 1e-8\n"
+        found = solve(loads_scene(f"{text}boundary: {{start: {start}, end: {end}}}\n"))
+        assert found.verified and found.sheets == (-1, 0, 1)
+        return found
+
+    exact = solved_with("sadowsky")
+    sizes = "extensible, width: 0.05, poisson_ratio: 0.3, thickness: "
+    off = []
+    for thickness in (1e-5, 1e-6):
+        found = solved_with(f"{sizes}{thickness:.1e}")
+        off.append(exact.energy - found.energy)
+        H = found.sample(np.linspace(0, 1, 101), "H")
+        np.testing.assert_allclose(H, H[0], rtol=1e-7)
+    assert np.log10(off[0] / off[1]) == pytest.approx(0.5, abs=0.02)
 
 
 @pytest.mark.parametrize("tolerance", [1e-5, 1e-8])
