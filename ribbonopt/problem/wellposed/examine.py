@@ -160,6 +160,7 @@ def refuse_idle_settings(posed: Posed, ribbon: Ribbon, problem: BoundaryValuePro
     raise ModelError(
         f"switching: {list(scene.switching)} is of no use here: phases are for the inverted "
         "formulation and for laws whose strains may leap or kink (sadowsky, regularized, homotopy, "
-        f"wunderlich, extensible, sano), found {scene.formulation} and {scene.law.type}; leave it out",
+        f"wunderlich, extensible, sano), found {scene.formulation} and {scene.law.type}; leave "
+        "it out",
         "switching",
     )
