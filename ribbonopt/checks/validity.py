@@ -21,6 +21,7 @@ from ribbonopt.scene import RibbonSizes
 from ribbonopt.scene.laws import OfWidth
 from ribbonopt.solution.solution import Solution
 
+from .convexity import leap_problems
 from .shape import contact_problems, planar_problems
 from .zero_moment import zero_moment_problems
 
@@ -46,6 +47,7 @@ def warnings_of(solution: Solution) -> list[str]:
         result += _generatrices(solution, s, width) if doubtful else []
     if converged:
         result += zero_moment_problems(solution)
+        result += leap_problems(solution)
         result += spin_problems(solution)
         result += [*planar_problems(solution), *contact_problems(solution)]
     return result

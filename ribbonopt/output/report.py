@@ -15,7 +15,8 @@ SMALL = 1e-3  # largest component of what is written with powers of ten
 def report(summary: Mapping[str, Any]) -> str:
     """Return the report of a summary; digits beyond the estimated error are left out."""
     s = summary
-    law = ", ".join(f"{k} = {_plain(v)}" for k, v in s["law"].items() if k != "type")
+    said = {k: v for k, v in s["law"].items() if k != "type" and v is not None}
+    law = ", ".join(f"{k} = {_plain(v)}" for k, v in said.items())
     head = f"{s['name']}: {s['status'].replace('_', ' ')}"
     lines = [
         head + (", verified" if s["verified"] else f"\n  {s['message']}"),

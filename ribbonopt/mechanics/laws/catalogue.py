@@ -20,7 +20,7 @@ from ribbonopt.errors import ModelError
 from ribbonopt.scene import Law, OwnLaw, Scene
 from ribbonopt.scene.membrane import stiffnesses
 
-from .law import ConstitutiveLaw
+from .law import ConstitutiveLaw, Stress
 
 if TYPE_CHECKING:
     from ribbonopt.mechanics.along import Field
@@ -179,10 +179,20 @@ def capabilities(scene: Scene) -> ConstitutiveLaw:
     return relation_of(scene, lambda name: known.get(name, ca.SX.sym(name)), ca.SX.sym("s"))
 
 
-def is_linear(law: Law) -> bool:
-    """Whether a law by itself has an energy that is smooth at m = 0: a start may begin with it."""
-    found = law_of(law, {name: ca.SX.sym(name) for name in _numbers(law)}, ca.SX.sym("s"))
-    return found.linear_at_zero and found.variational
+def is_linear(law: Law, up_to: float = math.inf) -> bool:
+    """Whether a law by itself has an energy that is smooth at m = 0: a start may begin with it.
+
+    And, if its strains may leap, that they do not at twisting moments `up_to` that.
+    """
+    numbers = {name: ca.SX(value) for name, value in numbers_of(law).items()}
+    unknown = {name: ca.SX.sym(name) for name in _numbers(law)}
+    found = law_of(law, unknown | numbers, ca.SX.sym("s"))
+    if not (found.linear_at_zero and found.variational):
+        return False
+    if found.smooth:
+        return True
+    leap = found.switching(Stress.of_moment(ca.SX(ca.DM([0, 0, up_to])))).leap
+    return bool(ca.evalf(leap) == 0)
 
 
 def is_developable(scene: Scene) -> bool:

@@ -121,6 +121,13 @@ class ConstitutiveLaw(EnergyForm, ABC):
         """
         return None
 
+    def at_width(self, width: ca.SX) -> ConstitutiveLaw:
+        """Return the law, per width, where the ribbon has another width, in units of its own.
+
+        The law itself where a strip of it knows nothing of how wide it is.
+        """
+        return self
+
     # Own states: none but for laws that declare them.
 
     def rates(self, stress: Stress, u: ca.SX) -> ca.SX:

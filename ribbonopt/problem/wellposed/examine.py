@@ -161,7 +161,8 @@ def refuse_idle_settings(posed: Posed, ribbon: Ribbon, problem: BoundaryValuePro
         return
     raise ModelError(
         f"switching: {list(scene.switching)} is of no use here: phases are for the inverted "
-        "formulation and for laws with a kink at m2 = 0 (sadowsky, regularized, homotopy), found "
-        f"{scene.formulation} and {scene.law.type}; leave it out",
+        "formulation and for laws whose strains may leap or kink (sadowsky, regularized, homotopy, "
+        f"wunderlich, extensible, sano), found {scene.formulation} and {scene.law.type}; leave "
+        "it out",
         "switching",
     )
