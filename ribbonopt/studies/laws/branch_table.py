@@ -1,0 +1,89 @@
+"""Branches and studies under several laws as aligned plain text."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from ribbonopt.plain import Row
+from ribbonopt.studies.comparison.table import aligned
+
+from .batches import GAPS, StudyComparison
+from .branches import BranchComparison
+from .table import PERCENT, barred, seconds, status, told
+
+HEAD = ("law", "numbers", "points", "seconds", "status")
+MOST = 40  # special points that are printed
+
+
+def branch_table(study: BranchComparison) -> str:
+    """Return laws with how far each went, special points law beside law, reasons and notes."""
+    cells = [
+        (law["law"], law["numbers"], str(len(law["points"])), seconds(law), status(law))
+        for law in study.laws
+    ]
+    lines = [f"{study.name} continued under {len(study.laws)} laws; units {study.units}", ""]
+    lines += aligned([HEAD, *cells])
+    lines += _special(study.laws)
+    short = [law for law in study.laws if law["verified"] and law["status"] != "converged"]
+    if short:
+        lines += ["", "ended short of the goal:"]
+        lines += [f"  {law['law']}: {law['message']}" for law in short]
+    return "\n".join([*lines, *told(study.laws)])
+
+
+def _special(laws: Sequence[Row]) -> list[str]:
+    """Return the table of special points: a line for each, a column for each law."""
+    solved = [law for law in laws if law["verified"]]
+    keys = dict.fromkeys(_key(row) for law in solved for row in law["special"])
+    if not keys:
+        return ["", "no special points"] if solved else []
+    rows = [("special point", *(law["law"] for law in solved))]
+    for key in sorted(keys)[:MOST]:
+        cells = []
+        for law in solved:
+            found = next((row for row in law["special"] if _key(row) == key), None)
+            cells.append("-" if found is None else _place(found))
+        rows.append((_words(key, laws), *cells))
+    more = [f"  and {len(keys) - MOST} more (laws.csv)"] if len(keys) > MOST else []
+    return ["", *aligned(rows, left=1), *more]
+
+
+def _key(row: Row) -> tuple[int, int, str, int]:
+    return row["stage"], row["branch"], row["group"], row["place"]
+
+
+def _words(key: tuple[int, int, str, int], laws: Sequence[Row]) -> str:
+    stage, branch, group, place = key
+    several = len({row["stage"] for law in laws for row in law["points"]}) > 1
+    where = [f"stage {stage + 1}"] * several + [f"branch {branch}"] * (branch > 0)
+    return ", ".join([f"{group} {place}", *where])
+
+
+def _place(row: Row) -> str:
+    return f"{barred(row['value'], row['value_error'])} ({row['kind'].removesuffix(' point')})"
+
+
+def study_table(study: StudyComparison) -> str:
+    """Return how many ribbons each law carries, and how far from the study's own law."""
+    head = ("law", "numbers", "solved", *(f"{name}: median, largest" for name in _NAMES))
+    rows = [(*head, "seconds", "status")]
+    for law in study.laws:
+        gaps = (_percent(law, name) for name in GAPS)
+        count = f"{law['solved']}/{law['ribbons']}"
+        rows.append((law["law"], law["numbers"], count, *gaps, seconds(law), status(law)))
+    lines = [f"{study.name}: {study.count} ribbons; differences to their own law", ""]
+    lines += aligned(rows)
+    some = [law for law in study.laws if law["verified"] and law["message"]]
+    if some:
+        lines += ["", "not solved under all laws, the first:"]
+        lines += [f"  {law['law']}: {law['message']}" for law in some]
+    return "\n".join([*lines, *told(study.laws)])
+
+
+_NAMES = ("energy", "n(0)", "m(0)")
+
+
+def _percent(law: Row, name: str) -> str:
+    both = law.get(f"{name}_gap"), law.get(f"{name}_gap_largest")
+    known = [f"{PERCENT * value:.3g}" for value in both if value is not None]
+    return f"{', '.join(known)} %" if known else "-"

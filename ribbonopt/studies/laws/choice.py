@@ -1,0 +1,218 @@
+"""Which laws a scene is solved under, and with which numbers: those of one and the same ribbon.
+
+Width, thickness and Poisson's ratio come from the scene's `ribbon`, else from what is given beside
+the scene, from its own law, or its natural strains. A law whose numbers nobody says is left out,
+with the reason. The scene's own law is always the first, as it stands.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Iterable, Iterator, Mapping
+from dataclasses import dataclass, field, fields, replace
+
+from ribbonopt.errors import SceneError
+from ribbonopt.mechanics.laws.catalogue import numbers_of
+from ribbonopt.scene import (
+    Extensible,
+    Homotopy,
+    Kirchhoff,
+    Law,
+    Regularized,
+    Rod,
+    Sadowsky,
+    Sano,
+    Scene,
+    SingleSheet,
+    Variational,
+    Wunderlich,
+)
+from ribbonopt.scene.faults import suggestion
+from ribbonopt.scene.laws import Sized
+from ribbonopt.scene.stages import stages_of
+from ribbonopt.scene.wording import listed
+
+ALL = "all"
+#: what `all` stands for: models of a ribbon, not ways to smooth them; from rod to wide ribbon
+MODELS = ("kirchhoff", "sadowsky", "wunderlich", "extensible", "sano")
+OPTIONS = {"width": "--width 0.05", "thickness": "--thickness 0.001", "poisson_ratio": "--poisson 0.3"}
+WORDS = {"width": "width", "thickness": "thickness", "poisson_ratio": "Poisson's ratio"}
+
+
+@dataclass(frozen=True)
+class Sizes:
+    """Width and thickness (units of the scene) and Poisson's ratio of a ribbon; None: not said."""
+
+    width: float | None = None
+    thickness: float | None = None
+    poisson_ratio: float | None = None
+
+    @property
+    def known(self) -> dict[str, float]:
+        """Those that are said, by name."""
+        named = {f.name: getattr(self, f.name) for f in fields(self)}
+        return {name: value for name, value in named.items() if value is not None}
+
+
+@dataclass(frozen=True)
+class Choice:
+    """One law of a comparison.
+
+    Attributes
+    ----------
+    name : str
+        Its type.
+    law : Law or None
+        None where it is left out.
+    reason : str
+        Why it is left out, and what to add.
+    note : str
+        What is to be told of its numbers.
+    numbers : Mapping
+        Its numbers, those that are the ribbon's too.
+    """
+
+    name: str
+    law: Law | None
+    reason: str = ""
+    note: str = ""
+    numbers: Mapping[str, float] = field(default_factory=dict)
+
+
+@dataclass(frozen=True)
+class _Maker:
+    """What a law needs to know of a ribbon, the law of these numbers, and the one without them.
+
+    `asks` is the law that asks the `ribbon` of its scene for them itself, so that it changes with
+    it; others are made for one ribbon.
+    """
+
+    needs: tuple[str, ...]
+    make: Callable[..., Law]
+    asks: Law | None = None
+    otherwise: Law | None = None
+    note: str = ""
+
+
+def _kirchhoff(poisson_ratio: float) -> Law:
+    return Kirchhoff(B2=1 - poisson_ratio**2, B3=2 * (1 - poisson_ratio))
+
+
+def _rod(width: float, thickness: float, poisson_ratio: float) -> Law:
+    """Return the rod of the same section that bends in its plane too: B1 = Y h w^3 / 12."""
+    squared = 1 - poisson_ratio**2
+    return Rod(B=(squared * (width / thickness) ** 2, squared, 2 * (1 - poisson_ratio)))
+
+
+def _sano(width: float, thickness: float, poisson_ratio: float) -> Law:
+    return Sano().of_sizes(width, thickness, poisson_ratio)
+
+
+SIZES = ("width", "thickness", "poisson_ratio")
+_MAKERS: Mapping[str, _Maker] = {
+    "kirchhoff": _Maker(
+        ("poisson_ratio",),
+        _kirchhoff,
+        otherwise=Kirchhoff(),
+        note="nothing says Poisson's ratio: stiffnesses of 0; --poisson 0.3 gives others",
+    ),
+    "rod": _Maker(SIZES, _rod),
+    "sadowsky": _Maker((), Sadowsky),
+    "wunderlich": _Maker(("width",), Wunderlich, Wunderlich()),
+    "extensible": _Maker(SIZES, Extensible, Extensible()),
+    "sano": _Maker(SIZES, _sano, Sano()),
+    "variational": _Maker((), Variational),
+    "regularized": _Maker((), Regularized),
+    "homotopy": _Maker((), Homotopy),
+    "single_sheet": _Maker((), SingleSheet),
+}
+
+
+def names_of(words: Iterable[str]) -> tuple[str, ...]:
+    """Return the types of laws that words stand for, each once.
+
+    Raises
+    ------
+    SceneError
+        If a word is no law.
+    """
+    found = [name for word in words for name in (MODELS if word == ALL else (word,))]
+    unknown = [name for name in found if name not in _MAKERS]
+    if unknown or not found:
+        word = repr(unknown[0]) if unknown else "none"
+        near = suggestion(unknown[0], [ALL, *_MAKERS]) if unknown else ""
+        known = ", ".join((ALL, *_MAKERS))
+        raise SceneError(f"--laws: found {word}, expected some of {known}{near}")
+    return tuple(dict.fromkeys(found))
+
+
+def sizes_of(scene: Scene, given: Sizes) -> Sizes:
+    """Return what is known of a scene's ribbon; `given` is said beside it.
+
+    Raises
+    ------
+    SceneError
+        If the scene says it all itself.
+    """
+    ribbon = scene.ribbon
+    if ribbon is not None:
+        for name in given.known:
+            option = OPTIONS[name].split()[0]
+            raise SceneError(
+                f"{option}: the `ribbon` of {scene.name} has {name} = {getattr(ribbon, name):g}; "
+                f"change it there, or by --set ribbon.{name}=..."
+            )
+        return Sizes(ribbon.width, ribbon.thickness, ribbon.poisson_ratio)
+    law = {f.name: getattr(scene.law, f.name) for f in fields(scene.law)}
+    own = Sizes(**{name: law.get(name) for name in SIZES}).known
+    if scene.natural is not None and scene.natural.poisson_ratio is not None:
+        own["poisson_ratio"] = scene.natural.poisson_ratio
+    return Sizes(**(own | given.known))
+
+
+def choices(scene: Scene, names: Iterable[str], given: Sizes) -> Iterator[Choice]:
+    """Yield the laws of a comparison: the scene's own, then those of the names."""
+    sizes = sizes_of(scene, given).known
+    yield Choice(scene.law.type, scene.law, numbers=_numbers(scene.law, scene))
+    for name in names:
+        if name != scene.law.type:
+            yield _choice(name, sizes, scene)
+
+
+def _choice(name: str, sizes: Mapping[str, float], scene: Scene) -> Choice:
+    maker = _MAKERS[name]
+    missing = [need for need in maker.needs if need not in sizes]
+    note = ""
+    if not missing:
+        law = maker.make(**{need: sizes[need] for need in maker.needs})
+        if maker.asks is not None and scene.ribbon is not None:
+            law = maker.asks
+        elif moved := [s.parameter for s in stages_of(scene) if s.parameter in _paths(maker)]:
+            reason = f"left out: its stiffnesses are those of one ribbon, and {moved[0]} changes it"
+            return Choice(name, None, reason)
+    elif maker.otherwise is not None:
+        law, note = maker.otherwise, maker.note
+    else:
+        what = listed([WORDS[need] for need in missing])
+        add = " ".join(OPTIONS[need] for need in missing)
+        reason = f"left out: nothing says the {what} of the ribbon; add {add}"
+        return Choice(name, None, f"{reason}, or a `ribbon` to the scene")
+    return Choice(name, law, note=note, numbers=_numbers(law, scene))
+
+
+def _paths(maker: _Maker) -> list[str]:
+    return [f"ribbon.{need}" for need in maker.needs]
+
+
+def _numbers(law: Law, scene: Scene) -> dict[str, float]:
+    """Return the numbers of a law by name, those that are the ribbon's too."""
+    ribbon = scene.ribbon
+    if isinstance(law, Sized) and ribbon is not None:
+        law = law.of_sizes(ribbon.width, ribbon.thickness, ribbon.poisson_ratio)
+    return numbers_of(law)
+
+
+def under(scene: Scene, choice: Choice) -> Scene:
+    """Return a scene under a law that is not left out; itself under its own."""
+    if choice.law is None or choice.law is scene.law:
+        return scene
+    return replace(scene, law=choice.law, reference=None)
