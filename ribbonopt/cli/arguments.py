@@ -165,6 +165,12 @@ def _laws(verb: argparse.ArgumentParser) -> None:
     verb.add_argument("--width", metavar="W", help="with --laws: of a scene without `ribbon`")
     verb.add_argument("--thickness", metavar="H", help="with --laws: the same")
     verb.add_argument("--poisson", metavar="NU", help="with --laws: the same, Poisson's ratio")
+    verb.add_argument(
+        "--edges",
+        metavar="A,B",
+        help="with --laws, for wunderlich: does each end hold the edge straight, or is it free, "
+        "such as straight,free; where the scene leaves that open",
+    )
     verb.add_argument("--jobs", metavar="N", help="with --laws, of a study: worker processes")
 
 
@@ -215,4 +221,5 @@ def _short(text: str) -> str:
 
 
 def words(text: str | None) -> list[str] | None:
+    """Read a list of words; None where there is none."""
     return None if text is None else [word.strip() for word in text.split(",")]

@@ -23,11 +23,11 @@ if TYPE_CHECKING:
 
     from matplotlib.figure import Figure
 
-    from ribbonopt.studies.laws.choice import Sizes
+    from ribbonopt.studies.laws.choice import Edges, Sizes
     from ribbonopt.studies.laws.files import Compared
 
 #: options of the one way to compare that mean nothing to the other
-OF_LAWS = ("width", "thickness", "poisson", "jobs")
+OF_LAWS = ("width", "thickness", "poisson", "edges", "jobs")
 OF_PAIRS = ("formulations", "transcriptions", "tolerances")
 Told = Callable[[str], None]
 
@@ -147,4 +147,18 @@ def _sizes(options: argparse.Namespace) -> Sizes:
         size("--width", options.width),
         size("--thickness", options.thickness),
         size("--poisson", options.poisson, -1.0, 0.5),
+        _edges(options.edges),
     )
+
+
+def _edges(text: str | None) -> Edges:
+    """Read what the start and the end do to a ribbon's edge."""
+    found = [] if text is None else words(text) or []
+    if text is None:
+        return (None, None)
+    if len(found) != 2 or not set(found) <= {"straight", "free"}:
+        shown = ", ".join(found)
+        wanted = "expected straight or free for the start, and for the end: straight,free"
+        raise SceneError(f"--edges: found {shown!r}; {wanted}")
+    start, end = found
+    return start, end  # type: ignore[return-value]

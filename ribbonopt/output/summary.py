@@ -164,7 +164,7 @@ def _reactions(solution: Solution) -> list[dict[str, Any]]:
 
 
 def bars_of(solution: Solution) -> dict[str, float | None]:
-    """Return bars of the answer by name; None without convergence, linearisation, and for minima."""
+    """Return bars of the answer by name, None without convergence or linearisation, of minima."""
     if _unknown(solution):
         return dict.fromkeys(ANSWERS)
     try:

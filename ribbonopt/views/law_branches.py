@@ -73,12 +73,18 @@ def _branch(
         good = np.isfinite(points).all(axis=0)
         points, piece = points[:, good], [row for row, ok in zip(piece, good, strict=True) if ok]
         for curve, stable in _curves(piece, points):
-            look = "-" if stable else (0, (3.5, 1.8))
-            axes.plot(*curve, color=colour, lw=width, ls=look, zorder=order)
+            dash: Any = "-" if stable else (0, (3.5, 1.8))
+            axes.plot(*curve, color=colour, lw=width, ls=dash, zorder=order)
     for row in rows:
         if row["kind"] != POINT:
             marker = MARKS.get(mark_of(row), "*")
-            look = {"mfc": "w", "mec": colour, "mew": 1.4, "ms": 7, "zorder": 6 + 0.1 * number}
+            look: dict[str, Any] = {
+                "mfc": "w",
+                "mec": colour,
+                "mew": 1.4,
+                "ms": 7,
+                "zorder": 6 + 0.1 * number,
+            }
             axes.plot(*[[v] for v in _point(row, pair)], marker, **look)
 
 
@@ -123,7 +129,13 @@ def _legend(figure: Figure, laws: Sequence[Row]) -> None:
         handles.append(Line2D([], [], label="unstable", color=INK, ls=(0, (3.5, 1.8))))
     kinds = {mark_of(row) for row in rows if row["kind"] != POINT}
     for kind in sorted(kinds):
-        look = {"marker": MARKS.get(kind, "*"), "mfc": "w", "mec": INK, "ls": "", "ms": 7}
+        look: dict[str, Any] = {
+            "marker": MARKS.get(kind, "*"),
+            "mfc": "w",
+            "mec": INK,
+            "ls": "",
+            "ms": 7,
+        }
         handles.append(Line2D([], [], label=kind, **look))
     columns = min(3 if figure.get_figwidth() > 9 else 2, max(1, len(handles)))
     figure.legend(

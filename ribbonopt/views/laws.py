@@ -30,6 +30,7 @@ LABELS = {
     "m2": (r"$m_2$", "N m"),
     "m3": (r"$m_3$", "N m"),
 }
+HARDLY = 0.1  # share of a lab axis in one of the picture
 FLAT = 1e-7  # of the length: a centre line as near to a plane as this lies in it
 
 
@@ -125,6 +126,8 @@ def _normal(line: Any) -> Any:
 
 
 def _named(vector: Any) -> str:
-    """Write a unit vector of the picture by the lab's axes."""
-    parts = [f"{v:+.2f} {name}" for v, name in zip(vector, "xyz", strict=True) if abs(v) > 5e-3]
-    return " ".join(parts).removeprefix("+")
+    """Write a unit vector of the picture by the lab's axes, without what is hardly seen of it."""
+    parts = [(v, name) for v, name in zip(vector, "xyz", strict=True) if abs(v) > HARDLY]
+    if len(parts) == 1:
+        return ("-" if parts[0][0] < 0 else "") + parts[0][1]
+    return " ".join(f"{v:+.2f} {name}" for v, name in parts).removeprefix("+")

@@ -7,8 +7,9 @@ from collections.abc import Sequence
 from ribbonopt.plain import Row
 from ribbonopt.studies.comparison.table import aligned
 
-from .batches import GAPS, StudyComparison
+from .batches import StudyComparison
 from .branches import BranchComparison
+from .row_gaps import GAPS
 from .table import PERCENT, barred, seconds, status, told
 
 HEAD = ("law", "numbers", "points", "seconds", "status")
@@ -24,11 +25,21 @@ def branch_table(study: BranchComparison) -> str:
     lines = [f"{study.name} continued under {len(study.laws)} laws; units {study.units}", ""]
     lines += aligned([HEAD, *cells])
     lines += _special(study.laws)
-    short = [law for law in study.laws if law["verified"] and law["status"] != "converged"]
+    short = [f"  {law['law']}{text}" for law in study.laws for text in _endings(law)]
     if short:
-        lines += ["", "ended short of the goal:"]
-        lines += [f"  {law['law']}: {law['message']}" for law in short]
+        lines += ["", "ended short of the goal:", *short]
     return "\n".join([*lines, *told(study.laws)])
+
+
+def _endings(law: Row) -> list[str]:
+    """Say of each branch of a law that ended short how it did."""
+    if law["verified"] and not law["endings"]:  # broken off
+        return [f": {law['message']}"]
+    return [
+        f", stage {e['stage'] + 1}, branch {e['branch']}: {e['reason']}"
+        for e in law["endings"]
+        if not e["reached"]
+    ]
 
 
 def _special(laws: Sequence[Row]) -> list[str]:

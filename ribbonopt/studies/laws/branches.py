@@ -105,7 +105,7 @@ def compare_branches(
     log: tuple[str, ...] = ()
     pairs: tuple[tuple[str, str], ...] = ()
     for choice in choices(scene, names_of(laws), sizes or Sizes()):
-        row = begun(choice) | {"points": [], "special": []}
+        row = begun(choice) | {"points": [], "special": [], "endings": []}
         if choice.law is not None:
             started = time.perf_counter()
             walk = _Walk(under(scene, choice), choice, told)
@@ -131,8 +131,7 @@ class _Walk:
 
     def followed(self, guess: Solution | None, *, own: bool) -> Row:
         """Follow the branch; return what its row says."""
-        note, ending = self.choice.note, {"status": REFUSED, "message": ""}
-        begin = Outcome(None, "")
+        begin, ending = Outcome(None, ""), Row()
         try:
             found = Continuation(self.scene)
             if not own:
@@ -144,13 +143,19 @@ class _Walk:
             ending = {"status": "converged" if reached else NOT_REACHED}
             ending["message"] = found.ending.reason
             self._drawn(found)
+            ending["endings"] = [
+                {"stage": key[0], "branch": key[1], "reached": e.reached, "reason": e.reason}
+                for key, e in found.endings.items()
+            ]
         except (RibbonoptError, np.linalg.LinAlgError) as error:
             status = error.status if isinstance(error, ConvergenceError) else REFUSED
             ending = {"status": status, "message": " ".join(str(error).split())}
-        notes = filter(None, [note, begin.lost if begin.verified else "", told_of(begin)])
+        told = [row["note"] for row in self.points if row["note"] and row["kind"] == POINT]
+        lost = begin.lost if begin.verified else ""
+        notes = filter(None, [self.choice.note, lost, told_of(begin), *dict.fromkeys(told)])
         verified = {"verified": bool(self.points), "start": begin.start}
-        told = {"note": "; ".join(notes), "points": self.points, "special": self.special}
-        return ending | verified | told
+        what = {"note": "; ".join(notes), "points": self.points, "special": self.special}
+        return ending | verified | what
 
     def _take(self, point: Point[Solution]) -> None:
         row = dict(point.row)

@@ -26,30 +26,44 @@ from ribbonopt.scene import (
     Variational,
     Wunderlich,
 )
+from ribbonopt.scene.edges import Edge, edge_of
 from ribbonopt.scene.faults import suggestion
-from ribbonopt.scene.laws import Sized
+from ribbonopt.scene.laws import OfWidth, Sized
 from ribbonopt.scene.stages import stages_of
 from ribbonopt.scene.wording import listed
 
 ALL = "all"
 #: what `all` stands for: models of a ribbon, not ways to smooth them; from rod to wide ribbon
 MODELS = ("kirchhoff", "sadowsky", "wunderlich", "extensible", "sano")
-OPTIONS = {"width": "--width 0.05", "thickness": "--thickness 0.001", "poisson_ratio": "--poisson 0.3"}
+OPTIONS = {
+    "width": "--width 0.05",
+    "thickness": "--thickness 0.001",
+    "poisson_ratio": "--poisson 0.3",
+}
+SIZES = ("width", "thickness", "poisson_ratio")
 WORDS = {"width": "width", "thickness": "thickness", "poisson_ratio": "Poisson's ratio"}
+
+
+Edges = tuple[Edge | None, Edge | None]
 
 
 @dataclass(frozen=True)
 class Sizes:
-    """Width and thickness (units of the scene) and Poisson's ratio of a ribbon; None: not said."""
+    """Width and thickness (units of the scene) and Poisson's ratio of a ribbon; None: not said.
+
+    `edges` says whether the start and the end hold the ribbon's edge straight across, for laws of a
+    width, where the scene leaves that open.
+    """
 
     width: float | None = None
     thickness: float | None = None
     poisson_ratio: float | None = None
+    edges: Edges = (None, None)
 
     @property
     def known(self) -> dict[str, float]:
         """Those that are said, by name."""
-        named = {f.name: getattr(self, f.name) for f in fields(self)}
+        named = {name: getattr(self, name) for name in SIZES}
         return {name: value for name, value in named.items() if value is not None}
 
 
@@ -69,6 +83,8 @@ class Choice:
         What is to be told of its numbers.
     numbers : Mapping
         Its numbers, those that are the ribbon's too.
+    edges : pair
+        What ends that leave that open do to a ribbon's edge, for laws of a width.
     """
 
     name: str
@@ -76,6 +92,7 @@ class Choice:
     reason: str = ""
     note: str = ""
     numbers: Mapping[str, float] = field(default_factory=dict)
+    edges: Edges = (None, None)
 
 
 @dataclass(frozen=True)
@@ -107,7 +124,6 @@ def _sano(width: float, thickness: float, poisson_ratio: float) -> Law:
     return Sano().of_sizes(width, thickness, poisson_ratio)
 
 
-SIZES = ("width", "thickness", "poisson_ratio")
 _MAKERS: Mapping[str, _Maker] = {
     "kirchhoff": _Maker(
         ("poisson_ratio",),
@@ -163,10 +179,11 @@ def sizes_of(scene: Scene, given: Sizes) -> Sizes:
             )
         return Sizes(ribbon.width, ribbon.thickness, ribbon.poisson_ratio)
     law = {f.name: getattr(scene.law, f.name) for f in fields(scene.law)}
-    own = Sizes(**{name: law.get(name) for name in SIZES}).known
+    own = Sizes(*(law.get(name) for name in SIZES)).known
     if scene.natural is not None and scene.natural.poisson_ratio is not None:
         own["poisson_ratio"] = scene.natural.poisson_ratio
-    return Sizes(**(own | given.known))
+    found = own | given.known
+    return Sizes(*(found.get(name) for name in SIZES))
 
 
 def choices(scene: Scene, names: Iterable[str], given: Sizes) -> Iterator[Choice]:
@@ -175,7 +192,7 @@ def choices(scene: Scene, names: Iterable[str], given: Sizes) -> Iterator[Choice
     yield Choice(scene.law.type, scene.law, numbers=_numbers(scene.law, scene))
     for name in names:
         if name != scene.law.type:
-            yield _choice(name, sizes, scene)
+            yield replace(_choice(name, sizes, scene), edges=given.edges)
 
 
 def _choice(name: str, sizes: Mapping[str, float], scene: Scene) -> Choice:
@@ -215,4 +232,25 @@ def under(scene: Scene, choice: Choice) -> Scene:
     """Return a scene under a law that is not left out; itself under its own."""
     if choice.law is None or choice.law is scene.law:
         return scene
-    return replace(scene, law=choice.law, reference=None)
+    edges, boundary = edges_of(scene, choice.law, choice.edges), scene.boundary
+    start, end = (
+        replace(at, edge=edge)
+        for at, edge in zip((boundary.start, boundary.end), edges, strict=True)
+    )
+    boundary = replace(boundary, start=start, end=end)
+    return replace(scene, law=choice.law, boundary=boundary, reference=None)
+
+
+def edges_of(scene: Scene, law: Law, given: Edges) -> Edges:
+    """Return what the ends of a scene say of their edges under a law: nothing if it has no width.
+
+    `given` counts where an end leaves it open.
+    """
+    boundary = scene.boundary
+    if not isinstance(law, OfWidth) or boundary.loop is not None:
+        return (None, None)
+    start, end = (
+        edge if edge_of(at) is None else at.edge
+        for at, edge in zip((boundary.start, boundary.end), given, strict=True)
+    )
+    return start, end

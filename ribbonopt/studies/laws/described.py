@@ -75,8 +75,8 @@ class Described:
 def differences(found: Described, other: Described) -> dict[str, Value]:
     """Return how far a solution is from another, relative to that one.
 
-    `shape` is the largest distance of the centre lines at equal arclength, over the length; `energy`
-    has a sign; `n0` and `m0` are the sizes of the differences of loads at the start.
+    `shape` is the largest distance of the centre lines at equal arclength, over the length;
+    `energy` has a sign; `n0` and `m0` are the sizes of the differences of loads at the start.
     """
     a, b = found.solution, other.solution
     unit = a.units.length / found.length  # bars of positions are over the unit of length

@@ -1,8 +1,8 @@
 """One scene under one law: the equilibrium near a known one, and that of the automatic start.
 
 Ribbons have several equilibria. So that laws are compared on one branch, each starts from the
-solution under the scene's own law; what the automatic start finds, which goes for least energy, is
-told where it is another.
+solution under the scene's own law, and by the automatic start, which goes for least energy. Where
+they lead to two equilibria the one nearer to the known shape is taken, and the other is told.
 """
 
 from __future__ import annotations
@@ -21,7 +21,7 @@ from ribbonopt.starts.equilibria import distinct
 
 from .described import line_gap
 
-OWN, NEAR, AUTO = "the scene's start", "from the first row", "the automatic start"
+OWN, NEAR, AUTO = "the scene's start", "a start from the first row", "the automatic start"
 REFUSED = "refused"
 STILL = 1e-6  # of the length: centre lines that are not further apart are one
 
@@ -39,7 +39,7 @@ class Outcome:
     start : str
         What it was started from.
     other : Solution or None
-        Another equilibrium, that the automatic start leads to.
+        Another equilibrium, further from the known one.
     lost : str
         Why a start led nowhere that was tried before.
     seconds, checked : float
@@ -83,7 +83,7 @@ def near(scene: Scene, guess: Solution | None, prepared: Prepared | None = None)
         prepared = prepared or prepare(scene)
         found = Outcome(None, "") if guess is None else _from(prepared, scene, guess)
         found = replace(found, seconds=time.perf_counter() - started)
-        return _beside(found, scene, prepared)
+        return _nearer(_beside(found, scene, prepared), guess)
     except (RibbonoptError, np.linalg.LinAlgError) as error:
         return replace(_failed(error), seconds=time.perf_counter() - started)
 
@@ -105,10 +105,21 @@ def _beside(found: Outcome, scene: Scene, prepared: Prepared | None) -> Outcome:
         least = _failed(error)
     seconds = time.perf_counter() - started
     if not found.verified:
-        lost = f"{NEAR} no solution was found: {found.message}" if found.status else ""
+        lost = f"{NEAR} led to no solution: {found.message}" if found.status else ""
         return replace(least, lost=lost, seconds=found.seconds + seconds)
     other = least.solution if least.verified and _apart(found, least) else None
     return replace(found, other=other, checked=seconds)
+
+
+def _nearer(found: Outcome, guess: Solution | None) -> Outcome:
+    """Return an outcome, its two equilibria exchanged where the other is nearer to a known one."""
+    if guess is None or found.solution is None or found.other is None:
+        return found
+    here, there = (line_gap(some, guess) for some in (found.solution, found.other))
+    if here <= there:
+        return found
+    swapped = {"solution": found.other, "other": found.solution, "start": AUTO}
+    return replace(found, **swapped, seconds=found.checked, checked=found.seconds)  # type: ignore[arg-type]
 
 
 def _automatic(scene: Scene, prepared: Prepared | None) -> Solution:
@@ -133,7 +144,8 @@ def told_of(found: Outcome) -> str:
         return ""
     here, there = (known_potential(some) for some in (found.solution, found.other))
     lower = "less" if there < here else "more"
-    return f"the automatic start finds another equilibrium, of {lower} energy: {there:.6g}"
+    way = NEAR if found.start == AUTO else AUTO
+    return f"there is another equilibrium, of {lower} energy ({there:.6g}, by {way})"
 
 
 def _outcome(solution: Solution, start: str) -> Outcome:

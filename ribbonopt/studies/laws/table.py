@@ -73,7 +73,7 @@ def told(rows: Sequence[Row]) -> list[str]:
     for row in rows:
         if row["verified"] and row.get("start"):
             starts.setdefault(row["start"], []).append(row["law"])
-    lines += _listed("started:", ((", ".join(laws), start) for start, laws in starts.items()))
+    lines += _listed("found by:", ((", ".join(laws), start) for start, laws in starts.items()))
     return lines
 
 
@@ -84,5 +84,3 @@ def _reason(row: Row) -> str:
 def _listed(head: str, found: Iterable[tuple[Any, str]]) -> list[str]:
     lines = [f"  {name}: {text}" for name, text in found]
     return ["", head, *lines] if lines else []
-
-
