@@ -19,7 +19,8 @@ from ribbonopt.studies.batch.batch import run_batch
 from ribbonopt.studies.batch.study import Study
 from ribbonopt.studies.machine import machine
 
-from .choice import ALL, Choice, Sizes, choices, names_of
+from .choice import Choice, Sizes, choices, names_of
+from .makers import ALL
 from .ribbons import Ribbons
 from .row_gaps import GAPS, gaps_of
 from .rows import begun

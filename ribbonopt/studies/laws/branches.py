@@ -26,7 +26,8 @@ from ribbonopt.studies.continuation.continuation import Continuation
 from ribbonopt.studies.continuation.walk.points import CROSSINGS, POINT, Point
 from ribbonopt.studies.machine import machine
 
-from .choice import ALL, Choice, Sizes, choices, names_of, under
+from .choice import Choice, Sizes, choices, names_of, under
+from .makers import ALL
 from .rows import begun
 from .solved import REFUSED, Outcome, near, told_of
 

@@ -7,42 +7,19 @@ with the reason. The scene's own law is always the first, as it stands.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterable, Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, fields, replace
 
 from ribbonopt.errors import SceneError
 from ribbonopt.mechanics.laws.catalogue import numbers_of
-from ribbonopt.scene import (
-    Extensible,
-    Homotopy,
-    Kirchhoff,
-    Law,
-    Regularized,
-    Rod,
-    Sadowsky,
-    Sano,
-    Scene,
-    SingleSheet,
-    Variational,
-    Wunderlich,
-)
+from ribbonopt.scene import Law, Scene
 from ribbonopt.scene.edges import Edge, edge_of
 from ribbonopt.scene.faults import suggestion
 from ribbonopt.scene.laws import OfWidth, Sized
 from ribbonopt.scene.stages import stages_of
 from ribbonopt.scene.wording import listed
 
-ALL = "all"
-#: what `all` stands for: models of a ribbon, not ways to smooth them; from rod to wide ribbon
-MODELS = ("kirchhoff", "sadowsky", "wunderlich", "extensible", "sano")
-OPTIONS = {
-    "width": "--width 0.05",
-    "thickness": "--thickness 0.001",
-    "poisson_ratio": "--poisson 0.3",
-}
-SIZES = ("width", "thickness", "poisson_ratio")
-WORDS = {"width": "width", "thickness": "thickness", "poisson_ratio": "Poisson's ratio"}
-
+from .makers import ALL, MAKERS, MODELS, OPTIONS, SIZES, WORDS, Maker
 
 Edges = tuple[Edge | None, Edge | None]
 
@@ -95,54 +72,6 @@ class Choice:
     edges: Edges = (None, None)
 
 
-@dataclass(frozen=True)
-class _Maker:
-    """What a law needs to know of a ribbon, the law of these numbers, and the one without them.
-
-    `asks` is the law that asks the `ribbon` of its scene for them itself, so that it changes with
-    it; others are made for one ribbon.
-    """
-
-    needs: tuple[str, ...]
-    make: Callable[..., Law]
-    asks: Law | None = None
-    otherwise: Law | None = None
-    note: str = ""
-
-
-def _kirchhoff(poisson_ratio: float) -> Law:
-    return Kirchhoff(B2=1 - poisson_ratio**2, B3=2 * (1 - poisson_ratio))
-
-
-def _rod(width: float, thickness: float, poisson_ratio: float) -> Law:
-    """Return the rod of the same section that bends in its plane too: B1 = Y h w^3 / 12."""
-    squared = 1 - poisson_ratio**2
-    return Rod(B=(squared * (width / thickness) ** 2, squared, 2 * (1 - poisson_ratio)))
-
-
-def _sano(width: float, thickness: float, poisson_ratio: float) -> Law:
-    return Sano().of_sizes(width, thickness, poisson_ratio)
-
-
-_MAKERS: Mapping[str, _Maker] = {
-    "kirchhoff": _Maker(
-        ("poisson_ratio",),
-        _kirchhoff,
-        otherwise=Kirchhoff(),
-        note="nothing says Poisson's ratio: stiffnesses of 0; --poisson 0.3 gives others",
-    ),
-    "rod": _Maker(SIZES, _rod),
-    "sadowsky": _Maker((), Sadowsky),
-    "wunderlich": _Maker(("width",), Wunderlich, Wunderlich()),
-    "extensible": _Maker(SIZES, Extensible, Extensible()),
-    "sano": _Maker(SIZES, _sano, Sano()),
-    "variational": _Maker((), Variational),
-    "regularized": _Maker((), Regularized),
-    "homotopy": _Maker((), Homotopy),
-    "single_sheet": _Maker((), SingleSheet),
-}
-
-
 def names_of(words: Iterable[str]) -> tuple[str, ...]:
     """Return the types of laws that words stand for, each once.
 
@@ -152,11 +81,11 @@ def names_of(words: Iterable[str]) -> tuple[str, ...]:
         If a word is no law.
     """
     found = [name for word in words for name in (MODELS if word == ALL else (word,))]
-    unknown = [name for name in found if name not in _MAKERS]
+    unknown = [name for name in found if name not in MAKERS]
     if unknown or not found:
         word = repr(unknown[0]) if unknown else "none"
-        near = suggestion(unknown[0], [ALL, *_MAKERS]) if unknown else ""
-        known = ", ".join((ALL, *_MAKERS))
+        near = suggestion(unknown[0], [ALL, *MAKERS]) if unknown else ""
+        known = ", ".join((ALL, *MAKERS))
         raise SceneError(f"--laws: found {word}, expected some of {known}{near}")
     return tuple(dict.fromkeys(found))
 
@@ -179,11 +108,16 @@ def sizes_of(scene: Scene, given: Sizes) -> Sizes:
             )
         return Sizes(ribbon.width, ribbon.thickness, ribbon.poisson_ratio)
     law = {f.name: getattr(scene.law, f.name) for f in fields(scene.law)}
-    own = Sizes(*(law.get(name) for name in SIZES)).known
+    own = _sized(law).known
     if scene.natural is not None and scene.natural.poisson_ratio is not None:
         own["poisson_ratio"] = scene.natural.poisson_ratio
     found = own | given.known
-    return Sizes(*(found.get(name) for name in SIZES))
+    return _sized(found)
+
+
+def _sized(named: Mapping[str, float | None]) -> Sizes:
+    width, thickness, ratio = (named.get(name) for name in SIZES)
+    return Sizes(width, thickness, ratio)
 
 
 def choices(scene: Scene, names: Iterable[str], given: Sizes) -> Iterator[Choice]:
@@ -196,7 +130,7 @@ def choices(scene: Scene, names: Iterable[str], given: Sizes) -> Iterator[Choice
 
 
 def _choice(name: str, sizes: Mapping[str, float], scene: Scene) -> Choice:
-    maker = _MAKERS[name]
+    maker = MAKERS[name]
     missing = [need for need in maker.needs if need not in sizes]
     note = ""
     if not missing:
@@ -216,7 +150,7 @@ def _choice(name: str, sizes: Mapping[str, float], scene: Scene) -> Choice:
     return Choice(name, law, note=note, numbers=_numbers(law, scene))
 
 
-def _paths(maker: _Maker) -> list[str]:
+def _paths(maker: Maker) -> list[str]:
     return [f"ribbon.{need}" for need in maker.needs]
 
 

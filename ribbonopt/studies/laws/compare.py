@@ -12,8 +12,9 @@ from ribbonopt.scene import Scene
 from ribbonopt.scene.units import units_of
 from ribbonopt.studies.machine import machine
 
-from .choice import ALL, Choice, Sizes, choices, names_of, under
+from .choice import Choice, Sizes, choices, names_of, under
 from .described import Described
+from .makers import ALL
 from .rows import columns, row_of, table_row
 from .solved import Outcome, near, own
 
