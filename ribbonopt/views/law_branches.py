@@ -122,7 +122,7 @@ def _legend(figure: Figure, laws: Sequence[Row]) -> None:
     handles = []
     for i, law in enumerate(laws):
         numbers = f" ({law['numbers']})" if law["numbers"] else ""
-        text = drawn(law["law"] + numbers, 60)
+        text = drawn(law["law"] + numbers, 80)
         handles.append(Line2D([], [], label=text, color=COLOURS[i % len(COLOURS)], lw=3))
     rows = [row for law in laws for row in law["points"]]
     if any(row["negative"] for row in rows):

@@ -76,7 +76,7 @@ def legend(figure: Figure, rows: Sequence[Row]) -> None:
     for i, row in enumerate(rows):
         numbers = f" ({row['numbers']})" if row["numbers"] else ""
         look = {k: v for k, v in style(i, len(rows)).items() if k != "zorder"}
-        handles.append(Line2D([], [], label=drawn(row["law"] + numbers, 60), **look))
+        handles.append(Line2D([], [], label=drawn(row["law"] + numbers, 80), **look))
     figure.legend(
         handles=handles,
         loc="outside lower center",
