@@ -130,4 +130,5 @@ def _named(vector: Any) -> str:
     parts = [(v, name) for v, name in zip(vector, "xyz", strict=True) if abs(v) > HARDLY]
     if len(parts) == 1:
         return ("-" if parts[0][0] < 0 else "") + parts[0][1]
-    return " ".join(f"{v:+.2f} {name}" for v, name in parts).removeprefix("+")
+    words = [f"{'-' if v < 0 else '+'} {abs(v):.2f} {name}" for v, name in parts]
+    return " ".join(words).removeprefix("+ ")

@@ -170,6 +170,15 @@ def test_numbers_come_from_the_ribbon() -> None:
     assert found["sano"].numbers["zeta"] == pytest.approx(zeta)
 
 
+def test_an_own_law_with_other_numbers_than_the_ribbons_is_told() -> None:
+    scene = load_scene(CONFIGS / "ribbon_si.yaml", ["law=kirchhoff"])
+    (own,) = choices(scene, [], Sizes())
+    assert own.numbers == {"B2": 1.0, "B3": 2.0}
+    assert "those of the ribbon would be B2 = 0.8556, B3 = 1.24" in own.note
+    (own,) = choices(load_scene(CONFIGS / "ribbon_si.yaml", ["law=wunderlich"]), [], Sizes())
+    assert (own.numbers, own.note) == ({"width": 0.01}, "")
+
+
 def test_what_nobody_says_is_left_out_with_what_to_add() -> None:
     study = compare_laws(planar(), ["wunderlich", "extensible", "sano"], Sizes(width=0.05))
     found = rows(study)

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, fields, replace
+from math import isclose
 
 from ribbonopt.errors import SceneError
 from ribbonopt.mechanics.laws.catalogue import numbers_of
@@ -123,10 +124,22 @@ def _sized(named: Mapping[str, float | None]) -> Sizes:
 def choices(scene: Scene, names: Iterable[str], given: Sizes) -> Iterator[Choice]:
     """Yield the laws of a comparison: the scene's own, then those of the names."""
     sizes = sizes_of(scene, given).known
-    yield Choice(scene.law.type, scene.law, numbers=_numbers(scene.law, scene))
+    yield _own(sizes, scene)
     for name in names:
         if name != scene.law.type:
             yield replace(_choice(name, sizes, scene), edges=given.edges)
+
+
+def _own(sizes: Mapping[str, float], scene: Scene) -> Choice:
+    """Return the scene's own law as it stands; where its numbers are not the ribbon's, say that."""
+    numbers, note = _numbers(scene.law, scene), ""
+    maker = MAKERS.get(scene.law.type)
+    if maker is not None and maker.needs and all(need in sizes for need in maker.needs):
+        of_ribbon = _choice(scene.law.type, sizes, scene).numbers
+        if any(not isclose(numbers[name], value) for name, value in of_ribbon.items()):
+            written = ", ".join(f"{name} = {value:.6g}" for name, value in of_ribbon.items())
+            note = f"as the scene has it; those of the ribbon would be {written}"
+    return Choice(scene.law.type, scene.law, note=note, numbers=numbers)
 
 
 def _choice(name: str, sizes: Mapping[str, float], scene: Scene) -> Choice:
