@@ -33,11 +33,13 @@ def crossings(law: dict[str, Any]) -> list[dict[str, Any]]:
     return [row for row in law["special"] if row["group"] == "crossing" and row["branch"] == 0]
 
 
-def test_a_column_buckles_under_each_law_at_its_own_load() -> None:
+@pytest.mark.parametrize("scale", ["linear", "log"])
+def test_a_column_buckles_under_each_law_at_its_own_load(scale: str) -> None:
     """4 pi^2 B2, of laws that differ in B2 alone where ribbons are straight."""
+    step = f"scale: {scale}, largest: {2.5 if scale == 'linear' else 0.03}"
     scene = load_scene(
         CONFIGS / "column_clamped.yaml",
-        ["law=sadowsky", "continuation={parameter: parameters.P, from: 35, to: 40, largest: 2.5}"],
+        ["law=sadowsky", f"continuation={{parameter: parameters.P, from: 35, to: 40, {step}}}"],
     )
     study = compare_branches(scene, ["kirchhoff"], Sizes(None, None, NU))
     own, rod = study.laws

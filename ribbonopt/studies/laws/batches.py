@@ -22,7 +22,7 @@ from ribbonopt.studies.machine import machine
 from .choice import Choice, Sizes, choices, names_of
 from .makers import ALL
 from .ribbons import Ribbons
-from .row_gaps import GAPS, gaps_of
+from .row_gaps import GAPS, gaps_of, with_special
 from .rows import begun
 
 NOTHING = Sizes()
@@ -142,7 +142,7 @@ def _wanted(ribbons: Ribbons) -> Iterator[Choice]:
 def _named(row: Row, law: str) -> Row:
     """Return a row with the word for its law in place of an input."""
     kept = {name: value for name, value in row.items() if name != "law"}
-    return {"number": kept.pop("number"), "law": law, **kept}
+    return with_special({"number": kept.pop("number"), "law": law, **kept})
 
 
 def _summed(rows: list[Row]) -> Row:

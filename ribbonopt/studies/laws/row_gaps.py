@@ -10,6 +10,7 @@ from ribbonopt.plain import Row
 from ribbonopt.scene.quantities import START_VECTORS
 
 GAPS = ("energy", "n0", "m0")
+SPECIALS, LISTED = "specials", 6  # of rows of branches: their special points; in columns
 SMALL = 1e-9  # of the loads: a vector that small vanishes
 
 
@@ -21,9 +22,9 @@ def gaps_of(row: Row, other: Row | None, length: float | None) -> Row:
     """
     if other is None or row["law"] == other["law"] or length is None:
         return {}
+    result = _special_gaps(row, other)
     if not (row["verified"] and other["verified"] and "energy" in row and "energy" in other):
-        return {}
-    result: Row = {}
+        return result
     here, there = (_vectors(some, length) for some in (row, other))
     loads = max(float(np.linalg.norm(there[name])) for name in ("n0", "m0"))
     for name in GAPS:
@@ -36,6 +37,30 @@ def gaps_of(row: Row, other: Row | None, length: float | None) -> Row:
         known = [bar for bar in bars if bar is not None]
         bar = sum(known) + abs(value) / size * known[1] if len(known) == 2 and size else None
         result[f"{name}_gap_error"] = None if bar is None else bar / size
+    return result
+
+
+def with_special(row: Row) -> Row:
+    """Return the row of a ribbon that was continued with its special points in columns.
+
+    `special1`, `special1_kind` and `special1_error`, the bar of its value, and so on.
+    """
+    kept = {name: value for name, value in row.items() if name != SPECIALS}
+    for i, point in enumerate(row.get(SPECIALS, [])[:LISTED], start=1):
+        value, error = point[point["parameter"]], point["error"]
+        kept |= {f"special{i}": value, f"special{i}_kind": point["kind"]}
+        kept[f"special{i}_error"] = None if error is None else error * abs(value)
+    return kept
+
+
+def _special_gaps(row: Row, other: Row) -> Row:
+    """Return by how much special points are elsewhere, each with the bars of both."""
+    result: Row = {}
+    for name in (f"special{i}" for i in range(1, LISTED + 1)):
+        if name in row and name in other:
+            bars = [some[f"{name}_error"] for some in (row, other)]
+            result[f"{name}_gap"] = row[name] - other[name]
+            result[f"{name}_gap_error"] = None if None in bars else sum(bars)
     return result
 
 
