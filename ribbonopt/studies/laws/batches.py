@@ -22,7 +22,7 @@ from ribbonopt.studies.machine import machine
 from .choice import Choice, Sizes, choices, names_of
 from .makers import ALL
 from .ribbons import Ribbons
-from .row_gaps import GAPS, gaps_of, with_special
+from .row_gaps import GAPS, SPECIAL_GAPS, gaps_of, with_special
 from .rows import begun
 
 NOTHING = Sizes()
@@ -154,7 +154,7 @@ def _summed(rows: list[Row]) -> Row:
     if failed:
         first = failed[0]
         result["message"] = f"number {first['number']}: {first['status']}: {first['message']}"
-    for name in GAPS:
+    for name in (*GAPS, *SPECIAL_GAPS):
         gaps = [row[f"{name}_gap"] for row in rows if row.get(f"{name}_gap") is not None]
         result[f"{name}_gap"] = median(gaps) if gaps else None
         result[f"{name}_gap_largest"] = max(gaps, key=abs) if gaps else None

@@ -9,11 +9,14 @@ from ribbonopt.studies.comparison.table import aligned
 
 from .batches import StudyComparison
 from .branches import BranchComparison
-from .row_gaps import GAPS
+from .row_gaps import GAPS, SPECIAL_GAPS
 from .table import PERCENT, barred, seconds, status, told
 
 HEAD = ("law", "numbers", "points", "seconds", "status")
 MOST = 40  # special points that are printed
+NAMES = {"energy": "energy", "n0": "n(0)", "m0": "m(0)"} | {
+    name: f"place of special point {i}" for i, name in enumerate(SPECIAL_GAPS, start=1)
+}
 
 
 def branch_table(study: BranchComparison) -> str:
@@ -76,10 +79,11 @@ def _place(row: Row) -> str:
 
 def study_table(study: StudyComparison) -> str:
     """Return how many ribbons each law carries, and how far from the study's own law."""
-    head = ("law", "numbers", "solved", *(f"{name}: median, largest" for name in _NAMES))
+    known = [name for name in NAMES if any(_known(law, name) for law in study.laws)]
+    head = ("law", "numbers", "solved", *(f"{NAMES[name]}: median, largest" for name in known))
     rows = [(*head, "seconds", "status")]
     for law in study.laws:
-        gaps = (_percent(law, name) for name in GAPS)
+        gaps = (_percent(law, name) for name in known)
         count = f"{law['solved']}/{law['ribbons']}"
         rows.append((law["law"], law["numbers"], count, *gaps, seconds(law), status(law)))
     lines = [f"{study.name}: {study.count} ribbons; differences to their own law", ""]
@@ -91,10 +95,14 @@ def study_table(study: StudyComparison) -> str:
     return "\n".join([*lines, *told(study.laws)])
 
 
-_NAMES = ("energy", "n(0)", "m(0)")
+def _known(law: Row, name: str) -> list[float]:
+    """Median and largest difference of the ribbons of a law; nothing where there is none."""
+    both = law.get(f"{name}_gap"), law.get(f"{name}_gap_largest")
+    return [value for value in both if value is not None]
 
 
 def _percent(law: Row, name: str) -> str:
-    both = law.get(f"{name}_gap"), law.get(f"{name}_gap_largest")
-    known = [f"{PERCENT * value:.3g}" for value in both if value is not None]
-    return f"{', '.join(known)} %" if known else "-"
+    """Write median and largest, relative in per cent; of places of special points as they are."""
+    relative = name in GAPS
+    words = [f"{value * (PERCENT if relative else 1.0):.3g}" for value in _known(law, name)]
+    return f"{', '.join(words)}{' %' * relative}" if words else "-"

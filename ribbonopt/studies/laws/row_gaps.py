@@ -10,6 +10,7 @@ from ribbonopt.plain import Row
 from ribbonopt.scene.quantities import START_VECTORS
 
 GAPS = ("energy", "n0", "m0")
+SPECIAL_GAPS = ("special1", "special2")  # those that are told of all ribbons together
 SPECIALS, LISTED = "specials", 6  # of rows of branches: their special points; in columns
 SMALL = 1e-9  # of the loads: a vector that small vanishes
 
