@@ -38,9 +38,9 @@ def plot_law_batches(study: Mapping[str, Any]) -> Figure:
     rows = study["rows"]
     numeric = [n for n in study["inputs"] if is_numeric(rows, n) and varied(rows, n)]
     x = numeric[0] if numeric else "number"
-    figure = blank(13.0, 5.0)
     shown = [name for name in PANELS if any(row.get(name) is not None for row in rows)]
     shown = shown[:MOST] or list(PANELS)[:1]
+    figure = blank(max(7.0, 4.4 * len(shown)), 5.0)
     panels = list(figure.subplots(1, len(shown), squeeze=False)[0])
     laws = [law["law"] for law in study["laws"]]
     for axes, column in zip(panels, shown, strict=True):
