@@ -13,6 +13,7 @@ from ribbonopt.pipeline.prepared import solve
 from ribbonopt.scene import Regularized, Scene, load_scene, loads_scene
 from ribbonopt.studies.laws.choice import Sizes, choices
 from ribbonopt.studies.laws.compare import LawComparison, compare_laws
+from ribbonopt.studies.laws.described import Described, differences
 
 CONFIGS = Path(__file__).parents[2] / "configs"
 NU = 0.3
@@ -96,6 +97,25 @@ def test_the_distance_of_shapes_is_that_of_two_arcs() -> None:
     assert row["energy_gap"] == pytest.approx(1 / B2 - 1, abs=row["energy_gap_error"] + 1e-12)
     # n = 0: differences of force are measured by the moment, and there are none.
     assert row["n0_gap"] <= row["n0_gap_error"] + 1e-12
+
+
+def test_a_difference_has_the_bars_of_both() -> None:
+    """A coarse and a fine solution of one scene differ by no more than that, either way round."""
+    coarse, fine = (
+        Described(
+            solve(
+                loads_scene(
+                    CLAMP_C,
+                    overrides=["tolerance=null", f"transcription={{type: collocation, {mesh}}}"],
+                )
+            )
+        )
+        for mesh in ("degree: 2, intervals: 8", "degree: 6, intervals: 20")
+    )
+    for pair in ((coarse, fine), (fine, coarse)):
+        for name, (gap, bar) in differences(*pair).items():
+            assert bar is not None
+            assert 1e-9 < abs(gap) <= bar < 1e-2, name
 
 
 def test_a_wide_ribbon_beside_sadowskys_on_the_generic_clamp() -> None:

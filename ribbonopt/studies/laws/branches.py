@@ -20,6 +20,7 @@ from ribbonopt.errors import ConvergenceError, RibbonoptError
 from ribbonopt.output.summary import versions
 from ribbonopt.plain import Row, finite
 from ribbonopt.scene import Scene
+from ribbonopt.scene.stages import stages_of
 from ribbonopt.scene.units import units_of
 from ribbonopt.solution.solution import Solution
 from ribbonopt.studies.continuation.continuation import Continuation
@@ -118,6 +119,11 @@ def compare_branches(
     return BranchComparison(scene.name, units_of(scene).name, tuple(rows), pairs, log)
 
 
+def bar_of(value: float, error: float | None, log: bool) -> float | None:
+    """Return the bar of a value from that of its position, which may be its logarithm."""
+    return None if error is None else error * (math.log(10) * abs(value) if log else 1.0)
+
+
 class _Walk:
     """One law's branch."""
 
@@ -169,21 +175,13 @@ class _Walk:
         key = point.stage, point.branch, "crossing" if crossing else point.kind
         self.counts[key] += 1
         value = float(row[row["parameter"]])
+        log = stages_of(self.scene)[point.stage].scale == "log"
         names = ("kind", "stage", "branch", "parameter", "energy", "note")
         self.special.append(
             {"law": self.choice.name, "place": self.counts[key], "value": value}
-            | {"value_error": self._bar(point, value), "group": key[2]}
+            | {"value_error": bar_of(value, point.error, log), "group": key[2]}
             | {name: row.get(name) for name in names}
         )
-
-    def _bar(self, point: Point[Solution], value: float) -> float | None:
-        """Return the bar of the value of a special point; its position may be a logarithm."""
-        if point.error is None:
-            return None
-        stage = self.scene.continuation
-        stage = stage[point.stage] if isinstance(stage, tuple) else stage
-        log = stage is not None and stage.scale == "log"
-        return point.error * (math.log(10) * abs(value) if log else 1.0)
 
     def _drawn(self, found: Continuation) -> None:
         """Choose what is worth seeing."""

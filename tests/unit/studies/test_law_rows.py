@@ -3,6 +3,7 @@
 import pytest
 
 from ribbonopt.errors import SceneError
+from ribbonopt.studies.laws.branches import bar_of
 from ribbonopt.studies.laws.choice import names_of
 from ribbonopt.studies.laws.row_gaps import gaps_of, with_special
 from ribbonopt.studies.laws.table import barred
@@ -49,6 +50,14 @@ def test_the_own_law_and_what_failed_are_not_compared() -> None:
     own = loads("own", 2.0, 0.0, 4.0, 0.0)
     assert gaps_of(own, own, 1.0) == {}
     assert gaps_of({**loads("sano", 3.0, 4.0, 8.0, 1e-3), "verified": False}, own, 1.0) == {}
+
+
+def test_bars_of_places_on_a_logarithmic_scale_are_no_decades() -> None:
+    decades = 1e-6
+    bar = bar_of(300.0, decades, log=True)
+    assert bar == pytest.approx(300 * (10**decades - 1), rel=1e-5)
+    assert bar_of(-300.0, 1e-6, log=False) == 1e-6
+    assert bar_of(300.0, None, log=True) is None
 
 
 def test_names_of_laws() -> None:
