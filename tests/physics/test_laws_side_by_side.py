@@ -136,6 +136,25 @@ def test_a_wide_ribbon_beside_sadowskys_on_the_generic_clamp() -> None:
 
 
 @pytest.mark.slow
+def test_five_laws_on_the_generic_clamp() -> None:
+    """The extensible ribbon of L / w = w / h = 20 by shooting and by the collocated energy."""
+    pytest.importorskip("ribbonopt.mechanics.laws.extensible")
+    found = rows(compare_laws(loads_scene(CLAMP_C), ["all"], SIZES_C))
+    assert list(found) == ["sadowsky", "kirchhoff", "wunderlich", "extensible", "sano"]
+    assert all(row["verified"] for row in found.values())
+    for name, true in (("sadowsky", SADOWSKY_C), ("wunderlich", WUNDERLICH_C)):
+        within(found[name], "energy", true["energy"], 1e-12)
+    for name, digits in (("energy", 1e-12), ("n0", 2e-10), ("m0", 2e-10)):
+        within(found["extensible"], name, EXTENSIBLE_C[name], digits)
+    gap = EXTENSIBLE_C["energy"] / SADOWSKY_C["energy"] - 1
+    row = found["extensible"]
+    assert row["energy_gap"] == pytest.approx(gap, abs=row["energy_gap_error"] + 1e-12)
+    # Energies rise from the rod to the inextensible ribbon.
+    energies = [found[name]["energy"] for name in ("kirchhoff", "sano", "extensible", "sadowsky")]
+    assert energies == sorted(energies)
+
+
+@pytest.mark.slow
 def test_moebius_ribbons_under_all_laws_in_si_and_in_special_units() -> None:
     """The table of Wunderlich's Moebius band at w = 0.2 / pi; a unit is a unit."""
     scene = load_scene(CONFIGS / "moebius_half.yaml", ["tolerance=1e-9"])
