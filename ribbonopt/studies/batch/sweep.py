@@ -21,16 +21,18 @@ import glob
 import itertools
 import os
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from ribbonopt.errors import SceneError
 from ribbonopt.plain import is_number
+from ribbonopt.reading import read_text
 from ribbonopt.scene import Scene
 from ribbonopt.scene.faults import InvalidSceneError, KeyPath, Place, dotted, report, suggestion
 from ribbonopt.scene.limits import SECONDS
 from ribbonopt.scene.schema.annotations import written_keys
-from ribbonopt.scene.yamlio import plain_yaml, read_yaml
+from ribbonopt.scene.yamlio import SCENE, plain_yaml, read_yaml
 from ribbonopt.text import name_fault
 
 from .cells import as_yaml
@@ -75,6 +77,17 @@ def load_study(paths: Sequence[str | Path], overrides: Sequence[str] = ()) -> St
             sweeps.append(Sweep(Source(str(file), text), common))
     name = settings.pop("name", None) or (_named_after(files[0]) if len(files) == 1 else "batch")
     return Study(name, tuple(sweeps), **settings)
+
+
+def is_study(path: str | Path) -> bool:
+    """Whether a path is that of a study, or of several files; False where it cannot be read."""
+    if os.path.isdir(path) or any(character in str(path) for character in "*?["):
+        return True
+    try:
+        found = plain_yaml(read_text(path, replace(SCENE, piped=False)), str(path))
+    except SceneError:
+        return False
+    return isinstance(found, dict) and ("sweep" in found or "scene" in found)
 
 
 def _named_after(file: Path) -> str:
