@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 from scipy.integrate import solve_ivp
 
-from .curved import Along, Material, value
+from .curved import Along, Material, Natural, value
 from .path import turned
 from .rod import Array, along, cross, dot
 
@@ -88,25 +88,19 @@ class Strip:
         if any(callable(c) for c in self.couple):
             raise ValueError("mixtures under couples that vary are not known here")
 
+    @property
+    def switched(self) -> bool:
+        """Whether its law has two sheets."""
+        return self.material.switched
+
+    @property
+    def natural(self) -> Natural:
+        """Strains that it has when free."""
+        return self.material.natural
+
     def jump(self, y: Array, at: float | Array) -> Array:
         """Return the state behind a station, if there is one at that arclength."""
-        y = y.copy()
-        for point in self.points:
-            if np.ndim(at) == 0 and abs(point.at - at) < 1e-14:
-                force, moment = (
-                    np.stack([np.broadcast_to(x, y.shape[1:]) for x in v])
-                    for v in (point.force, point.moment)
-                )
-                if point.follows:
-                    frame = y[3:12].reshape(3, 3, -1)
-                    force, moment = (
-                        sum(v[i] * frame[i] for i in range(3)) for v in (force, moment)
-                    )
-                else:
-                    y[19] += dot(force, y[:3])
-                y[12:15] -= force
-                y[15:18] -= moment
-        return y
+        return jumped(self.points, y, at)
 
     def along(
         self,
@@ -136,17 +130,7 @@ class Strip:
         self, y: Array, a: float | Array, b: float | Array, kind: int, rtol: float = 3e-14
     ) -> Array:
         """State (20, k) at b from that at a, with nothing between."""
-        shape, length = y.shape, np.asarray(b) - a
-
-        def rate(x: float, y: Array) -> Array:
-            s = np.broadcast_to(a + x * length, shape[1:])
-            return (self.rates(kind, s, y.reshape(shape)) * length).ravel()
-
-        path = solve_ivp(rate, (0, 1), y.ravel(), "DOP853", rtol=rtol, atol=rtol)
-        if not path.success:
-            raise ArithmeticError(path.message)
-        end: Array = path.y[:, -1].reshape(shape)
-        return end
+        return integrated(lambda s, y: self.rates(kind, s, y), y, a, b, rtol)
 
     def turn(self, y: Array, s: float | Array) -> Array:
         """T of the law (k,), whose sign is its sheet."""
@@ -158,6 +142,46 @@ class Strip:
         own = along(frame, y[15:18])
         u, energy = self.material.strains(kind, own, s)
         return np.stack([energy, dot(own, u) - energy + dot(frame[2], y[12:15])])
+
+
+def jumped(points: Sequence[Point], y: Array, at: float | Array) -> Array:
+    """Return the state (20 or more, k) behind a station, if there is one at that arclength."""
+    y = y.copy()
+    for point in points:
+        if np.ndim(at) == 0 and abs(point.at - at) < 1e-14:
+            force, moment = (
+                np.stack([np.broadcast_to(x, y.shape[1:]) for x in v])
+                for v in (point.force, point.moment)
+            )
+            if point.follows:
+                frame = y[3:12].reshape(3, 3, -1)
+                force, moment = (sum(v[i] * frame[i] for i in range(3)) for v in (force, moment))
+            else:
+                y[19] += dot(force, y[:3])
+            y[12:15] -= force
+            y[15:18] -= moment
+    return y
+
+
+def integrated(
+    rates: Callable[[Array, Array], Array],
+    y: Array,
+    a: float | Array,
+    b: float | Array,
+    rtol: float = 3e-14,
+) -> Array:
+    """States (rows, k) at b from those at a, of rates at arclengths (k,)."""
+    shape, length = y.shape, np.asarray(b) - a
+
+    def rate(x: float, y: Array) -> Array:
+        s = np.broadcast_to(a + x * length, shape[1:])
+        return (rates(s, y.reshape(shape)) * length).ravel()
+
+    path = solve_ivp(rate, (0, 1), y.ravel(), "DOP853", rtol=rtol, atol=rtol)
+    if not path.success:
+        raise ArithmeticError(path.message)
+    end: Array = path.y[:, -1].reshape(shape)
+    return end
 
 
 def state(r: Array, frame: Array, n: Array, m: Array) -> Array:
