@@ -64,12 +64,16 @@ class ConstitutiveLaw(ABC):
     kinked: bool = False
     #: its sides are two sheets that may mix, as Sadowsky's
     sheeted: bool = False
+    #: strains fade away with a logarithm where it switches, which a mesh must gather to
+    fades: bool = False
     #: what `switching` is called in words
     switch_name: str = "m2"
     #: `moment` is exact and a closed form, cheap to differentiate; else it serves guesses only
     closed_moment: bool = True
     #: names of states of its own along the ribbon, with `rates`, `end_conditions`, `own_guess`
     states: tuple[str, ...] = ()
+    #: names of the controls of its energy form, where their guess is not of n and m alone
+    controls: tuple[str, ...] = ()
 
     @abstractmethod
     def strain(self, stress: Stress) -> ca.SX:
@@ -157,6 +161,14 @@ class ConstitutiveLaw(ABC):
     def singular(self, stress: Stress) -> tuple[Singular, ...]:
         """Return where strains are singular functions of complex s; nowhere if nothing is known."""
         return ()
+
+    def most_rate(self) -> ca.SX:
+        """Return the largest rate of its own states, (k,), where its energy form bounds it."""
+        return ca.inf * ca.SX.ones(len(self.states))
+
+    def controls_for(self, stress: Stress, rates: ca.SX) -> ca.SX:
+        """Return what controls of its energy form, `controls` by name, give its states rates."""
+        return ca.SX(0, 1)
 
     # Switching: of use to kinked laws, and to find phases for them on solutions of smooth ones.
 

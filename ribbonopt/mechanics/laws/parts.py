@@ -23,12 +23,14 @@ class Singular(NamedTuple):
     """Where strains are singular as functions of complex s: where `re` + i `im` is zero.
 
     `re` and `im` have one dimension, whichever; `size` says by how much strains change there, as a
-    moment. Near the real axis that is a layer, which a mesh must resolve to be of use.
+    moment. Near the real axis that is a layer, which a mesh must resolve to be of use. Where it
+    `fades` (1, else 0) strains change there in proportion to the distance, but for a logarithm.
     """
 
     re: ca.SX
     im: ca.SX
     size: ca.SX
+    fades: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)
