@@ -17,6 +17,8 @@ from .wide import ETA, D, M, N, P, R, Wide
 from .wide_starts import meshed, polished
 
 SIGNS = 40  # samples of A in each phase
+SAMPLES = 1201  # of a solution without phases
+PLANAR = 1e-9  # eta and p of a ribbon that stays in a plane, where all is smooth
 
 
 def near(solution: Any) -> tuple[Joints, Joints]:
@@ -33,6 +35,8 @@ def near(solution: Any) -> tuple[Joints, Joints]:
     a, b = scene.interval
     given = Samples(solution, a, b, strip.width)
     ends = a + (b - a) * np.asarray(solution.trajectory.ends)
+    if len(ends) == 2:
+        ends = np.array([a, *inflections(strip, given, a, b), b])
     size = given.sizes[1]
     reached = tuple(abs(strip.turn(given(s), np.array([s]))[0]) < 1e-6 * size for s in (a, b))
     found = polished(meshed(strip, given.along, ends, reached), conditions_of(scene))
@@ -40,6 +44,16 @@ def near(solution: Any) -> tuple[Joints, Joints]:
     if wrong:
         raise ArithmeticError(wrong)
     return found
+
+
+def inflections(strip: Wide, given: Samples, a: float, b: float) -> list[float]:
+    """About where A changes its sign, of a solution that is not in phases."""
+    s = np.linspace(a, b, SAMPLES)[1:-1]
+    y = given.along(s)
+    A = strip.turn(y, s)
+    at = np.flatnonzero((A[1:] > 0) != (A[:-1] > 0))
+    planar = np.abs(y[[ETA, P]]).max() < PLANAR
+    return [] if planar else list(s[at] + (s[at + 1] - s[at]) * A[at] / (A[at] - A[at + 1]))
 
 
 def wrong_sign(joints: Joints) -> str:
