@@ -177,9 +177,9 @@ def from_nothing(ways: Ways, scene: Scene) -> dict[str, Any]:
 def compared(ways: Ways, scene: Scene, found: Solution, plain: Solution) -> dict[str, Any]:
     """Compare an answer with the energy form from it: on its mesh, or else on an even one."""
     agreed, message = {"agrees": (ENERGY, LOADS), "agrees roughly": (SAME, ROUGHLY)}, ""
-    for (name, (energy, loads)), near in zip(agreed.items(), (found, plain), strict=True):
+    for (name, (energy, loads)), start in zip(agreed.items(), (found, plain), strict=True):
         try:
-            other = ways.energy.polish(near, energy_form(scene))
+            other = ways.energy.polish(start, energy_form(scene))
         except (ConvergenceError, ModelError) as error:
             message = str(error)
             continue

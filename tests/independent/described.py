@@ -13,6 +13,7 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 
 from .curved import Along, Material, Natural, value
+from .inplane import InPlane
 from .loaded import Point, Strip, rotated
 from .path import turned
 from .plates import extensible, sano
@@ -89,6 +90,7 @@ def strip_of(scene: Any) -> Strip | Wide:
         tuple(couple),
         along(getattr(loads, "pressure", None), theta),
         tuple(p for load in getattr(loads, "points", ()) for p in points_of(load, theta)),
+        inplane_of(getattr(scene, "membrane", None), theta),
     )
     if scene.law.type == "wunderlich":
         if width is not None:
@@ -135,6 +137,12 @@ def natural_of(scene: Any) -> Natural:
     said, theta = getattr(scene, "natural", None), scene.parameters
     ratio = number(getattr(said, "poisson_ratio", None), theta)
     return Natural(*(along(getattr(said, name, None), theta) for name in NATURAL), ratio)
+
+
+def inplane_of(said: Any, theta: Mapping[str, float]) -> InPlane:
+    """Return how the ribbon gives in its own plane."""
+    names = ("bending", "stretching")
+    return InPlane(*(number(getattr(said, name, None), theta, np.inf) for name in names))
 
 
 def edge_of(end: Any) -> str | None:

@@ -23,6 +23,7 @@ REST = [*range(12, 18), ETA, P]  # rows of n, m, eta and p
 IMAGINARY = 1e-40
 MOST = 60
 STALLED = 1e-7
+QUADRATIC = 1e-11  # the next step would be far below rounding
 
 Conditions = Callable[[Array, Array], Array]
 
@@ -53,7 +54,7 @@ def closed(joints: Joints, conditions: Conditions) -> Joints:
         joints = after
         stalls = stalls + 1 if size > least / 4 and share == 1 else 0
         least = min(least, size)
-        if size < 1e-14 or (size < STALLED and stalls > (size > 1e-10)):
+        if (size < QUADRATIC and share == 1) or (size < STALLED and stalls > (size > 1e-10)):
             return joints
     raise ArithmeticError(f"Newton's method did not converge: last step {size:.1e}")
 

@@ -14,6 +14,7 @@ import numpy as np
 from scipy.integrate import solve_ivp
 
 from .curved import Along, Material, Natural, value
+from .inplane import InPlane
 from .path import turned
 from .rod import Array, along, cross, dot
 
@@ -21,6 +22,7 @@ ROWS = 20  # r, d1, d2, d3, n, m, energy, work of the dead loads
 STEP = 1e-2  # of differences of coefficients along the ribbon, in mixtures only
 
 Vector = tuple[Along, Along, Along]
+RIGID = InPlane()
 
 
 @dataclass(frozen=True)
@@ -45,6 +47,7 @@ class Strip:
     couple: Vector = (0.0, 0.0, 0.0)
     pressure: Along = 0.0
     points: tuple[Point, ...] = ()
+    inplane: InPlane = RIGID
 
     def rates(self, kind: int, s: Array, y: Array) -> Array:
         """Rates (20, k) at arclengths s (k,)."""
@@ -59,14 +62,18 @@ class Strip:
         else:
             u, energy = self._mixture(s, own, along(frame, n), along(frame, f), along(frame, c))
             self._steady()
+            if not self.inplane.rigid:
+                raise ValueError("mixtures of a ribbon that gives in its plane are not known here")
         out = np.empty_like(y)
         out[:3] = d3
         out[3:6] = u[2] * d2 - u[1] * d3
         out[6:9] = u[0] * d3 - u[2] * d1
         out[9:12] = u[1] * d1 - u[0] * d2
-        out[12:15] = -f - value(self.pressure, s) * d1
+        pressed = value(self.pressure, s)
+        out[12:15] = -f - pressed * d1
         out[15:18] = cross(n, d3) - c
         out[18], out[19] = energy, dot(f, y[:3])
+        self.inplane.give(out, y, pressed, value(self.material.width, s))
         return out
 
     def _mixture(self, s: Array, m: Array, n: Array, f: Array, c: Array) -> tuple[Array, Array]:
@@ -141,7 +148,9 @@ class Strip:
         frame = y[3:12].reshape(3, 3, -1)
         own = along(frame, y[15:18])
         u, energy = self.material.strains(kind, own, s)
-        return np.stack([energy, dot(own, u) - energy + dot(frame[2], y[12:15])])
+        both = np.stack([energy, dot(own, u) - energy + dot(frame[2], y[12:15])])
+        width = value(self.material.width, s)
+        return both + self.inplane.strains(y[12:15], y[15:18], frame, width)[2]
 
 
 def jumped(points: Sequence[Point], y: Array, at: float | Array) -> Array:

@@ -15,7 +15,8 @@ from math import factorial
 import numpy as np
 
 from .curved import Along, Natural, value
-from .loaded import Point, Vector, integrated, jumped
+from .inplane import InPlane
+from .loaded import RIGID, Point, Vector, integrated, jumped
 from .rod import Array, along, cross, dot
 
 ROWS = 22  # r, d1, d2, d3, n, m, energy, work of the dead loads, eta, p
@@ -23,6 +24,7 @@ R, D, N, M, E, ETA, P = slice(0, 3), slice(3, 12), slice(12, 15), slice(15, 18),
 SERIES = [2.0 ** (2 * k + 1) / (4 * factorial(2 * k + 1)) for k in range(1, 14)]
 ONE = (np.sinh(2.0) - 2) / 4  # g(1): series below it, exponentials above
 NO_A = 1e-60
+STEPS = 7
 FLAT = Natural()
 
 
@@ -43,24 +45,29 @@ def _large(x: Array) -> tuple[Array, Array]:
 
 
 def xi_of(p: Array, A: Array, factor: Array) -> Array:
-    """Return xi of g(xi) = G = p factor / A^2 by Newton's method, on g or on its logarithm."""
+    """Return xi of g(xi) = G = p factor / A^2 by Newton's method, on g or on its logarithm.
+
+    Of complex numbers, which are those that differ along the first axis in imaginary parts only,
+    the last step, which is exact there, is taken in full.
+    """
     A = np.where(np.abs(A.real) < NO_A, NO_A + 1j * A.imag, A)
-    sign = np.where(p.real < 0, -1.0, 1.0)
-    square = A * A
+    sign, square = np.where(p.real < 0, -1.0, 1.0), A * A
     little = np.abs(p.real) * factor.real < ONE * square.real
     G = np.where(little, p * factor / np.where(little, square, 1), 0)
     log_G = np.log(np.where(little, 1, sign * p * factor)) - np.log(np.where(little, 1, square))
-    x = 3 * G.real / (1 + np.abs(G.real))
-    half = np.maximum(log_G.real, 0) / 2
+    alike = G.ndim > 1 and all((v.real == v.real[:1]).all() for v in (G, log_G))
+    g, log_g = ((v.real[:1] if alike else v.real) for v in (G, log_G))
+    x, half = 3 * g / (1 + np.abs(g)), np.maximum(log_g, 0) / 2
     y = 1 + half + np.log1p(half)
-    for i in range(9):
-        last = i == 8  # imaginary parts in the last step only: there it is exact
-        g, slope = _small(x)
-        x = x - (g - (G if last else G.real)) / slope
-        log_g, slope = _large(y)
-        y = np.maximum(y, 0.5) if not last else y
-        log_g, slope = _large(y)
-        y = y - (log_g - (log_G if last else log_G.real)) / slope
+    for _ in range(STEPS):
+        found, slope = _small(x)
+        x = x - (found - g) / slope
+        found, slope = _large(y)
+        y = np.maximum(y - (found - log_g) / slope, 0.5)
+    found, slope = _small(x)
+    x = x - (found - G) / slope
+    found, slope = _large(y)
+    y = y - (found - log_G) / slope
     return np.where(little, x, sign * y)
 
 
@@ -84,6 +91,7 @@ class Wide:
     couple: Vector = (0.0, 0.0, 0.0)
     pressure: Along = 0.0
     points: tuple[Point, ...] = ()
+    inplane: InPlane = RIGID
     switched = True  # at A = 0
 
     def turn(self, y: Array, s: Array) -> Array:
@@ -112,12 +120,14 @@ class Wide:
         out = np.empty_like(y)
         out[R] = d3
         out[3:6], out[6:9], out[9:12] = u3 * d2 - u2 * d3, -u3 * d1, u2 * d1
-        out[N] = -f - value(self.pressure, s) * d1
+        pressed = value(self.pressure, s)
+        out[N] = -f - pressed * d1
         out[M] = cross(y[N], d3) - c
         out[E] = u2**2 * e**2 * phi / 2 - (K11 + (2 * K12 + K22 * eta) * eta) * u2 + constant
         out[E + 1] = dot(f, y[R])
         out[ETA] = 2 / self.width * np.tanh(xi)
         out[P] = 2 * eta * e * u2**2 * phi - (dot(d3, y[M]) + 2 * K12 + 2 * K22 * eta) * u2
+        self.inplane.give(out, y, pressed)
         return out
 
     def hamiltonian(self, y: Array, s: Array) -> Array:
@@ -125,7 +135,8 @@ class Wide:
         frame = y[D].reshape(3, 3, *y.shape[1:])
         own, rate = along(frame, y[M]), self.rates(s, y)
         u2 = self.strains(y, s)[0]
-        return u2 * (own[1] + y[ETA] * own[2]) + y[P] * rate[ETA] - rate[E] + dot(frame[2], y[N])
+        H = u2 * (own[1] + y[ETA] * own[2]) + y[P] * rate[ETA] - rate[E] + dot(frame[2], y[N])
+        return H + 2 * self.inplane.strains(y[N], y[M], frame, 1.0)[2]
 
     def piece(
         self, y: Array, a: float | Array, b: float | Array, kind: int, rtol: float = 3e-14
