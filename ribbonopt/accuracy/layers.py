@@ -35,17 +35,22 @@ Complex = NDArray[np.complex128]
 class Layers:
     """Singularities near one phase: relative positions (k,), and by how much strains change.
 
-    Where they `fade` (k,), by that times the distance.
+    Where they `fade` (k,), by that times the distance; nowhere by default.
     """
 
     places: Complex
     sizes: Array
-    fade: NDArray[np.bool_]
+    fades: NDArray[np.bool_] | None = None
 
     @classmethod
     def none(cls) -> Layers:
         """Return no singularities."""
-        return cls(np.empty(0, complex), np.empty(0), np.empty(0, bool))
+        return cls(np.empty(0, complex), np.empty(0))
+
+    @property
+    def fade(self) -> NDArray[np.bool_]:
+        """Which of them fade."""
+        return np.zeros(len(self), bool) if self.fades is None else self.fades
 
     def __len__(self) -> int:
         """Return how many there are."""

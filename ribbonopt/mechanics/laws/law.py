@@ -11,34 +11,17 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import casadi as ca
 
 from .implicit import ImplicitLaw
-from .parts import Relaxed, Singular, Switch
+from .parts import Relaxed, Singular, Stress, Switch
 
 if TYPE_CHECKING:
     from .natural import NaturalStrains
 
-
-class Stress(NamedTuple):
-    """What a law may read of a section: n, m (3,) along the directors, and its own states.
-
-    Where a phase may be a mixture also force and couple (3,) per length along the directors, None
-    without loads: they move n1 and m2, which it keeps.
-    """
-
-    n: ca.SX
-    m: ca.SX
-    own: ca.SX
-    load: ca.SX | None = None
-    couple: ca.SX | None = None
-
-    @classmethod
-    def of_moment(cls, m: ca.SX) -> Stress:
-        """Return the stress of a moment (3,) alone."""
-        return cls(ca.SX.zeros(3), m, ca.SX(0, 1))
+__all__ = ["ConstitutiveLaw", "RibbonLaw", "Stress"]
 
 
 class ConstitutiveLaw(ABC):

@@ -1,4 +1,4 @@
-"""What laws hand to generic code beside strains: switches, singularities, relaxed programs."""
+"""What laws read, and what they hand to generic code: switches, singularities, programs."""
 
 from __future__ import annotations
 
@@ -7,6 +7,25 @@ from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import casadi as ca
+
+
+class Stress(NamedTuple):
+    """What a law may read of a section: n, m (3,) along the directors, and its own states.
+
+    Where a phase may be a mixture also force and couple (3,) per length along the directors, None
+    without loads: they move n1 and m2, which it keeps.
+    """
+
+    n: ca.SX
+    m: ca.SX
+    own: ca.SX
+    load: ca.SX | None = None
+    couple: ca.SX | None = None
+
+    @classmethod
+    def of_moment(cls, m: ca.SX) -> Stress:
+        """Return the stress of a moment (3,) alone."""
+        return cls(ca.SX.zeros(3), m, ca.SX(0, 1))
 
 
 class Switch(NamedTuple):
