@@ -44,7 +44,7 @@ from independent.wide import ETA, M, N, P  # noqa: E402
 from independent.wide_near import near  # noqa: E402
 
 TOLERANCE = 1e-8
-SOLVER = Ipopt(max_iterations=100)
+SOLVER = Ipopt(max_iterations=80)
 ROUNDING = 1e-12  # of loads and energy
 ENERGY, LOADS = 1e-8, 1e-5  # relative: the energy form has no bars
 ROUGHLY = 5e-2  # of loads there
