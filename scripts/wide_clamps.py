@@ -5,10 +5,9 @@
 Ribbons are held at both ends as in `starts_clamps.py`, their edges straight there. From what is
 solved `tests/independent` finds the equilibrium nearby by other means, to rounding: `confirmed`
 where loads and energy differ by no more than their bars, `refuted` where they do or where there is
-none, `undecided` where that cannot tell. Of the same equilibrium the energy form is solved, from
-the answer: `agrees` where energies differ by less than ENERGY of them and loads by less than LOADS;
-`agrees roughly` on an even mesh, which knows of no inflection, where IPOPT does not get through.
-By itself, from nothing, it may find another one (`energy form from nothing`).
+none, `undecided` where that cannot tell. Of some the energy form is solved from the answer, on its
+mesh: `agrees` where energies differ by less than ENERGY of them and loads by less than LOADS. By
+itself, from nothing, it may find another equilibrium (`energy form from nothing`).
 """
 
 from __future__ import annotations
@@ -44,10 +43,10 @@ from independent.wide import ETA, M, N, P  # noqa: E402
 from independent.wide_near import near  # noqa: E402
 
 TOLERANCE = 1e-8
-SOLVER = Ipopt(max_iterations=80)
+SOLVER = Ipopt(max_iterations=100)
 ROUNDING = 1e-12  # of loads and energy
 ENERGY, LOADS = 1e-8, 1e-5  # relative: the energy form has no bars
-ROUGHLY = 5e-2  # of loads there
+EVERY = 4  # of so many clamps one is tried by the energy form from the answer
 SAME = 1e-4  # relative difference of energies, on meshes that know of no inflection
 
 
@@ -96,12 +95,12 @@ def judged(count: int, seed: int = 0, width: float = 0.05) -> list[dict[str, Any
     ways = Ways.of(next(iter(scenes.values())))
     rows = []
     for case, scene in scenes.items():
-        rows.append({"seed": case} | judge(ways, scene))
+        rows.append({"seed": case} | judge(ways, scene, case))
         print(json.dumps(rows[-1]), file=sys.stderr, flush=True)
     return rows
 
 
-def judge(ways: Ways, scene: Scene) -> dict[str, Any]:
+def judge(ways: Ways, scene: Scene, case: int) -> dict[str, Any]:
     """Solve one scene from nothing, then to a tolerance, and compare."""
     started = time.process_time()
     try:
@@ -117,22 +116,22 @@ def judge(ways: Ways, scene: Scene) -> dict[str, Any]:
     if not found.verified:
         return row
     tight = replace(scene, tolerance=TOLERANCE)
-    plain, started = found, time.process_time()
-    found = ways.tight.solve(tight, guess=plain)
+    started = time.process_time()
+    found = ways.tight.solve(tight, guess=found)
     row |= {"cpu_tight": time.process_time() - started, "elements": len(found.nodes) - 1}
     if not found.verified:
         return row | {"message": found.message}
     started = time.process_time()
     row |= confirmed(found)
     row["cpu_confirming"] = time.process_time() - started
-    return row | compared(ways, scene, found, plain)
+    return row | (compared(ways, scene, found) if case % EVERY == 0 else {})
 
 
 def confirmed(found: Solution) -> dict[str, Any]:
     """Return the verdict on an answer, with true errors over bars."""
     bars = estimate_error(found)
     try:
-        truth, coarse = near(found)
+        truth, _ = near(found, doubled=False)
     except ValueError as error:
         return {"verdict": "undecided", "where": str(error)}
     except ArithmeticError as error:
@@ -154,7 +153,6 @@ def confirmed(found: Solution) -> dict[str, Any]:
         "verdict": "confirmed" if right else "refuted",
         "errors_over_bars": over,
         "relative_errors": {k: float(e / sizes[k]) for k, e in errors.items()},
-        "rounding_of_truth": abs(truth.energy - coarse.energy) / truth.energy,
         "energy": truth.energy,
         "n0": y[N].tolist(),
         "m0": y[M].tolist(),
@@ -174,25 +172,21 @@ def from_nothing(ways: Ways, scene: Scene) -> dict[str, Any]:
     return cpu | {"energy_from_nothing": found.energy if found.verified else None}
 
 
-def compared(ways: Ways, scene: Scene, found: Solution, plain: Solution) -> dict[str, Any]:
-    """Compare an answer with the energy form from it: on its mesh, or else on an even one."""
-    agreed, message = {"agrees": (ENERGY, LOADS), "agrees roughly": (SAME, ROUGHLY)}, ""
-    for (name, (energy, loads)), start in zip(agreed.items(), (found, plain), strict=True):
-        try:
-            other = ways.energy.polish(start, energy_form(scene))
-        except (ConvergenceError, ModelError) as error:
-            message = str(error)
-            continue
-        message = other.message
-        if other.verified:
-            apart = {
-                "energy": abs(other.energy / found.energy - 1),
-                "n0": float(np.abs(other.n0 - found.n0).max() / np.abs(found.n0).max()),
-                "m0": float(np.abs(other.m0 - found.m0).max() / np.abs(found.m0).max()),
-            }
-            same = apart["energy"] <= energy and max(apart["n0"], apart["m0"]) <= loads
-            return {"energy_form": name if same else "differs", "apart": apart}
-    return {"energy_form": "unsolved", "energy_message": message}
+def compared(ways: Ways, scene: Scene, found: Solution) -> dict[str, Any]:
+    """Compare an answer with the energy form from it, on its mesh."""
+    try:
+        other = ways.energy.polish(found, energy_form(scene))
+    except (ConvergenceError, ModelError) as error:
+        return {"energy_form": "unsolved", "energy_message": str(error)}
+    if not other.verified:
+        return {"energy_form": "unsolved", "energy_message": other.message}
+    apart = {
+        "energy": abs(other.energy / found.energy - 1),
+        "n0": float(np.abs(other.n0 - found.n0).max() / np.abs(found.n0).max()),
+        "m0": float(np.abs(other.m0 - found.m0).max() / np.abs(found.m0).max()),
+    }
+    same = apart["energy"] <= ENERGY and max(apart["n0"], apart["m0"]) <= LOADS
+    return {"energy_form": "agrees" if same else "differs", "apart": apart}
 
 
 def summarised(rows: list[dict[str, Any]]) -> dict[str, Any]:

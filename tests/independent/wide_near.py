@@ -21,8 +21,8 @@ SAMPLES = 1201  # of a solution without phases
 PLANAR = 1e-9  # eta and p of a ribbon that stays in a plane, where all is smooth
 
 
-def near(solution: Any) -> tuple[Joints, Joints]:
-    """Return the equilibrium near a solution, and that on steps twice as long.
+def near(solution: Any, doubled: bool = True) -> tuple[Joints, Joints]:
+    """Return the equilibrium near a solution, and that on steps twice as long (or the same).
 
     ArithmeticError where there is none; ValueError for what is not known here.
     """
@@ -39,7 +39,8 @@ def near(solution: Any) -> tuple[Joints, Joints]:
         ends = np.array([a, *inflections(strip, given, a, b), b])
     size = given.sizes[1]
     reached = tuple(abs(strip.turn(given(s), np.array([s]))[0]) < 1e-6 * size for s in (a, b))
-    found = polished(meshed(strip, given.along, ends, reached), conditions_of(scene))
+    start, conditions = meshed(strip, given.along, ends, reached), conditions_of(scene)
+    found = polished(start, conditions, doubled=doubled)
     wrong = wrong_sign(found[0])
     if wrong:
         raise ArithmeticError(wrong)

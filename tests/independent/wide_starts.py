@@ -90,7 +90,9 @@ def narrow(
     return states
 
 
-def polished(joints: Joints, conditions: Conditions, rounds: int = 5) -> tuple[Joints, Joints]:
+def polished(
+    joints: Joints, conditions: Conditions, rounds: int = 5, doubled: bool = True
+) -> tuple[Joints, Joints]:
     """Return the equilibrium and that on steps twice as long: their difference is its error."""
     joints = closed(joints, conditions)
     for _ in range(rounds):
@@ -98,6 +100,8 @@ def polished(joints: Joints, conditions: Conditions, rounds: int = 5) -> tuple[J
         if parts.max() == 1:
             break
         joints = closed(joints.split(parts), conditions)
+    if not doubled:
+        return joints, joints
     return closed(joints.split(np.full(len(joints.h), 2)), conditions), joints
 
 
