@@ -206,6 +206,8 @@ def frame_of(said: Any, theta: Mapping[str, float]) -> Array | None:
 def prescribed(end: Any, theta: Mapping[str, float]) -> dict[str, Array]:
     """What an end holds, (3,) and (3, 3) with NaN for what is free: r, directors, n and m.
 
+    `own n` and `own m` are loads along the directors.
+
     Of supports `clamped`, `pinned` and `free` all is known, of others what is plain.
     """
     place = np.array([number(v, theta, np.nan) for v in parts(end.position)])
@@ -220,7 +222,8 @@ def prescribed(end: Any, theta: Mapping[str, float]) -> dict[str, Array]:
     for name, of in (("force", "n"), ("moment", "m")):
         said = getattr(end, name, None)
         follows = said is not None and any(getattr(said, d, None) is not None for d in DIRECTORS)
-        loads[of] = np.full(3, np.nan)
+        along = [number(getattr(said, d, None), theta, np.nan) for d in DIRECTORS]
+        loads[f"own {of}"], loads[of] = np.array(along), np.full(3, np.nan)
         if name in plain and not follows:
             loads[of] = np.array([number(v, theta) for v in parts(said)])
     if end.support in ("sliding", "flip", "held"):

@@ -65,10 +65,23 @@ class Samples:
         return 1 + float(np.abs(y[12:15]).max()), moment, p
 
 
+def looped(loop: Any, strip: Wide, sides: tuple[Array, Array], unit: float) -> tuple[float, str]:
+    """Gap of eta and p where a loop goes on: at flips one of both is zero, else they are the same.
+
+    Of opposite sign with every half twist, which turns the normal around.
+    """
+    own = np.array([[y[ETA, 0], y[P, 0] / unit] for y in sides])
+    if loop.piece == "whole":
+        return float(np.abs(own[1] - (-1) ** loop.half_twists * own[0]).max()), "eta, p of the loop"
+    return float(np.abs(own).min(axis=1).max()), "edges of the piece"
+
+
 def boundary(scene: Any, given: Samples, strip: Strip | Wide, sides: tuple[Array, Array]) -> Found:
     """Gaps of what the scene prescribes at both ends."""
     force, moment, p = given.sizes
     found: Found = []
+    if isinstance(strip, Wide) and getattr(scene.boundary, "loop", None) is not None:
+        return [looped(scene.boundary.loop, strip, sides, p)]
     ends = {"start": scene.boundary.start, "end": scene.boundary.end}
     for (name, end), y in zip(ends.items(), sides, strict=True):
         if end is None:
@@ -83,6 +96,8 @@ def boundary(scene: Any, given: Samples, strip: Strip | Wide, sides: tuple[Array
             "directors": frame - asked["directors"],
             "force": (y[12:15, 0] - sign * asked["n"]) / force,
             "moment": (y[15:18, 0] - sign * asked["m"]) / moment,
+            "force along directors": (frame @ y[12:15, 0] - sign * asked["own n"]) / force,
+            "moment along directors": (frame @ y[15:18, 0] - sign * asked["own m"]) / moment,
         }
         if isinstance(strip, Wide):
             edges = {"straight": y[ETA], "free": y[P] / p}

@@ -11,7 +11,7 @@ from .described import edge_of, prescribed, strip_of
 from .joining import OWN, Conditions
 from .joints import Joints
 from .path import rotation
-from .rod import Array
+from .rod import Array, along, dot
 from .samples import Samples
 from .wide import ETA, D, M, N, P, R, Wide
 from .wide_starts import meshed, polished
@@ -39,7 +39,9 @@ def near(solution: Any, doubled: bool = True) -> tuple[Joints, Joints]:
         ends = np.array([a, *inflections(strip, given, a, b), b])
     size = given.sizes[1]
     reached = tuple(abs(strip.turn(given(s), np.array([s]))[0]) < 1e-6 * size for s in (a, b))
-    start, conditions = meshed(strip, given.along, ends, reached), conditions_of(scene)
+    start = meshed(strip, given.along, ends, reached)
+    loop = getattr(scene.boundary, "loop", None)
+    conditions = conditions_of(scene) if loop is None else half_loop(loop, start)
     found = polished(start, conditions, doubled=doubled)
     wrong = wrong_sign(found[0])
     if wrong:
@@ -89,11 +91,37 @@ def conditions_of(scene: Any) -> Conditions:
                 found += list(rotation(frame, there))
             else:
                 found += _given(y[D], held["directors"].ravel())
-            found += _given(y[N], sign * held["n"]) + _given(y[M], sign * held["m"])
+            for rows, name in ((N, "n"), (M, "m")):
+                found += _given(y[rows], sign * held[name])
+                found += _given(along(frame, y[rows]), sign * held[f"own {name}"])
             found.append(y[ETA] if edge == "straight" else y[P])
         if len(found) != OWN:
             raise ValueError(f"{len(found)} conditions at both ends, expected {OWN}")
         return np.stack(found)
+
+    return conditions
+
+
+def half_loop(loop: Any, start: Joints) -> Conditions:
+    """Return what holds at both ends of half a loop, which begins where it does.
+
+    It is its own image after half a turn about the line of d1 at the start, on which it ends, along
+    d2 there if half twists are odd, else along d1.
+    """
+    if loop.piece != "half":
+        raise ValueError("pieces of loops other than halves are not known here")
+    odd = loop.half_twists % 2
+    place, frame = start.y[R, :1], start.y[D, 0].reshape(3, 3)
+    axis, across = frame[0], frame[1:]
+
+    def conditions(first: Array, last: Array) -> Array:
+        here, there = (y[D].reshape(3, 3, y.shape[1]) for y in (first, last))
+        held = rotation(here, np.broadcast_to(frame[:, :, None], here.shape))
+        start = [first[R] - place, held, *(dot(axis, first[v])[None] for v in (N, M))]
+        way = [dot(d, last[R] - place)[None] for d in across]
+        turn = [dot(axis, d)[None] for d in (there[1 - odd], there[2])]
+        end = last[ETA] if odd else last[P]
+        return np.concatenate([*start, first[P : P + 1], *way, *turn, end[None]])
 
     return conditions
 

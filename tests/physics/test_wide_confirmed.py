@@ -7,10 +7,10 @@ import numpy as np
 import pytest
 from independent.confirm import MOST, confirm, examine
 from independent.wide_near import near
-from wide_numbers import CLAMPS
+from wide_numbers import CLAMPS, HALVES
 
 from ribbonopt import solve
-from ribbonopt.scene import Boundary, End, Natural, RotationVector, Scene, Wunderlich
+from ribbonopt.scene import Boundary, End, Loop, Natural, RotationVector, Scene, Wunderlich
 from ribbonopt.solution.solution import Solution
 
 Array = np.ndarray
@@ -89,3 +89,19 @@ def test_a_clamp_with_an_inflection(edge: str, natural: Natural | None) -> None:
     assert confirm(found) < 10 * TOLERANCE
     if natural is None:
         assert found.energy == pytest.approx(CLAMPS[f"S, edges {edge}"].energy, rel=TOLERANCE)
+
+
+@pytest.mark.parametrize("width", ["0.01", "0.2/pi", "0.3"])
+def test_half_a_moebius_band(width: str) -> None:
+    known = HALVES[width]
+    boundary = Boundary(loop=Loop(1, "half"))
+    law = Wunderlich(width=known.width)
+    found = solve(Scene("half", law, boundary, interval=(0.0, 0.5), tolerance=TOLERANCE))
+    truth, _ = near(found, doubled=False)
+    assert found.energy == pytest.approx(known.energy, rel=TOLERANCE)
+    assert truth.energy == pytest.approx(known.energy, rel=1e-11)
+    frame = np.array([found.start[d] for d in ("d1", "d2", "d3")])
+    for ours, theirs in ((found.n0, known.n0), (found.m0, known.m0)):
+        size = float(np.abs(theirs).max())
+        assert frame @ ours == pytest.approx(theirs, abs=10 * TOLERANCE * size)
+    assert confirm(found) < 10 * TOLERANCE
