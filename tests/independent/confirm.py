@@ -66,6 +66,8 @@ def examine(solution: Any) -> Confirmed:
     count = CHECKED if width is None else max(CHECKED, int(LAYERS * (b - a) / width))
     stops = merged([phases, stations, bends, np.linspace(a, b, count + 1)])
     kinds, wrong = sheets(strip, given, phases, scene)
+    if not strip.switched:  # but mixtures there may be, of which the solution tells
+        kinds = [int(kind != 0) for kind in getattr(solution, "sheets", ())] or kinds
     if wrong:
         return Confirmed(np.inf, wrong, 0)
     found, sides = march(strip, given, stops, phases, kinds)

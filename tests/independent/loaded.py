@@ -83,6 +83,8 @@ class Strip:
         c2' that of the director is -u3 c1. Coefficients that vary are differenced.
         """
         law = self.material
+        if law.plate is not None:
+            return self._plates_mixture(m, n)
         (w, _, K12), (slope, _, twist), (_, bend, _) = differenced(law.mixing, s)
         u3 = (m[2] / w + 2 * K12) / 4
         stiff = n[2] - m[0] ** 2 / (4 * w) + u3 * m[2]
@@ -90,6 +92,17 @@ class Strip:
         known += m[0] * (twist / 2 - c[2] / (4 * w) - m[2] * slope / (4 * w**2)) - 2 * u3 * c[0]
         u2 = known / stiff
         return np.stack([0 * u2, u2, u3]), law.mixed(m, u2, u3, s)
+
+    def _plates_mixture(self, m: Array, n: Array) -> tuple[Array, Array]:
+        """Strains where both sides of an extensible ribbon mix: m2 = 0 and n1 + m1 u3 = 0 stay."""
+        natural = self.natural.curvature, self.natural.twist, self.natural.across
+        acting = *self.force, *self.couple, self.pressure, *natural
+        plate = self.material.plate
+        if plate is None or any(callable(v) or v for v in acting):
+            raise ValueError("mixtures of this law under loads are not known here")
+        u3, slope, energy = plate.mixed(m[2])
+        u2 = 2 * n[1] * u3 / (n[2] + u3 * m[2] - slope * m[0] ** 2)
+        return np.stack([0 * u2, u2, u3]), energy
 
     def _steady(self) -> None:
         if any(callable(c) for c in self.couple):
@@ -147,7 +160,10 @@ class Strip:
         """Energy per length and H = m . u - W + n3 (2, k)."""
         frame = y[3:12].reshape(3, 3, -1)
         own = along(frame, y[15:18])
-        u, energy = self.material.strains(kind, own, s)
+        if kind == 0 and self.material.plate is not None:
+            u, energy = self._plates_mixture(own, along(frame, y[12:15]))
+        else:
+            u, energy = self.material.strains(kind, own, s)
         both = np.stack([energy, dot(own, u) - energy + dot(frame[2], y[12:15])])
         width = value(self.material.width, s)
         return both + self.inplane.strains(y[12:15], y[15:18], frame, width)[2]

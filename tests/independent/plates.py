@@ -102,6 +102,18 @@ class Plate:
         b = self.twist(a, side)
         return self.unit * np.copysign(a, m2), self.unit * np.copysign(b, m3)
 
+    def mixed(self, m3: Array) -> tuple[Array, Array, Array]:
+        """Return u3, du3/dm3 and the energy (k,) of a mixture of both sides, where m2 = 0.
+
+        Both have the same u3 and energy there, and opposite u2.
+        """
+        h = 1e-5 * np.abs(m3)
+        none = 1e-200 * self.unit * np.ones_like(m3)
+        u2, u3 = self.strains(none, m3)
+        at = [self.strains(none, m3 + i * h)[1] for i in (-2, -1, 1, 2)]
+        slope = (at[0] - 8 * at[1] + 8 * at[2] - at[3]) / (12 * h)
+        return u3, slope, self.unit**2 * self.energy(u2 / self.unit, u3 / self.unit)
+
 
 def extensible(width: float, thickness: float, ratio: float) -> Plate:
     """RIBEXT of a width and a thickness (units of L) and Poisson's ratio."""

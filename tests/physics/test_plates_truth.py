@@ -93,3 +93,21 @@ def test_the_bent_clamp(
     found = Shooting(lambda y: held(end(y), PLACE, FRAME)).solve(near)
     assert found == pytest.approx([*n0, *m0], abs=2e-10)
     assert end(found[:, None])[18, 0] == pytest.approx(energy, rel=1e-12)
+
+
+@pytest.mark.parametrize("plate", [RIBEXT, sano(1.0, 2.0, 10.0)], ids=["extensible", "sano"])
+def test_a_mixture_stays_one(plate: Plate) -> None:
+    """Beyond convexity u2 leaps where m2 = 0; arcs of both sides keep m2 = 0, and H."""
+    m1, m3, n2 = 0.4, 150.0 if plate is RIBEXT else 2.0, 0.7
+    strip, s = Strip(Material("plate", plate=plate)), np.zeros(1)
+    u2, u3 = (u[0] for u in plate.strains(np.array([1e-200]), np.array([m3])))
+    assert u2 > 0.1
+    frame = rotated((0.3, -0.4, 0.7))
+    n = frame.T @ [-m1 * u3, n2, 20.0]
+    start = state(np.zeros(3), frame, n, frame.T @ [m1, 0.0, m3])
+    far = 0.3 / u3
+    end = strip.piece(start, 0.0, far, 0, 1e-12)
+    assert abs(strip.turn(end, s + far)[0]) < 1e-10 * m3
+    assert np.abs(end[3:12] - start[3:12]).max() > 0.1
+    H = [strip.energy(y, 0, s)[1, 0] for y in (start, end)]
+    assert H[1] == pytest.approx(H[0], rel=1e-10)
