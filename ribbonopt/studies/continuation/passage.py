@@ -16,6 +16,7 @@ from ribbonopt.solution.solution import Solution
 
 from .leaving import admitted, leaving
 from .phases import Change, What, margins, one_sign
+from .refound import on_finer_meshes
 from .relaid import in_other_phases
 from .segment import Segment
 from .walk.points import FOLD, KINK, POINT, Point
@@ -77,13 +78,18 @@ def _passed(
     }
     if inside and not any(arc < way.whole / 2 for arc in arcs.values()):
         return _merged(equations, a, float(trial.unknowns[-1]), inside)
-    return _behind(equations, a, way.point(min(arcs.values())), beyond)
+    first = min(arcs, key=lambda change: arcs[change])
+    return _behind(equations, a, way.point(arcs[first]), first, beyond)
 
 
 def _behind(
-    equations: RibbonEquations, a: Point[Solution], event: Point[Solution], beyond: list[Change]
+    equations: RibbonEquations,
+    a: Point[Solution],
+    event: Point[Solution],
+    change: Change,
+    beyond: list[Change],
 ) -> Passage[Solution]:
-    """Return how a branch goes on behind an event, at which changes are due."""
+    """Return how a branch goes on behind an event, where one of the changes due has come."""
     ways = leaving(equations, event)
     if not ways:
         raise np.linalg.LinAlgError(_told(a.solution, beyond))
@@ -91,7 +97,11 @@ def _behind(
     beside = stretch[0] if stretch else first
     kind = FOLD if event.tangent[-1] * beside.tangent[-1] < 0 else POINT
     crossed = len(ways) > 1 or beside.sign * event.sign < 0
-    return Passage(a, replace(event, kind=KINK if crossed else kind), stretch, first)
+    kind = KINK if crossed else kind
+    event = replace(event, kind=kind)
+    wanted = kind != POINT and equations.curve.special
+    located = on_finer_meshes(equations, event, change) if wanted else None
+    return Passage(a, event, stretch, first, located)
 
 
 def _ahead(
@@ -110,7 +120,8 @@ def _ahead(
     change = min(arcs, key=lambda c: arcs[c], default=None)
     if change is None or not arcs[change] < way.whole:
         return None
-    return _behind(equations, a, way.point(way.extrapolated(change, arcs[change])), [change])
+    event = way.point(way.extrapolated(change, arcs[change]))
+    return _behind(equations, a, event, change, [change])
 
 
 def _on_sheet(

@@ -113,7 +113,7 @@ class Stepper(Generic[S]):
         parts = [self._special(passed.begin, passed.event, goal)]
         special = list(parts[0].points)
         if self.range.special and passed.event.kind != POINT:
-            special.append(passed.event)
+            special.append(passed.located or passed.event)
         if passed.stretch is not None:
             parts.append(self._special(*passed.stretch, goal))
             special += parts[1].points
