@@ -93,7 +93,8 @@ def gauss_stages(solution: Solution, ribbon: Ribbon) -> GaussStages:
     # Packed together, in order, for quaternions that do not change their sign.
     at = np.concatenate([[0], degree * firsts, [len(places)]])
     pairs = zip(_fields(along), _fields(points), strict=True)
-    fields = RodFields(*(np.insert(a, at, b, axis=0) for a, b in pairs))
+    r, frames, n, m = (np.insert(a, at, b, axis=0) for a, b in pairs)
+    fields = RodFields(r, frames, n, m)
     # Any point of reference will do: it is for constants, which the energy does without.
     x, _ = ribbon.model.pack(fields, fields.r[0])
     if ribbon.stations:

@@ -150,7 +150,7 @@ def _on_the_kink(solution: Solution, switch: str) -> str:
     value, small = o["switching"], NEGLIGIBLE * float(np.abs(o["m"]).max())
     if solution.sheets:
         kinds = np.array(solution.sheets)[solution.trajectory.stages[3]]
-        wrong = kinds * value < -small
+        wrong = (kinds * value < -small) & (o["leap"] > 0)
         beyond = f"where it is taken beyond them, {switch} having the wrong sign"
         return beyond if wrong.any() else ""
     near = (np.abs(value) <= small) & (o["leap"] > small)

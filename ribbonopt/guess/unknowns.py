@@ -88,7 +88,11 @@ def _from_fields(
     x, constants = ribbon.model.pack(fields, reference)
     start, end = (problem.parameter_names.index(f"interval.{e}") for e in ("start", "end"))
     s = theta[start] + (theta[end] - theta[start]) * unique
-    return np.hstack([x, _estimates(problem, fields, theta, s)])[where], constants
+    estimates = _estimates(problem, fields, theta, s)
+    for i, name in enumerate(ribbon.law.states):
+        if name in fields.own:
+            estimates[:, i] = fields.own[name]
+    return np.hstack([x, estimates])[where], constants
 
 
 def _estimates(problem: BoundaryValueProblem, fields: RodFields, theta: Array, s: Array) -> Array:

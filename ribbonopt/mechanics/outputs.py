@@ -16,6 +16,7 @@ from .ends.conditions import CrossSection
 from .laws.law import ConstitutiveLaw, Stress
 from .section import Section
 
+OWN = "own."  # before the name of a state of the law's own
 SLOPE = "slope"  # at most 1 where one sheet allows the strains; in its absence |eta| tells
 
 
@@ -67,7 +68,7 @@ def singular(law: ConstitutiveLaw, stress: Stress) -> ca.SX:
 
 def own_name(state: str) -> str:
     """Name of the output that holds a state of the law's own."""
-    return f"own.{state}"
+    return OWN + state
 
 
 def _gram_error(rod: Section) -> ca.SX:

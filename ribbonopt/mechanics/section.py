@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 
 import casadi as ca
 
@@ -42,10 +43,11 @@ class Section:
 class RodFields:
     """Numbers along a ribbon, rows along s: r, n, m (k, 3) and frames (k, 3, 3), lab frame.
 
-    Column i of a frame is the director d_i.
+    Column i of a frame is the director d_i. `own` are states (k,) of a law, by name, where known.
     """
 
     r: Array
     frames: Array
     n: Array
     m: Array
+    own: Mapping[str, Array] = field(default_factory=dict)

@@ -54,7 +54,12 @@ def from_nothing(
             return search
         what = "the band's fundamental piece led to none of the whole"
         search.ledger.fall_back("piece", f"{what}; it was started from the least energy of that")
-    if search.needs_phases:
+    law = search.structure.ribbon.law
+    if law.direct() is not law:
+        from .direct import Direct  # few laws have another energy form
+
+        guesses = Direct(posed, search.ledger).guesses(guesses)
+    elif search.needs_phases:
         guesses = sharpening(guesses, prepare)
     search.run_all(guesses())
     wound = winding(posed.scene.boundary, posed.scene.parameters)

@@ -117,12 +117,19 @@ class Search(Tried):
                     self.tried.add(arcs.kinds)
         return sharp is not guess and self.run(guess, quick=True)
 
+    def run_minimum(self, guess: Solution) -> bool:
+        """Try what minimises the energy of the law itself, in the phases that it shows."""
+        if self.phases_help and self.changes_sign(guess):
+            return self.run_in(sign_changes(guess), guess)
+        return self.plain.run(guess, quick=True)
+
     def run_all(self, guesses: Iterable[Guess]) -> bool:
         """Try the guesses of an automatic start, equilibria of the smooth law among them."""
         first: Guess | None = None
         for guess in guesses:
             if isinstance(guess, Solution):
-                done = self.run_smooth(guess)
+                minimum = bool(guess.problem.recovered)
+                done = self.run_minimum(guess) if minimum else self.run_smooth(guess)
             else:
                 done = self.run(guess, quick=True)
             if done:

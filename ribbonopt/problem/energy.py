@@ -26,8 +26,10 @@ from ribbonopt.errors import ModelError
 from ribbonopt.mechanics.ends.conditions import Component
 from ribbonopt.mechanics.ends.placement import LoadAlong
 from ribbonopt.mechanics.laws.law import ConstitutiveLaw, Stress
-from ribbonopt.mechanics.outputs import outputs
+from ribbonopt.mechanics.laws.parts import Relaxed
+from ribbonopt.mechanics.outputs import outputs, own_name
 from ribbonopt.mechanics.rotations import product
+from ribbonopt.mechanics.section import Section
 
 from .contract import BoundaryValueProblem, Phase
 from .equilibrium import local_stress
@@ -71,11 +73,11 @@ def minimum(ribbon: Ribbon) -> BoundaryValueProblem:
     section, (start, end) = ribbon.section(x[:count], loads), ribbon.interval
     rod, work = section.rod, ribbon.work(section.rod)
     beyond = dead_force(ribbon) + ribbon.model.beyond(ribbon.position)
-    program = _program(ribbon.law, rod.own, held.estimate)
+    program = _program(ribbon.law, rod.stress, held.estimate)
     phase = Phase(
-        dynamics=ca.vertcat(ribbon.rates(section, program.u), held.rates(section.rod)),
+        dynamics=ca.vertcat(ribbon.rates(section, program.u, program.rates), held.rates(rod)),
         length=end - start,
-        outputs=outputs(section, ribbon.law, program.u, work),
+        outputs=outputs(section, ribbon.law, program.u, work) | program.outputs(rod, work),
         path=program.path,
         cost=program.cost - ca.dot(beyond, rod.d3) - work,
     )
@@ -119,17 +121,31 @@ class _Program(NamedTuple):
     path: ca.SX
     local: ca.SX
     estimate: ca.SX
+    rates: ca.SX | None = None
+    told: Relaxed | None = None
+
+    def outputs(self, rod: Section, work: ca.SX) -> dict[str, ca.SX]:
+        """Return those outputs of which only these controls tell, by name."""
+        if self.told is None or self.told.strain is None or self.told.complementary is None:
+            return {}
+        return {
+            "energy": self.cost,
+            "potential": self.cost - work,
+            "H": rod.stress.n[2] + self.told.complementary,
+            "law_residual": ca.norm_2(self.u - self.told.strain),
+            **{own_name(name): value for name, value in self.told.own.items()},
+        }
 
 
-def _program(law: ConstitutiveLaw, own: ca.SX, more: ca.SX) -> _Program:
-    """Return the program of a law; `more` is where to start states behind its own."""
+def _program(law: ConstitutiveLaw, at: Stress, more: ca.SX) -> _Program:
+    """Return the program of a law at a stress; `more` is where to start states behind its own."""
     local, known = local_stress(law)
-    relaxed = law.relaxed(known)
-    if relaxed is not None:
-        r, start = relaxed, ca.vertcat(known.own, more, relaxed.estimate)
-        return _Program(r.controls, r.u, r.cost, r.path, local, start)
+    r, guessed = law.relaxed(at), law.relaxed(known)
+    if r is not None and guessed is not None:
+        start = ca.vertcat(known.own, more, guessed.estimate)
+        return _Program(r.controls, r.u, r.cost, r.path, local, start, r.rates, r)
     z = ca.SX.sym("m", len(law.components))
-    stress = Stress(ca.SX.zeros(3), law.whole(z), own)
+    stress = Stress(ca.SX.zeros(3), law.whole(z), at.own)
     u = law.strain(stress)
     cost, _ = law.densities(stress, u)
     free = [3 + i for i in law.components]

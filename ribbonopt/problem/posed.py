@@ -20,6 +20,7 @@ from ribbonopt.mechanics.laws.asymmetry import changed_by_flip, leaves_plane
 from ribbonopt.mechanics.laws.catalogue import fields_of, numbers_of
 from ribbonopt.mechanics.loads.load import Load
 from ribbonopt.scene import Loads, Scene
+from ribbonopt.scene.laws import OfWidth
 from ribbonopt.scene.units import Units, in_special_units, units_of
 
 if TYPE_CHECKING:
@@ -84,9 +85,11 @@ class Posed:
         formulation. Numbers that stay are not evaluated again.
         """
         special = replace(self.scene, **changes)
-        conditions = self.conditions
-        if special.boundary.loop is not None and special.formulation != self.scene.formulation:
-            conditions = conditions_of(special)  # a loop closes otherwise where energy is minimised
+        conditions, before = self.conditions, self.scene
+        looped = special.boundary.loop is not None and special.formulation != before.formulation
+        # A loop closes otherwise where energy is minimised; some laws have edges, others none.
+        if looped or isinstance(special.law, OfWidth) != isinstance(before.law, OfWidth):
+            conditions = conditions_of(special)
         return Posed(special, special, conditions, self.loads, stations=self.stations)
 
     @cached_property

@@ -64,6 +64,7 @@ class Ribbon:
         """Return the mechanics of a posed scene, its numbers as symbols."""
         theta, position = {name: ca.SX.sym(name) for name in posed.theta}, ca.SX.sym("s")
         law = relation_of(posed.scene, theta.__getitem__, position)
+        law = law.direct() if posed.scene.formulation == "energy" else law
         model = _model_of(posed, theta)
         parts = posed.conditions, posed.loads, theta, position
         return cls(model, law, *parts, stations=posed.stations)
@@ -168,10 +169,14 @@ class Ribbon:
         inputs = [x, c, self.parameters, self.position, *more]
         return ca.Function("section", inputs, outputs)
 
-    def rates(self, section: CrossSection, u: ca.SX) -> ca.SX:
-        """Return dx/ds of the states of model and law for strains u (3,)."""
+    def rates(self, section: CrossSection, u: ca.SX, own: ca.SX | None = None) -> ca.SX:
+        """Return dx/ds of the states of model and law for strains u (3,).
+
+        `own` are those of the law where its strains alone do not tell them.
+        """
         model = self.model.rates(section.x, section.rod, u)
-        return ca.vertcat(model, self.law.rates(section.rod.stress, u))
+        own = self.law.rates(section.rod.stress, u) if own is None else own
+        return ca.vertcat(model, own)
 
     def work(self, rod: Section) -> ca.SX:
         """Return the work per length of the loads that have a potential."""

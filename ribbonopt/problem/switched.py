@@ -16,7 +16,7 @@ import numpy as np
 from ribbonopt.mechanics.outputs import outputs, singular
 
 from .contract import BoundaryValueProblem, Phase
-from .equilibrium import Unknowns
+from .equilibrium import Unknowns, local_stress
 from .imposed import loaded_stress, residuals
 from .pieces import passing, stations_among
 from .ribbon import Ribbon
@@ -72,6 +72,7 @@ def switched(ribbon: Ribbon, kinds: Kinds, *, free: bool = False) -> BoundaryVal
         asked = {f"start: {name}": value for name, value in zip(zeros, found, strict=True)}
         if asked:
             conditions, slack = _with_slack(conditions | asked, len(asked))
+    local, stress = local_stress(ribbon.law)
     return BoundaryValueProblem(
         position=ribbon.position,
         state=unknowns.x,
@@ -89,6 +90,8 @@ def switched(ribbon: Ribbon, kinds: Kinds, *, free: bool = False) -> BoundaryVal
             *(f"slack {i + 1}" for i in range(slack.numel())),
         ),
         parameter_names=tuple(ribbon.theta),
+        local=local,
+        estimate=stress.own,
         conserved=ribbon.conserved,
         slack=slack.numel(),
         stations=stations,

@@ -99,6 +99,9 @@ class End:
     A support says what is held and makes the loads that go with what is free vanish, unless they
     are given (`force`, `moment`: dead loads). They are declared in `ribbonopt.scene.supports`;
     a declaration of one's own may stand in the place of a name, in Python.
+
+    `edge` says for law wunderlich whether the edge across the ribbon is held straight, which
+    supports tell by themselves (see `ribbonopt.scene.edges`).
     """
 
     support: SupportName | Annotated[Support, InPython()] | None = None
@@ -112,6 +115,7 @@ class End:
     distance: Value | None = None
     force: Triple | AnyVector | None = None
     moment: Triple | AnyVector | None = None
+    edge: Literal["straight", "free"] | None = None
 
     @property
     def declared_support(self) -> Support | None:

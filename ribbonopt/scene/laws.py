@@ -170,6 +170,9 @@ class Sano:
         return self if self.zeta is None else replace(self, zeta=self.zeta * strain)
 
 
+#: laws that know the edges of the ribbon
+OfWidth = Wunderlich
+
 #: laws whose numbers are those of the `ribbon` of a scene where they are not said
 Sized = Wunderlich | Extensible | Sano
 

@@ -203,8 +203,7 @@ class Solution:
 
     def fields(self, fraction: Array) -> RodFields:
         """Fields at fractions (k,) of the length, units Dw = L = 1: a solution is a guess."""
-        o = self.trajectory.outputs(fraction)
-        return RodFields(o["r"], np.stack([o["d1"], o["d2"], o["d3"]], axis=2), o["n"], o["m"])
+        return self.trajectory.fields(fraction)
 
     @cached_property
     def start(self) -> dict[str, Array]:

@@ -15,6 +15,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ribbonopt.arrays import Array
+from ribbonopt.mechanics.outputs import OWN
+from ribbonopt.mechanics.section import RodFields
 from ribbonopt.problem import BoundaryValueProblem
 from ribbonopt.transcription.buffered import Buffered, Mapped
 from ribbonopt.transcription.known import sampled
@@ -86,6 +88,13 @@ class Trajectory:
             if rows.any():
                 v[rows, nx:] = self.dense.algebraic(i, local[rows])
         return self._named(v, fraction, phase)
+
+    def fields(self, fraction: Array) -> RodFields:
+        """Fields at fractions (k,), own states of the law among them, if it has any."""
+        o = self.outputs(fraction)
+        own = {name[len(OWN) :]: value for name, value in o.items() if name.startswith(OWN)}
+        frames = np.stack([o["d1"], o["d2"], o["d3"]], axis=2)
+        return RodFields(o["r"], frames, o["n"], o["m"], own)
 
     def states(self, fraction: Array) -> Array:
         """States (k, nx) at fractions."""

@@ -135,7 +135,7 @@ def test_no_file_can_say_a_rod(user: Import) -> None:
     with pytest.raises(SceneError, match=r"found 'homotpy', expected .*did you mean 'homotopy'"):
         loads_scene("{name: a, law: {type: homotpy}, boundary: {}}")
     with pytest.raises(
-        SceneError, match=r"law\.type: found 'shaft', expected 'kirchhoff', .* or 'va"
+        SceneError, match=r"law\.type: found 'shaft', expected 'kirchhoff', .* or 'sano'"
     ):
         loads_scene("{name: a, law: {type: shaft}, boundary: {}}")
     assert "OwnLaw" not in str(json_schema())

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ribbonopt.scene import Boundary, End, Scene
+from ribbonopt.scene.laws import OfWidth
 
 from .conditions import Condition, EndName
 from .frames import Parameters, components, frame_of, number
@@ -30,6 +31,10 @@ def conditions_of(scene: Scene) -> tuple[Condition, ...]:
     else:
         for name in ENDS:
             result += _at_end(name, getattr(boundary, name), parameters)
+    if isinstance(scene.law, OfWidth):
+        from .edges import edge_conditions  # few laws have edges
+
+        result += edge_conditions(scene)
     if boundary.also:
         from .equations import equation  # formulas cost imports that few scenes need
 

@@ -114,8 +114,16 @@ class ConstitutiveLaw(ABC):
         found = self.complementary_energy(stress)
         return (work / 2, work / 2) if found is None else (work - found, found)
 
+    def direct(self) -> ConstitutiveLaw:
+        """Return the law as the energy form states it: without those states that are costates."""
+        return self
+
+    def indirect(self) -> ConstitutiveLaw:
+        """Return the law with all its states, of which conditions speak; `direct` backwards."""
+        return self
+
     def relaxed(self, stress: Stress) -> Relaxed | None:
-        """Return the program of the convexified energy where the law is not smooth, or None."""
+        """Return the program of the energy where that is no function of the moments, or None."""
         return None
 
     def sheet_slope(self, stress: Stress, u: ca.SX) -> ca.SX | None:
@@ -131,6 +139,13 @@ class ConstitutiveLaw(ABC):
         None where these can only shift the moments, so that K22 must be zero: `shifted`.
         """
         return None
+
+    def at_width(self, width: ca.SX) -> ConstitutiveLaw:
+        """Return the law, per width, where the ribbon has another width, in units of its own.
+
+        The law itself where a strip of it knows nothing of how wide it is.
+        """
+        return self
 
     # Own states: none but for laws that declare them.
 

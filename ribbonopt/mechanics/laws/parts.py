@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Mapping
+from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import casadi as ca
@@ -36,6 +37,10 @@ class Relaxed:
 
     `controls` (nz,) symbols; `u` (3,) strains, `cost` per length and `path` (<= 0) as expressions
     of them; `estimate` (nz,), where to start, of the stress.
+
+    A law with states of its own says of these controls also the `rates` of its states, and at a
+    stress: the `strain` (3,) that they should be, the `complementary` energy, and `own`, states of
+    the law that are costates here, by name.
     """
 
     controls: ca.SX
@@ -43,3 +48,7 @@ class Relaxed:
     cost: ca.SX
     path: ca.SX
     estimate: ca.SX
+    rates: ca.SX | None = None
+    strain: ca.SX | None = None
+    complementary: ca.SX | None = None
+    own: Mapping[str, ca.SX] = field(default_factory=dict)

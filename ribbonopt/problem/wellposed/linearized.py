@@ -7,7 +7,7 @@ Where something acts or holds between the ends, the states there stand between x
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import casadi as ca
 import numpy as np
@@ -136,7 +136,7 @@ class Linearized:
 
 def linearize(ribbon: Ribbon, posed: Posed) -> Linearized:
     """Return the conditions of a ribbon on its least states."""
-    least = ribbon.least
+    least = replace(ribbon.least, law=ribbon.law.indirect(), _kept={})
     nx, count = len(least.states), 2 + len(least.stations)
     z = ca.SX.sym("z", count * nx + len(least.constants))
     start, end, *inner = ca.vertsplit(z[: count * nx], nx)

@@ -13,7 +13,7 @@ from typing import Any, get_origin
 from ribbonopt.scene.along import is_along, numbers_along
 from ribbonopt.scene.ends import Boundary
 from ribbonopt.scene.faults import KeyPath, Problem, shown
-from ribbonopt.scene.laws import Sized
+from ribbonopt.scene.laws import OfWidth, Sized
 from ribbonopt.scene.loads import Loads
 from ribbonopt.scene.model import Guess, MoebiusGuess, RibbonSizes, Scene
 from ribbonopt.scene.schema.annotations import branches, hints, inside
@@ -69,6 +69,10 @@ def check(scene: Scene) -> list[Problem]:
         from .sized import check_sized  # laws that depend on the sizes of the ribbon
 
         problems += check_sized(scene.law, scene)
+    if isinstance(scene.law, OfWidth) or boundary.start.edge or boundary.end.edge:
+        from .edges import check_edges  # as above
+
+        problems += check_edges(scene)
     if scene.natural is not None:
         from .natural import check_natural  # few scenes have natural strains
 

@@ -86,7 +86,7 @@ def refusal(path: str, *ends: End, **values: Any) -> str:
 def test_names_are_those_of_the_declarations() -> None:
     assert tuple(SUPPORTS) == NAMES
     assert set(EXAMPLES) == {key for support in SUPPORTS.values() for key in support.keys}
-    assert {f.name for f in fields(End)} == {"support", *SINGLES, *EXAMPLES}
+    assert {f.name for f in fields(End)} == {"support", "edge", *SINGLES, *EXAMPLES}
 
 
 @each_support
