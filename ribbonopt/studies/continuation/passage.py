@@ -12,6 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ribbonopt.arrays import Array
+from ribbonopt.checks.arcs import Arcs, leaps, sign_changes
 from ribbonopt.solution.solution import Solution
 
 from .leaving import admitted, leaving
@@ -21,6 +22,7 @@ from .relaid import in_other_phases
 from .segment import Segment
 from .walk.points import FOLD, KINK, POINT, Point
 from .walk.protocol import Passage, Trial
+from .walk.tangents import near
 
 if TYPE_CHECKING:
     from .ribbons import RibbonEquations
@@ -39,7 +41,9 @@ def passage(
     """
     if not point.solution.sheets:
         kind = one_sign(point.solution)
-        if not kind or (trial.converged and one_sign(trial.solution) == kind):
+        if not kind:
+            return _in_its_phases(equations, point, trial, expected)
+        if trial.converged and one_sign(trial.solution) == kind:
             return None
         # A trial that did not converge may have stumbled over the leap of a law without phases.
         if not (trial.converged or equations.prepared.search(point.solution.posed).needs_phases):
@@ -132,6 +136,49 @@ def _on_sheet(
     attempt = search.on_mesh((kind,), point.solution.mesh)
     point = replace(point, solution=attempt.restored(point.unknowns[:-1]))
     return point, equations.correct_at(point.solution, trial.unknowns)
+
+
+def _in_its_phases(
+    equations: RibbonEquations, point: Point[Solution], trial: Trial[Solution], expected: Array
+) -> Passage[Solution] | None:
+    """Return the same for a point whose law leaps somewhere, but not where its switch has zeros.
+
+    It is smooth without phases, which only tell where one begins with a leap. None where the trial
+    has none either.
+    """
+    search = equations.prepared.search(point.solution.posed)
+    if not leaps(point.solution) or (trial.converged and not search.changes_sign(trial.solution)):
+        return None
+    begin = _posed_again(equations, point, sign_changes(point.solution, every=True))
+    if begin is None:
+        return None
+    gap = equations.reduced(point.solution, expected - point.unknowns)
+    arc = equations.metric.product(gap, equations.reduced(point.solution, point.tangent))
+    ahead = begin.unknowns + arc * begin.tangent
+    there = equations.correct_at(begin.solution, ahead)
+    found = passage(equations, begin, there, ahead)
+    if found is not None or not there.converged:
+        return found
+    way = admitted(equations, begin, there)
+    return None if way is None else Passage(begin, begin, None, way)
+
+
+def _posed_again(
+    equations: RibbonEquations, point: Point[Solution], arcs: Arcs
+) -> Point[Solution] | None:
+    """Return a point in phases between its own sign changes, None where it is none."""
+    search = equations.prepared.search(point.solution.posed)
+    try:
+        attempt, w = in_other_phases(search, point.solution, arcs.kinds, arcs.switches)
+        found = equations.correct_at(attempt.restored(w), np.append(w, point.position))
+        if not found.converged:
+            return None
+        ahead = equations.reduced(point.solution, point.tangent)
+        local, tangent = near(equations, found.solution, found.unknowns, ahead)
+    except np.linalg.LinAlgError:
+        return None
+    parts = replace(point, solution=found.solution, unknowns=found.unknowns)
+    return replace(parts, tangent=tangent, sign=local.sign)
 
 
 def _lost(solution: Solution, expected: Array) -> list[Change]:
