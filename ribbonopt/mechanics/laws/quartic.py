@@ -16,6 +16,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import cache
 from typing import NamedTuple
 
 import casadi as ca
@@ -104,7 +105,7 @@ class Quartic:
         return b, b * (self.B3 + c0 * x)
 
     def inverse(self, m2: ca.SX, m3: ca.SX, side: int = 0) -> Components:
-        """Return a and b at given moments.
+        """Return a and b at given moments: the steps are written once, then copied.
 
         Of a `side` (+1, -1) those with a on it, beyond m2 = 0 too where a leaps.
 
@@ -112,6 +113,11 @@ class Quartic:
         only these are differentiated: first and second derivatives are then exact, as those of the
         first step are in A and B, and those of the second in their first and second derivatives.
         """
+        a, b = _inverse(self.phi, side)(self.B2, self.B3, self.p, m2, m3)
+        return a, b
+
+    def steps(self, m2: ca.SX, m3: ca.SX, side: int) -> Components:
+        """Return the same, written anew."""
         a0, b0 = (_held(value) for value in self._near(m2, m3, side))
         at = self._slopes(a0, b0, self.phi.values(a0))
         det = _nonzero(at.Aa * at.Bb - at.Ab**2)
@@ -173,6 +179,13 @@ class Quartic:
         for _ in range(CUBIC):
             a = (2 * safe * a**3 + x) / _nonzero(3 * safe * a**2 + k)
         return ca.if_else(ca.logic_and(c > 0, a >= 0), a, ca.inf)
+
+
+@cache
+def _inverse(phi: Stiffening, side: int) -> ca.Function:
+    """Return a and b as a function of B2, B3, p, m2 and m3."""
+    symbols = B2, B3, p, m2, m3 = [ca.SX.sym(name) for name in ("B2", "B3", "p", "m2", "m3")]
+    return ca.Function("inverse", symbols, Quartic(B2, B3, p, phi).steps(m2, m3, side))
 
 
 def _held(value: ca.SX) -> ca.SX:
