@@ -33,10 +33,24 @@ Complex = NDArray[np.complex128]
 
 @dataclass(frozen=True, eq=False)
 class Layers:
-    """Singularities near one phase: relative positions (k,), and by how much strains change."""
+    """Singularities near one phase: relative positions (k,), and by how much strains change.
+
+    Where they `fade` (k,), by that times the distance; nowhere by default.
+    """
 
     places: Complex
     sizes: Array
+    fades: NDArray[np.bool_] | None = None
+
+    @classmethod
+    def none(cls) -> Layers:
+        """Return no singularities."""
+        return cls(np.empty(0, complex), np.empty(0))
+
+    @property
+    def fade(self) -> NDArray[np.bool_]:
+        """Which of them fade."""
+        return np.zeros(len(self), bool) if self.fades is None else self.fades
 
     def __len__(self) -> int:
         """Return how many there are."""
@@ -52,7 +66,8 @@ class Layers:
         # Beside an element it acts over no more than its distance.
         beside = (np.maximum(np.abs(x.real) - 1, 0) + np.abs(x.imag)) * widths / 2
         over = np.where(np.abs(x.real) <= 1, widths, np.minimum(widths, beside))
-        missed = self.sizes[:, None] * over * rho ** -(order + 1.0)
+        sizes = self.sizes[:, None] * np.where(self.fade[:, None], over, 1.0)
+        missed = sizes * over * rho ** -(order + 1.0)
         return np.asarray(np.where(rho < seen(degree), SHARE * missed, 0.0).max(axis=0))
 
     def close(self, nodes: Array) -> NDArray[np.bool_]:
@@ -68,12 +83,13 @@ class Layers:
 
     def widths(self, positions: Array, degree: int, order: int, target: float) -> Array:
         """Largest widths (k,) at relative positions, for a local error `target`."""
-        depth = np.maximum(np.abs(self.places.imag), THINNEST)
+        distance = np.maximum(np.abs(positions[:, None] - self.places), THINNEST)
+        depth = np.where(self.fade, distance**2, np.maximum(np.abs(self.places.imag), THINNEST))
         larger = (self.sizes * depth / target) ** (1 / (order + 1))
         larger = np.maximum(larger, seen(degree))
-        distance = np.maximum(np.abs(positions[:, None] - self.places), THINNEST)
         widths = 4 * distance / (larger - 1 / larger)
-        return np.asarray(np.where(self.sizes > target, widths, np.inf).min(axis=1))
+        matters = self.sizes * np.where(self.fade, distance**2, 1.0) > target
+        return np.asarray(np.where(matters, widths, np.inf).min(axis=1))
 
 
 def seen(degree: int) -> float:
@@ -89,7 +105,7 @@ def layers(trajectory: Trajectory, phase: int) -> Layers:
     stages = trajectory.dense.blocks.layout.stages
     rows = trajectory.singular_at_stages(phase) if stages else np.empty(0)
     if not rows.size:
-        return Layers(np.empty(0, complex), np.empty(0))
+        return Layers.none()
     a, b = trajectory.ends[phase : phase + 2]
     _, fraction, _, phases = trajectory.stages
     sigma = (fraction if len(trajectory.ends) == 2 else fraction[phases == phase]) - a
@@ -99,7 +115,7 @@ def layers(trajectory: Trajectory, phase: int) -> Layers:
     widths = nodes[1:] - nodes[:-1]
     farthest = max(REACH * float(widths.max()), BEYOND)
     if not (np.abs(values[:-1]) * step <= farthest * np.abs(change)).any():
-        return Layers(np.empty(0, complex), np.empty(0))
+        return Layers.none()
     sizes = np.maximum(rows[:-1, :, 2], rows[1:, :, 2])
     with np.errstate(divide="ignore", invalid="ignore"):
         ahead = -values[:-1] / change  # in steps from one stage to the next
@@ -115,7 +131,8 @@ def layers(trajectory: Trajectory, phase: int) -> Layers:
     # In a moment that fades away everything is near to zero, and of no account.
     near &= sizes > FAINT * rows[:, :, 2].max()
     stage, which = np.nonzero(near)
-    return Layers(sigma[stage] + offset[stage, which], sizes[stage, which])
+    fade = rows[stage, which, 3] > 0
+    return Layers(sigma[stage] + offset[stage, which], sizes[stage, which], fade)
 
 
 def clear_of(
@@ -125,11 +142,11 @@ def clear_of(
 
     What rounding does to the place of such a layer is more than strains in it can bear.
     """
-    if not any(map(len, found)):
+    if all(near.fade.all() for near in found):
         return lambda fractions: np.ones(len(fractions), bool)
     places, depths = [], []
     for a, b, near in zip(trajectory.ends[:-1], trajectory.ends[1:], found, strict=True):
-        z = near.places
+        z = near.places[~near.fade]
         beyond = np.maximum(np.maximum(-z.real, z.real - 1), 0.0)
         depths.append((b - a) * np.hypot(beyond, z.imag))
         places.append(a + (b - a) * z.real)

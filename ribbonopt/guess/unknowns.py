@@ -89,9 +89,11 @@ def _from_fields(
     start, end = (problem.parameter_names.index(f"interval.{e}") for e in ("start", "end"))
     s = theta[start] + (theta[end] - theta[start]) * unique
     estimates = _estimates(problem, fields, theta, s)
-    for i, name in enumerate(ribbon.law.states):
-        if name in fields.own:
-            estimates[:, i] = fields.own[name]
+    first, law = estimates.shape[1] - len(ribbon.law.controls), ribbon.law
+    places = {name: i for i, name in enumerate(law.states)}
+    places |= {name: first + i for i, name in enumerate(law.controls)}
+    for name in places.keys() & fields.own.keys():
+        estimates[:, places[name]] = fields.own[name]
     return np.hstack([x, estimates])[where], constants
 
 

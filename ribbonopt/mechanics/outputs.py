@@ -61,9 +61,9 @@ def sheet_slopes(values: Mapping[str, Array]) -> Array:
 
 
 def singular(law: ConstitutiveLaw, stress: Stress) -> ca.SX:
-    """Where a law is singular at complex s, rows (re, im, size): `laws.law.Singular`."""
+    """Where a law is singular at complex s, rows (re, im, size, fades): `laws.law.Singular`."""
     rows = [ca.horzcat(*where) for where in law.singular(stress)]
-    return ca.vertcat(ca.SX(0, 3), *rows)
+    return ca.vertcat(ca.SX(0, 4), *rows)
 
 
 def own_name(state: str) -> str:

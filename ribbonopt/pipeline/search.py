@@ -34,6 +34,8 @@ from ribbonopt.transcription import Mesh
 from .intervals import intervals_for
 from .tried import Tried, bluntness
 
+# Elements beside the end of a phase where strains fade away: to a millionth of one.
+LEVELS, RATIO = 7, 0.15
 COARSER = 3  # intervals of starts, of degree 3, to one of a scene
 
 
@@ -79,6 +81,14 @@ class Search(Tried):
         fewer = without_empty(found)
         if fewer is not None and self.run_in(fewer, found, least):
             return True
+        if done and self.structure.ribbon.law.fades:
+            # A start on small elements leads nowhere before it is known where phases meet.
+            gathered = found.mesh.gathered(LEVELS, RATIO)
+            finer = structure.attempt(
+                self.posed, self.ledger, gathered, found.trajectory.ends[1:-1]
+            )
+            if finer.run(found, quick=True):
+                attempt = finer
         self._kept(attempt)
         return done
 

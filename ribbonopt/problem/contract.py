@@ -48,8 +48,8 @@ class Phase:
         Length of the phase, from constants and parameters.
     outputs : mapping of str to SX
         Expressions to sample on a solution.
-    singular : SX (k, 3)
-        Rows (a, b, size): where a + ib is zero at complex s, the equations are singular, by as
+    singular : SX (k, 4)
+        Rows (a, b, size, fades): where a + ib is zero at complex s, equations are singular, by as
         much as size says. Of use to meshes and error bars.
     """
 
@@ -59,7 +59,7 @@ class Phase:
     algebraic: ca.SX = field(default_factory=lambda: ca.SX(0, 1))
     path: ca.SX = field(default_factory=lambda: ca.SX(0, 1))
     cost: ca.SX | None = None
-    singular: ca.SX = field(default_factory=lambda: ca.SX(0, 3))
+    singular: ca.SX = field(default_factory=lambda: ca.SX(0, 4))
 
 
 @dataclass(frozen=True, eq=False)

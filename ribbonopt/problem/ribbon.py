@@ -176,7 +176,8 @@ class Ribbon:
         """
         model = self.model.rates(section.x, section.rod, u)
         own = self.law.rates(section.rod.stress, u) if own is None else own
-        return ca.vertcat(model, own)
+        # What the law's states and its strains have in common is worked out once.
+        return ca.cse(ca.vertcat(model, own)) if self.law.states else model
 
     def work(self, rod: Section) -> ca.SX:
         """Return the work per length of the loads that have a potential."""

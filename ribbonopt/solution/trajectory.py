@@ -133,10 +133,10 @@ class Trajectory:
         return self._named(self.dense.at_nodes, self.nodes, phase)
 
     def singular_at_stages(self, phase: int) -> Array:
-        """Rows (k, q, 3) of (a, b, size) at the stages of a phase: see `Phase.singular`."""
+        """Rows (k, q, 4) of (a, b, size, fades) at the stages of a phase: see `Phase.singular`."""
         count = self.problem.phases[phase].singular.shape[0]
         if not count:
-            return np.empty((0, 0, 3))
+            return np.empty((0, 0, 4))
         v, fraction, _, phases = self.stages
         if len(self.problem.phases) > 1:
             rows = phases == phase
@@ -144,7 +144,7 @@ class Trajectory:
         places = self._places(phase, fraction, self._extent[0] + self.length * fraction)
         function = self.problem.kept(_singular)[phase]
         (found,) = function(v, self.dense.constants, self.dense.theta, places)
-        return found.reshape(-1, count, 3)
+        return found.reshape(-1, count, 4)
 
     @property
     def length(self) -> float:

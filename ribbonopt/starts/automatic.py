@@ -41,6 +41,7 @@ from .tracking import smooth_of
 from .unfold import unfolded
 
 FIRST, LAST = 0.3, 0.01  # delta of the first solve, and of the last unless the scene's is smaller
+BLUNT = 0.1  # the last where the law has an energy form of its own to go on with
 STRAIGHT = 1e-6  # strains, Dw = L = 1
 SAME = 1e-6  # relative, of energies
 # Ratio of a rod's stiffnesses: its layers, of about the root, are thinner than the mesh sees.
@@ -89,6 +90,12 @@ class Automatic:
             yield from reversed(straight[last])
 
     @cached_property
+    def _last(self) -> float:
+        """Delta to go down to for a law that is none of the smooth ones."""
+        law = capabilities(self.posed.scene)
+        return LAST if law.direct() is law else BLUNT
+
+    @cached_property
     def _energy(self) -> Structure:
         closed = closed_posed(self.posed)
         return Structure.least_energy(
@@ -122,7 +129,7 @@ class Automatic:
         """
         own = posed.scene.law
         law, guess = first_law(own, FIRST), ShapeGuess(shape)
-        last = sharpness(own, LAST)
+        last = sharpness(own, self._last)
         if isinstance(shape, Chord) and shape.straight and not _bends(posed, shape):
             # At this delta the law is linear: it can be bent from a straight ribbon.
             started = self._from_straight(posed, shape, ledger)
@@ -162,7 +169,7 @@ class Automatic:
     def _from_straight(self, posed: Posed, chord: Chord, ledger: Ledger) -> list[Solution]:
         """Equilibria from a straight ribbon as its loads grow, under the law that is linear."""
         rod = first_law(posed.scene.law, ROD)
-        last = sharpness(posed.scene.law, LAST)
+        last = sharpness(posed.scene.law, self._last)
         return list(self._follow(posed, rod, ShapeGuess(chord), last, ledger).points)
 
     def _least(self, posed: Posed, law: Law, start: Guess, ledger: Ledger) -> Solution:

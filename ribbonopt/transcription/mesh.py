@@ -55,6 +55,21 @@ class Mesh:
             phases.append(np.diff(inner) / (inner[-1] - inner[0]))
         return Mesh(tuple(phases))
 
+    def gathered(self, levels: int, ratio: float) -> Mesh:
+        """Return a mesh with more elements where phases meet: the last of each in `levels` more.
+
+        Each is `ratio` times as wide as the one before.
+        """
+        last = len(self.phases) - 1
+        split = ratio ** np.arange(levels + 1)
+        split[:-1] *= 1 - ratio
+        phases = []
+        for i, widths in enumerate(self.phases):
+            parts = [widths[0] * split[::-1] if i else widths[:1], widths[1:-1]]
+            parts.append(widths[-1] * split if i < last else widths[-1:])
+            phases.append(np.concatenate(parts if len(widths) > 1 else [widths]))
+        return Mesh(tuple(widths / widths.sum() for widths in phases))
+
     def joined(self, switches: Array) -> Mesh:
         """Return the same elements in one phase; phases meet at `switches` (k,), fractions."""
         if len(self.phases) == 1:

@@ -9,13 +9,20 @@ over the width that gives the factor phi = xi coth(xi) of the energy, whose slop
 
 from __future__ import annotations
 
+from functools import cache
+
 import casadi as ca
 
 NEAR = 0.05  # g below which its series is used: there the closed form cancels
-STEPS, FEW = 4, 3  # of Newton's method, from where they leave rounding only
+STEPS = 4  # of Newton's method beyond, from where they leave rounding only
 FLAT = 1e-3  # xi below which phi is 1 + xi^2 / 3 to rounding
 #: g = sum of c_i xi^(2 i + 1)
 SERIES = (1 / 3, 1 / 15, 2 / 315, 1 / 2835, 2 / 155925)
+#: xi = sum of c_i g^(2 i + 1), that series turned around (exact fractions, rounded)
+TURNED = (
+    *(3.0, -5.4, 24.53142857142857, -145.61485714285715, 983.8984341372912, -7178.270066253746),
+    *(55100.88033596575, -438529.639963054, 3585795.886704284, -29942772.36499402),
+)
 
 
 def log_factor(xi: ca.SX) -> ca.SX:
@@ -30,15 +37,26 @@ def gathering(xi: ca.SX) -> ca.SX:
     near = ca.fabs(xi) < 3 * NEAR
     x = ca.if_else(near, 1, ca.fabs(xi))
     far = (ca.sinh(2 * x) - 2 * x) / (4 * x**2)
-    return ca.if_else(near, _series(xi), ca.sign(xi) * far)
+    return ca.if_else(near, _polynomial(SERIES, xi), ca.sign(xi) * far)
 
 
 def xi_of(g: ca.SX) -> ca.SX:
     """Return xi at which g has a value, to rounding from 0 to 1e120."""
+    found: ca.SX = _xi_function()(g)  # calling it beats writing it out again
+    return found
+
+
+@cache
+def _xi_function() -> ca.Function:
+    g = ca.SX.sym("g")
+    return ca.Function("xi", [g], [_xi_of(g)])
+
+
+def _xi_of(g: ca.SX) -> ca.SX:
     size = ca.fabs(g)
     near = size < NEAR
     x = _far(ca.if_else(near, 1, size))
-    return ca.sign(g) * ca.if_else(near, _near(ca.if_else(near, size, 0)), x)
+    return ca.sign(g) * ca.if_else(near, _polynomial(TURNED, ca.if_else(near, size, 0)), x)
 
 
 def _far(g: ca.SX) -> ca.SX:
@@ -53,15 +71,9 @@ def _far(g: ca.SX) -> ca.SX:
     return x
 
 
-def _near(g: ca.SX) -> ca.SX:
-    """Newton's method on the series."""
-    x = 3 * g
-    for _ in range(FEW):
-        slope = sum((2 * i + 1) * c * x ** (2 * i) for i, c in enumerate(SERIES))
-        x = x - (_series(x) - g) / slope
-    return x
-
-
-def _series(x: ca.SX) -> ca.SX:
-    total: ca.SX = sum((c * x ** (2 * i + 1) for i, c in enumerate(SERIES)), ca.SX(0))
-    return total
+def _polynomial(coefficients: tuple[float, ...], x: ca.SX) -> ca.SX:
+    """Return the sum of c_i x^(2 i + 1)."""
+    total = ca.SX(0)
+    for c in reversed(coefficients):
+        total = total * x**2 + c
+    return total * x

@@ -11,34 +11,17 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Mapping
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING
 
 import casadi as ca
 
 from .implicit import ImplicitLaw
-from .parts import Relaxed, Singular, Switch
+from .parts import Relaxed, Singular, Stress, Switch
 
 if TYPE_CHECKING:
     from .natural import NaturalStrains
 
-
-class Stress(NamedTuple):
-    """What a law may read of a section: n, m (3,) along the directors, and its own states.
-
-    Where a phase may be a mixture also force and couple (3,) per length along the directors, None
-    without loads: they move n1 and m2, which it keeps.
-    """
-
-    n: ca.SX
-    m: ca.SX
-    own: ca.SX
-    load: ca.SX | None = None
-    couple: ca.SX | None = None
-
-    @classmethod
-    def of_moment(cls, m: ca.SX) -> Stress:
-        """Return the stress of a moment (3,) alone."""
-        return cls(ca.SX.zeros(3), m, ca.SX(0, 1))
+__all__ = ["ConstitutiveLaw", "RibbonLaw", "Stress"]
 
 
 class ConstitutiveLaw(ABC):
@@ -64,12 +47,16 @@ class ConstitutiveLaw(ABC):
     kinked: bool = False
     #: its sides are two sheets that may mix, as Sadowsky's
     sheeted: bool = False
+    #: strains fade away with a logarithm where it switches, which a mesh must gather to
+    fades: bool = False
     #: what `switching` is called in words
     switch_name: str = "m2"
     #: `moment` is exact and a closed form, cheap to differentiate; else it serves guesses only
     closed_moment: bool = True
     #: names of states of its own along the ribbon, with `rates`, `end_conditions`, `own_guess`
     states: tuple[str, ...] = ()
+    #: names of the controls of its energy form, where their guess is not of n and m alone
+    controls: tuple[str, ...] = ()
 
     @abstractmethod
     def strain(self, stress: Stress) -> ca.SX:
@@ -164,6 +151,14 @@ class ConstitutiveLaw(ABC):
     def singular(self, stress: Stress) -> tuple[Singular, ...]:
         """Return where strains are singular functions of complex s; nowhere if nothing is known."""
         return ()
+
+    def most_rate(self) -> ca.SX:
+        """Return the largest rate of its own states, (k,), where its energy form bounds it."""
+        return ca.inf * ca.SX.ones(len(self.states))
+
+    def controls_for(self, stress: Stress, rates: ca.SX) -> ca.SX:
+        """Return what controls of its energy form, `controls` by name, give its states rates."""
+        return ca.SX(0, 1)
 
     # Switching: of use to kinked laws, and to find phases for them on solutions of smooth ones.
 

@@ -1,4 +1,4 @@
-"""What laws hand to generic code beside strains: switches, singularities, relaxed programs."""
+"""What laws read, and what they hand to generic code: switches, singularities, programs."""
 
 from __future__ import annotations
 
@@ -7,6 +7,25 @@ from dataclasses import dataclass, field
 from typing import NamedTuple
 
 import casadi as ca
+
+
+class Stress(NamedTuple):
+    """What a law may read of a section: n, m (3,) along the directors, and its own states.
+
+    Where a phase may be a mixture also force and couple (3,) per length along the directors, None
+    without loads: they move n1 and m2, which it keeps.
+    """
+
+    n: ca.SX
+    m: ca.SX
+    own: ca.SX
+    load: ca.SX | None = None
+    couple: ca.SX | None = None
+
+    @classmethod
+    def of_moment(cls, m: ca.SX) -> Stress:
+        """Return the stress of a moment (3,) alone."""
+        return cls(ca.SX.zeros(3), m, ca.SX(0, 1))
 
 
 class Switch(NamedTuple):
@@ -23,12 +42,14 @@ class Singular(NamedTuple):
     """Where strains are singular as functions of complex s: where `re` + i `im` is zero.
 
     `re` and `im` have one dimension, whichever; `size` says by how much strains change there, as a
-    moment. Near the real axis that is a layer, which a mesh must resolve to be of use.
+    moment. Near the real axis that is a layer, which a mesh must resolve to be of use. Where it
+    `fades` (1, else 0) strains change there in proportion to the distance, but for a logarithm.
     """
 
     re: ca.SX
     im: ca.SX
     size: ca.SX
+    fades: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)

@@ -95,7 +95,7 @@ class TaperedLaw(ConstitutiveLaw):
 
     def singular(self, stress: Stress) -> tuple[Singular, ...]:
         found = self.law.singular(self._unit(stress))
-        return tuple(Singular(where.re, where.im, self.width * where.size) for where in found)
+        return tuple(where._replace(size=self.width * where.size) for where in found)
 
     def switching(self, stress: Stress) -> Switch:
         found = self.law.switching(self._unit(stress))

@@ -38,6 +38,7 @@ class WunderlichLaw(ConstitutiveLaw):
     k: NaturalStrains | None = None
     smooth = False
     kinked = True
+    fades = True
     closed_moment = False
     switch_name = "m2 + eta m3"
     states = ("eta", "p")
@@ -92,7 +93,7 @@ class WunderlichLaw(ConstitutiveLaw):
         return ca.vertcat(LARGEST * eta, 0)
 
     def singular(self, stress: Stress) -> tuple[Singular, ...]:
-        return (Singular(self.force(stress), ca.SX(0), self._leap(stress)),)
+        return (Singular(self.force(stress), ca.SX(0), self._leap(stress), fades=1.0),)
 
     def switching(self, stress: Stress) -> Switch:
         return Switch(self.force(stress), self._leap(stress))
@@ -152,6 +153,7 @@ class DirectWunderlichLaw(WunderlichLaw):
     """
 
     states = ("eta",)  # type: ignore[assignment]
+    controls = ("u2", "xi")
 
     def direct(self) -> ConstitutiveLaw:
         return self
@@ -171,6 +173,13 @@ class DirectWunderlichLaw(WunderlichLaw):
 
     def own_guess(self, stress: Stress) -> ca.SX:
         return super().own_guess(stress)[0]
+
+    def most_rate(self) -> ca.SX:
+        return 2 / self.width
+
+    def controls_for(self, stress: Stress, rates: ca.SX) -> ca.SX:
+        xi = ca.atanh(rates * self.width / 2)
+        return ca.vertcat(self.bending(stress, xi), xi)
 
     def relaxed(self, stress: Stress) -> Relaxed:
         z, eta = ca.SX.sym("u2 and xi", 2), stress.own[0]

@@ -49,7 +49,7 @@ def test_layers_beyond_either_end_are_seen_alike(size: float) -> None:
     seen = []
     for beyond in (-size / 4, 1 + size / 4):
         values = stages - beyond
-        rows = np.stack([values, np.full(40, 1e-4), np.ones(40)], axis=1)[:, None]
+        rows = np.stack([values, np.full(40, 1e-4), np.ones(40), np.zeros(40)], axis=1)[:, None]
         phases = np.zeros(40, int)
         trajectory: Any = SimpleNamespace(
             dense=SimpleNamespace(
