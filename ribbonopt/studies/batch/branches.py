@@ -16,7 +16,7 @@ from typing import Any
 from ribbonopt.output.declared import BRANCH_PICTURES
 from ribbonopt.output.staging import OWN_FILES, staged_result
 from ribbonopt.pipeline.prepared import Prepared
-from ribbonopt.plain import Row, finite
+from ribbonopt.plain import SPECIALS, Row, finite
 from ribbonopt.scene import Scene
 from ribbonopt.scene.lens import with_value
 from ribbonopt.scene.stages import stages_of
@@ -27,7 +27,7 @@ from ribbonopt.studies.continuation.files import FILE, TABLE, BranchFolder
 from ribbonopt.studies.continuation.walk.points import POINT, Point
 from ribbonopt.studies.continuation.walk.steps import JUMPED, NOT_RESOLVED
 
-from .special import POINTS, SPECIALS
+from .special import POINTS
 
 OWN = {*OWN_FILES, FILE, TABLE, *BRANCH_PICTURES}
 NOT_REACHED = "target_not_reached"

@@ -21,12 +21,12 @@ from ribbonopt.output.disk import Appended
 from ribbonopt.output.places import unwritable
 from ribbonopt.output.staging import replacing
 from ribbonopt.output.table import write_table
-from ribbonopt.plain import Row, Rows
+from ribbonopt.plain import SPECIALS, Row, Rows
 
 from .cells import as_cell
 from .kept import OneEach
 from .saved import ROWS, STUDY, read_rows, read_study
-from .special import SPECIALS, special_rows, with_columns
+from .special import special_rows, with_columns
 from .study import Study
 
 TABLE, SPECIAL, SOLUTIONS = "table.csv", "special.csv", "solutions"

@@ -7,9 +7,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
 
-from ribbonopt.plain import Row, Rows
+from ribbonopt.plain import SPECIALS, Row, Rows
 
-SPECIALS = "specials"  # of a row: its special points, in order
 POINTS = "points"  # how many points all its branches have
 LISTED = 6  # special points that have columns in the table of rows
 NAME = "special{}"

@@ -116,7 +116,9 @@ def _study(
         raise fault(("name",), wrong, name)
     followed = data.get("continue", False)
     if not isinstance(followed, bool):
-        raise fault(("continue",), "expected true or false: whether ribbons are continued", followed)
+        raise fault(
+            ("continue",), "expected true or false: whether ribbons are continued", followed
+        )
     if data.get("save", "none") not in SAVE:
         raise fault(("save",), f"expected one of {', '.join(SAVE)}", data["save"])
     limit = data.get("time_limit", 1.0)
