@@ -87,8 +87,8 @@ def _draw(axes: Axes, rows: Rows, x: str, colour: str) -> None:
         known = sorted((at, value, kind) for at, value, kind in places if at is not None)
         if known:
             axes.plot([p[0] for p in known], [p[1] for p in known], color=colour, lw=1.4)
-        for place, value, kind in known:
-            axes.plot(place, value, **STYLES[kind] | {"mec": colour, "ms": 6})
+        for where, value, kind in known:
+            axes.plot(where, value, **STYLES[kind] | {"mec": colour, "ms": 6})
         for at, value, _ in places:
             if at is None:
                 axes.axhline(value, color=colour, lw=1.2, ls=(0, (5, 2)))
