@@ -130,8 +130,10 @@ class Search(Tried):
     def run_minimum(self, guess: Solution) -> bool:
         """Try what minimises the energy of the law itself, in the phases that it shows."""
         if self.phases_help and self.changes_sign(guess):
-            return self.run_in(sign_changes(guess), guess)
-        return self.plain.run(guess, quick=True)
+            if self.run_in(sign_changes(guess), guess):
+                return True
+        # In one phase it is less exact, but need not know where the sign changes.
+        return self.run(guess, quick=True)
 
     def run_all(self, guesses: Iterable[Guess]) -> bool:
         """Try the guesses of an automatic start, equilibria of the smooth law among them."""

@@ -34,7 +34,7 @@ def natural_law(
         if value := getattr(scene.natural, name):
             raise ModelError(
                 f"natural.{name}: found {value}, which law {scene.law.type} cannot have; write 0, "
-                "or use law sadowsky, variational or single_sheet",
+                "or use law sadowsky, variational, single_sheet or wunderlich",
                 f"natural.{name}",
             )
     return ShiftedLaw(law, natural, NaturalSides(natural) if law.sheeted else None)

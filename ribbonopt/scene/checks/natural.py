@@ -6,11 +6,11 @@ from collections.abc import Iterator
 from dataclasses import fields
 
 from ribbonopt.scene.faults import Problem
-from ribbonopt.scene.laws import Sadowsky, SingleSheet, Variational
+from ribbonopt.scene.laws import Sadowsky, SingleSheet, Variational, Wunderlich
 from ribbonopt.scene.model import Scene
 
 #: laws whose energy is that of a plate, which couples curvatures along and across
-PLATES = (Sadowsky, SingleSheet, Variational)
+PLATES = (Sadowsky, SingleSheet, Variational, Wunderlich)
 
 
 def check_natural(scene: Scene) -> Iterator[Problem]:
@@ -26,7 +26,7 @@ def check_natural(scene: Scene) -> Iterator[Problem]:
         yield Problem(("natural",), f"{message}; say it there, and remove this")
         return
     which = f"which law {scene.law.type} cannot have: it knows natural curvature and twist only"
-    others = "or use law sadowsky, variational or single_sheet"
+    others = "or use law sadowsky, variational, single_sheet or wunderlich"
     if natural.across != 0:
         message = f"{which}; remove it, {others}"
         yield Problem(("natural", "across"), message, f"{natural.across}")
