@@ -16,12 +16,12 @@ SHEAR = Path(__file__).parents[2] / "configs" / "shear"
 ROUNDED = 1e-12  # of numbers near one: what no bar counts
 
 
+WIDTH = "parameters.width"
+
+
 def key_of(row: dict[str, Any]) -> Key:
     law, membrane = row["law"], row.get("membrane") or {}
     return law if isinstance(law, str) else law["type"], ", ".join(membrane), row.get(WIDTH)
-
-
-WIDTH = "parameters.width"
 
 
 def assert_threshold(row: dict[str, Any], truth: Thresholds, first: bool) -> None:
