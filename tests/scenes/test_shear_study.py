@@ -14,8 +14,6 @@ from ribbonopt.studies.continuation.walk.points import BRANCH_POINT, KINK, POINT
 
 SHEAR = Path(__file__).parents[2] / "configs" / "shear"
 ROUNDED = 1e-12  # of numbers near one: what no bar counts
-
-
 WIDTH = "parameters.width"
 
 
