@@ -18,6 +18,7 @@ from ribbonopt.mechanics.laws.catalogue import is_developable
 from ribbonopt.mechanics.outputs import sheet_slopes
 from ribbonopt.mechanics.widths import widths
 from ribbonopt.scene import RibbonSizes
+from ribbonopt.scene.laws import OfWidth
 from ribbonopt.solution.solution import Solution
 
 from .shape import contact_problems, planar_problems
@@ -41,7 +42,8 @@ def warnings_of(solution: Solution) -> list[str]:
         width = ribbon.width * widths(solution.scene, s)
         result += [*_slenderness(ribbon, width), *_width_of_loop(solution, float(width.min()))]
         result += _taper(s, width)
-        result += _generatrices(solution, s, width) if converged else []
+        doubtful = converged and not isinstance(solution.scene.law, OfWidth)
+        result += _generatrices(solution, s, width) if doubtful else []
     if converged:
         result += zero_moment_problems(solution)
         result += spin_problems(solution)
