@@ -64,10 +64,11 @@ def is_mixture(guess: Guess) -> bool:
     return bool(m2.max() <= NEGLIGIBLE * m3.min() and m3.min() > 0)
 
 
-def sign_changes(solution: Solution) -> Arcs:
+def sign_changes(solution: Solution, every: bool = False) -> Arcs:
     """Return the arcs between sign changes of the law's switch, as stages and ends tell.
 
-    Where nothing leaps there (a planar ribbon) the law is smooth: such changes do not count.
+    Where nothing leaps there (a planar ribbon) the law is smooth: such changes do not count, unless
+    `every` one is asked for.
     """
     o, ends, scale = solution.at_stages, solution.at_nodes, _scale(solution)
     value, leap = (
@@ -83,7 +84,7 @@ def sign_changes(solution: Solution) -> Arcs:
     signs = np.sign(value).astype(int)
     leaps = leap > NEGLIGIBLE * scale
     changes = np.flatnonzero(signs[1:] != signs[:-1])
-    at = _counted(signs, changes, leaps[changes] | leaps[changes + 1])
+    at = changes if every else _counted(signs, changes, leaps[changes] | leaps[changes + 1])
     # Between the two points the function is straight, to the accuracy of a first guess.
     switches = f[at] + (f[at + 1] - f[at]) * value[at] / (value[at] - value[at + 1])
     first = signs[at[0]] if len(at) else signs[0]

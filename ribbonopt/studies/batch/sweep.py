@@ -11,6 +11,7 @@ A study file names a scene (or several) and what is swept over it:
       list: [{parameters.a: 1}, {parameters.a: 2, law.delta: 0.1}]
       random: {count: 100, seed: 1, over: {parameters.a: {uniform: [0, 1]}}}
       csv: rows.csv                      # a column for each key
+    continue: true                       # follow the `continuation` of each; false: solve it alone
     save: failed                         # full solutions: all | failed | none
     time_limit: 60                       # seconds for a ribbon
 """
@@ -39,7 +40,7 @@ from .cells import as_yaml
 from .inputs import NOTHING, Inputs, fault, rows_of, text_of
 from .study import Source, Study, Sweep
 
-KEYS = ("name", "scene", "set", "sweep", "save", "time_limit")
+KEYS = ("name", "scene", "set", "sweep", "continue", "save", "time_limit")
 SAVE = ("all", "failed", "none")
 
 
@@ -126,6 +127,11 @@ def _study(
         raise fault(("name",), "expected a name for the study and its folder of results", name)
     if wrong := name_fault(name):
         raise fault(("name",), wrong, name)
+    followed = data.get("continue", False)
+    if not isinstance(followed, bool):
+        raise fault(
+            ("continue",), "expected true or false: whether ribbons are continued", followed
+        )
     if data.get("save", "none") not in SAVE:
         raise fault(("save",), f"expected one of {', '.join(SAVE)}", data["save"])
     limit = data.get("time_limit", 1.0)
@@ -158,7 +164,8 @@ def _study(
             raise SceneError(f"--set {key}: is swept, {where.get(key, file)}; change it there")
         where[key] = f"--set {key}"
     return [
-        Sweep(_source(file, text, item, places), given | common, rows, where) for item in scenes
+        Sweep(_source(file, text, item, places), given | common, rows, where, followed)
+        for item in scenes
     ]
 
 
