@@ -17,8 +17,10 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ribbonopt.arrays import Array
+from ribbonopt.mechanics.outputs import own_name
 from ribbonopt.solution.potential import dead_force_of
 from ribbonopt.solution.solution import Solution
 from ribbonopt.solution.trajectory import Trajectory
@@ -158,10 +160,24 @@ def _analysed(solution: Solution, near: Factors | None, keep: bool) -> Analysis:
     # Between the nodes the output starts from the node before, with the error of that element.
     more_inside, inside = gaps_between(trajectory, better, near_by, growth, clear)
     errors |= {name: max(errors[name], gap) for name, gap in more_inside.items()}
-    errors["states"] = max(errors["states"], float(local.max()))
+    rod = _of_rod(trajectory)
+    if len(rod) < len(size):
+        # Errors in states of the law's own show in the rod where they matter to it.
+        of_rod = np.abs(residuals.nodes / size)[:, rod].max(axis=1).reshape(-1, split).sum(axis=1)
+        local_of_rod, _ = _more(of_rod, witnessed)
+        errors["states"] = max(errors["states"], float(local_of_rod.max()))
+    else:
+        errors["states"] = max(errors["states"], float(local.max()))
     kept = factors if keep else None
     known = doubt <= DOUBTFUL or _worst(errors, sizes)[0] <= SMALL
     return Analysis(better, local, inside, errors, sizes, more, known, near_by, kept)
+
+
+def _of_rod(trajectory: Trajectory) -> NDArray[np.intp]:
+    """Columns of the states that are none of the law's own."""
+    problem = trajectory.problem
+    names = problem.state_names
+    return np.flatnonzero([own_name(name) not in problem.phases[0].outputs for name in names])
 
 
 def _more(local: Array, witnessed: Array) -> tuple[Array, float]:
