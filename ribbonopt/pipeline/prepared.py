@@ -240,7 +240,7 @@ def prepare(scene: Scene) -> Prepared:
     started = time.perf_counter()
     posed = Posed.of(validate_scene(scene))
     structure = Structure.of(posed)
-    refuse_idle_settings(posed, structure.ribbon, structure.problem)
+    refuse_idle_settings(posed, structure.ribbon)
     examine(structure.ribbon, structure.problem, posed)
     structure.build()
     return Prepared(structure, time.perf_counter() - started)

@@ -49,16 +49,17 @@ class Solution:
     steps : tuple of mappings
         The steps that led here, with their cost.
     skipped, given_up, fell_back : tuples of str
-        What this scene did not need; what it asked for and did not lead to this answer; what was
-        tried before what did.
+        What it did not need; what it asked for and did not lead here; what was tried before.
     verification : Verification
         What was checked afterwards.
     others : tuple of Solution
-        Other equilibria of the scene, where several starts were asked for, by increasing energy.
+        Other equilibria of the scene, of several starts, by increasing energy.
     times : int
-        How many of those starts led here.
+        How many of those led here.
     sheets : tuple of int
         Kinds of the phases: sign of m2, or 0 for a mixture of both sheets; empty for one phase.
+    coarser : Trajectory or None
+        Of a minimum, that on elements twice as wide, if it has one: its bars.
     """
 
     posed: Posed
@@ -76,6 +77,7 @@ class Solution:
     others: tuple[Solution, ...] = ()
     times: int = 1
     sheets: tuple[int, ...] = ()
+    coarser: Trajectory | None = None
 
     @property
     def scene(self) -> Scene:
