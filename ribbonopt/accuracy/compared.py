@@ -22,6 +22,7 @@ from ribbonopt.solution.trajectory import Trajectory
 from .gaps import LEAST, gaps_at_nodes, gaps_between
 from .layers import Layers
 
+SPARE = 10.0  # how much less than it may a solver leaves where strains next to jumps count
 BESIDE = 1  # elements beside a jump in which its strains are not told
 
 
@@ -46,9 +47,13 @@ def compared(
     fine: Trajectory,
     near_by: tuple[Layers, ...],
     sizes: Mapping[str, float],
+    least: float,
 ) -> Compared:
-    """Compare two answers, one on the halved elements of the other, with sizes of its parts."""
-    clear = _clear_of_jumps(coarse, near_by)
+    """Compare two answers, one on the halved elements of the other, with sizes of its parts.
+
+    `least` is what the solver leaves, over what may be wrong of strains that are to count.
+    """
+    clear = _clear_of_jumps(coarse, near_by, least)
     errors = gaps_at_nodes(coarse, fine, 2, clear)
     gap = fine.dense.at_nodes[::2] - coarse.dense.at_nodes
     size = np.maximum(np.abs(coarse.dense.at_nodes).max(axis=0), 1.0)
@@ -66,17 +71,26 @@ def compared(
 
 
 def _clear_of_jumps(
-    coarse: Trajectory, near_by: tuple[Layers, ...]
+    coarse: Trajectory, near_by: tuple[Layers, ...], least: float
 ) -> Callable[[Array], NDArray[np.bool_]]:
-    """Return what tells which fractions (k,) are in no element that strains change abruptly in."""
+    """Return what tells which fractions (k,) are in no element that strains change abruptly in.
+
+    Nor so near to a jump that a minimum leaves them open: at the distance d elements are as wide,
+    and so is the distance to a mixture, so that what a solver leaves costs strains that over d^2.
+    """
     ends, last = coarse.ends, len(coarse.nodes) - 1
-    places = [
-        a + (b - a) * near.places.real[near.places.imag == 0]
-        for a, b, near in zip(ends[:-1], ends[1:], near_by, strict=True)
-    ]
-    at = np.searchsorted(coarse.nodes, np.concatenate(places)) - 1
-    left = coarse.nodes[np.clip(at - BESIDE, 0, last)]
-    right = coarse.nodes[np.clip(at + 1 + BESIDE, 0, last)]
+    kept = [near.jump | near.fade for near in near_by]
+    places = np.concatenate(
+        [
+            a + (b - a) * near.places.real[k]
+            for a, b, near, k in zip(ends[:-1], ends[1:], near_by, kept, strict=True)
+        ]
+    )
+    jump = np.concatenate([near.jump[k] for near, k in zip(near_by, kept, strict=True)])
+    reach = np.where(jump, np.sqrt(SPARE * least), 0.0)
+    at = np.searchsorted(coarse.nodes, places) - 1
+    left = np.minimum(coarse.nodes[np.clip(at - BESIDE, 0, last)], places - reach)
+    right = np.maximum(coarse.nodes[np.clip(at + 1 + BESIDE, 0, last)], places + reach)
 
     def clear(fractions: Array) -> NDArray[np.bool_]:
         inside = (fractions[:, None] >= left) & (fractions[:, None] <= right)

@@ -37,7 +37,10 @@ from .spin import spins
 UNIT = 3e-16  # local error by rounding alone
 SAFETY = 4.0  # bar over estimate: what the next better scheme itself may miss
 DOUBTFUL = 3.0  # times the difference of the schemes, from which on errors are not known,
-JUMPING = 10.0  # the same for minima, of which jumps are part
+#: times solver tolerance^(2/3): of a minimum with a jump. The barrier of its inequality costs
+#: strains min(tol / d^2, sqrt(tol / d)) at the distance d, where elements are as wide
+BARRIER = 30.0
+JUMPING = 30.0  # the same for minima, of which jumps are part
 SMALL = 1e-4  # unless they are smaller than this all the same
 BLURRED = 1e-14  # of the length: by how much rounding moves a layer, over that by which it may
 USUAL = 1e-8  # tolerance of scenes that have none
@@ -69,6 +72,8 @@ class Analysis:
         Singularities of the law near each phase.
     factors : Factors or None
         Factors of the better scheme, if they were to be kept.
+    least : float
+        What the solver leaves of the relative error on any mesh, where that is more than rounding.
     """
 
     trajectory: Trajectory
@@ -81,6 +86,7 @@ class Analysis:
     known: bool
     layers: tuple[Layers, ...]
     factors: Factors | None = None
+    least: float = 0.0
 
 
 def analyse(solution: Solution, near: Factors | None = None, *, keep: bool = False) -> Analysis:
@@ -185,18 +191,22 @@ def _of_minimum(solution: Solution) -> Analysis:
             "tolerance",
         )
     near_by = tuple(layers(coarse, i) for i in range(len(coarse.problem.phases)))
-    sizes = sizes_of(fine)
-    errors, local, inside = compared(coarse, fine, near_by, sizes)
+    sizes, scene = sizes_of(fine), solution.posed.scene
+    least = scene.solver.tolerance if isinstance(scene.solver, Ipopt) else Ipopt().tolerance
+    open_in = least / (scene.tolerance or USUAL)
+    errors, local, inside = compared(coarse, fine, near_by, sizes, open_in)
     local, more = _more(local, overlooked(coarse, near_by))
-    solver = solution.posed.scene.solver
-    least = solver.tolerance if isinstance(solver, Ipopt) else Ipopt().tolerance
-    least *= len(fine.nodes)  # costates take up what each element leaves
+    rounding = least * len(fine.nodes)  # costates take up what each element leaves
+    barrier = BARRIER * least ** (2 / 3) if any(near.jump.any() for near in near_by) else 0.0
+    left = dict.fromkeys(errors, max(rounding, barrier))
+    left |= dict.fromkeys(("energy", "potential"), rounding)  # of strains they know the square
     errors = {
-        name: max(more * error, least * max(sizes.get(name, 0.0), LEAST))
+        name: max(more * error, left[name] * max(sizes.get(name, 0.0), LEAST))
         for name, error in errors.items()
     }
     known = more <= JUMPING or _worst(errors, sizes)[0] <= SMALL
-    return Analysis(coarse, coarse, local, inside, errors, sizes, more, known, near_by)
+    parts = coarse, coarse, local, inside, errors, sizes, more, known, near_by
+    return Analysis(*parts, least=SAFETY * left["n0"])
 
 
 def _more(local: Array, witnessed: Array) -> tuple[Array, float]:

@@ -45,6 +45,7 @@ AIM = 0.5  # share of the tolerance that a new mesh aims at
 CLOSE = 10.0  # times the tolerance, from where on a mesh that helped little was not fine enough
 GROUND = 2e-14  # local error of an element that is rounding
 MOST = 320  # elements of a minimum, of a phase
+LEFT = 3.0  # times what the solver leaves, below which finer meshes are of little use
 GROWTH = 2.0  # most that the number of elements grows in a round
 
 
@@ -80,25 +81,26 @@ def refine(
     if found is None:
         return _missed(replace(solution, steps=tuple(means.steps)), tolerance)
     solution, steps = found, means.steps
-    best, least, status = solution, np.inf, Status.TOLERANCE_MISSED
+    best, smallest, status = solution, np.inf, Status.TOLERANCE_MISSED
     for _ in range(ROUNDS):
         try:
             error, _ = relative_error(solution)
         except np.linalg.LinAlgError:
             lost = Status.SINGULAR
             return replace(solution, status=lost, message=lost.value, steps=tuple(steps))
-        if error < least:
-            best, least = solution, error
+        if error < smallest:
+            best, smallest = solution, error
         if error <= tolerance:
             # In phases the signs of m2 are judged by the error, which is known only now.
             same = solution is first and not solution.sheets
             done = solution if same else verified(solution, ribbon)
             return replace(done, steps=tuple(steps))
-        if error > SLOW * before and _is_rounding(solution, tolerance):
+        least = analyse(solution).least
+        if _is_left(error, least) or (error > SLOW * before and _is_rounding(solution, tolerance)):
             status = Status.ROUNDED
             break
         stuck, close = error > SLOW * before, error <= CLOSE * tolerance
-        goal = aim * tolerance * (1 / CLOSE if stuck and close else 1.0)
+        goal = max(aim * tolerance * (1 / CLOSE if stuck and close else 1.0), least)
         mesh, short = _better_mesh(solution, goal, error, stuck and not close)
         before = error
         try:
@@ -110,10 +112,15 @@ def refine(
         solution = found
         if short:
             break
-    if solution is not best and relative_error(solution)[0] > least:
+    if solution is not best and relative_error(solution)[0] > smallest:
         solution = best
     solution = verified(replace(solution, steps=tuple(steps)), ribbon)
     return _missed(solution, tolerance, status) if solution.verified else solution
+
+
+def _is_left(error: float, least: float) -> bool:
+    """Whether an error is what the solver leaves on any mesh."""
+    return error <= LEFT * least
 
 
 def _is_rounding(solution: Solution, tolerance: float) -> bool:
@@ -156,9 +163,8 @@ def _better_mesh(
     dense, blocks, minimum = trajectory.dense, trajectory.dense.blocks, solution.problem.recovered
     widths, phases, short = blocks.widths(dense.p), [], False
     target = float(local.sum()) * min(1.0, aim / error) / len(local)
-    # Inside an element the collocation polynomial counts, whose order is lower; that of controls
-    # lower still.
-    inside = (SAFETY * found.inside / aim) ** (1 / (blocks.degree + (not minimum)))
+    # Inside an element the collocation polynomial counts, whose order is lower.
+    inside = (SAFETY * found.inside / aim) ** (1 / (blocks.degree + 1))
     rho = analyticity(dense.decay())
     if surprised:
         rho = np.where(local > target, UNSEEN, rho)
@@ -167,6 +173,10 @@ def _better_mesh(
         h = widths[part]
         wanted = wanted_widths(h, local[part], rho[part], blocks.order, target)
         wanted = np.minimum(wanted, h / np.maximum(inside[part], 1 / WIDEST))
+        if minimum:  # controls have a lower order still, and are singular where strains fade
+            open_ = SAFETY * found.inside[part]
+            widest = wanted_widths(h, open_, rho[part], blocks.degree - 1, aim)
+            wanted = np.minimum(wanted, widest)
         limits = _limits(near, blocks, target / length, bool(minimum)) if len(near) else ()
         positions, share = graded(h, wanted, *limits)
         count = max(int(np.ceil(share[-1])), len(h) // 2)

@@ -159,7 +159,7 @@ def _singular(law: ConstitutiveLaw, stress: Stress) -> ca.SX:
     if law.smooth or law.fades:
         return found
     switch = law.switching(stress)
-    return ca.vertcat(found, ca.horzcat(switch.value, 0, switch.leap, -1))
+    return ca.vertcat(found, ca.horzcat(switch.value, 0, switch.leap / 2, -1))
 
 
 def dead_force(ribbon: Ribbon) -> ca.SX:
