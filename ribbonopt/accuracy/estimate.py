@@ -40,7 +40,6 @@ DOUBTFUL = 3.0  # times the difference of the schemes, from which on errors are 
 #: times solver tolerance^(2/3): of a minimum with a jump. The barrier of its inequality costs
 #: strains min(tol / d^2, sqrt(tol / d)) at the distance d, where elements are as wide
 BARRIER = 30.0
-JUMPING = 30.0  # the same for minima, of which jumps are part
 SMALL = 1e-4  # unless they are smaller than this all the same
 BLURRED = 1e-14  # of the length: by how much rounding moves a layer, over that by which it may
 USUAL = 1e-8  # tolerance of scenes that have none
@@ -197,14 +196,16 @@ def _of_minimum(solution: Solution) -> Analysis:
     errors, local, inside = compared(coarse, fine, near_by, sizes, open_in)
     local, more = _more(local, overlooked(coarse, near_by))
     rounding = least * len(fine.nodes)  # costates take up what each element leaves
-    barrier = BARRIER * least ** (2 / 3) if any(near.jump.any() for near in near_by) else 0.0
+    jumps = any(near.jump.any() for near in near_by)
+    barrier = BARRIER * least ** (2 / 3) if jumps else 0.0
     left = dict.fromkeys(errors, max(rounding, barrier))
     left |= dict.fromkeys(("energy", "potential"), rounding)  # of strains they know the square
     errors = {
         name: max(more * error, left[name] * max(sizes.get(name, 0.0), LEAST))
         for name, error in errors.items()
     }
-    known = more <= JUMPING or _worst(errors, sizes)[0] <= SMALL
+    # What a jump costs at most is known, of other layers it is a guess.
+    known = jumps or more <= DOUBTFUL or _worst(errors, sizes)[0] <= SMALL
     parts = coarse, coarse, local, inside, errors, sizes, more, known, near_by
     return Analysis(*parts, least=SAFETY * left["n0"])
 

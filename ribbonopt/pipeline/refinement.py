@@ -44,7 +44,7 @@ SLOW = 0.3  # share of the error before that a round should leave
 AIM = 0.5  # share of the tolerance that a new mesh aims at
 CLOSE = 10.0  # times the tolerance, from where on a mesh that helped little was not fine enough
 GROUND = 2e-14  # local error of an element that is rounding
-MOST = 320  # elements of a minimum, of a phase
+MOST = 190  # elements of a minimum, of a phase
 LEFT = 3.0  # times what the solver leaves, below which finer meshes are of little use
 GROWTH = 2.0  # most that the number of elements grows in a round
 

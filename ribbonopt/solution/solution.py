@@ -39,7 +39,7 @@ class Solution:
     trajectory : Trajectory
         The equations that were solved and the numbers, all phases read as one.
     status, message : Status, str
-        How the solve ended.
+        How it ended.
     multipliers : (ng,) array
         Lagrange multipliers of the discretised equations.
     iterations : int
@@ -53,9 +53,8 @@ class Solution:
     verification : Verification
         What was checked afterwards.
     others : tuple of Solution
-        Other equilibria of the scene, of several starts, by increasing energy.
-    times : int
-        How many of those led here.
+        Other equilibria of the scene, of several starts, by increasing energy; `times` is how many
+        of those led here.
     sheets : tuple of int
         Kinds of the phases: sign of m2, or 0 for a mixture of both sheets; empty for one phase.
     coarser : Trajectory or None
