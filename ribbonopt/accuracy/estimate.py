@@ -200,8 +200,15 @@ def _of_minimum(solution: Solution) -> Analysis:
     barrier = BARRIER * least ** (2 / 3) if jumps else 0.0
     left = dict.fromkeys(errors, max(rounding, barrier))
     left |= dict.fromkeys(("energy", "potential"), rounding)  # of strains they know the square
+    # Strains are controls of their elements: what other elements overlook moves them as the loads.
+    strains = dict.fromkeys(("u0", "u", RESOLVED), sizes["u0"])
+    moved = max(errors["n0"], errors["m0"]) / max(sizes["n0"], LEAST)
     errors = {
-        name: max(more * error, left[name] * max(sizes.get(name, 0.0), LEAST))
+        name: error + (more - 1) * min(error, moved * strains.get(name, np.inf))
+        for name, error in errors.items()
+    }
+    errors = {
+        name: max(error, left[name] * max(sizes.get(name, 0.0), LEAST))
         for name, error in errors.items()
     }
     # What a jump costs at most is known, of other layers it is a guess.

@@ -100,8 +100,9 @@ def refine(
             status = Status.ROUNDED
             break
         stuck, close = error > SLOW * before, error <= CLOSE * tolerance
+        surprised = stuck and not close and not solution.problem.recovered
         goal = max(aim * tolerance * (1 / CLOSE if stuck and close else 1.0), least)
-        mesh, short = _better_mesh(solution, goal, error, stuck and not close)
+        mesh, short = _better_mesh(solution, goal, error, surprised)
         before = error
         try:
             found = means.on(mesh, solution, error)
