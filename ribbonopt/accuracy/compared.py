@@ -10,6 +10,7 @@ in any case. Where it is high the difference is the error of the coarser one.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -18,12 +19,20 @@ from numpy.typing import NDArray
 from ribbonopt.arrays import Array
 from ribbonopt.solution.solution import Solution
 from ribbonopt.solution.trajectory import Trajectory
+from ribbonopt.transcription import Mesh
 
 from .gaps import LEAST, gaps_at_nodes, gaps_between
 from .layers import Layers
 
 SPARE = 10.0  # how much less than it may a solver leaves where strains next to jumps count
 BESIDE = 1  # elements beside a jump in which its strains are not told
+
+
+def mesh_to_begin(solution: Solution) -> Mesh:
+    """Return the mesh on which one near by is to be solved: of a minimum with bars the coarser."""
+    if solution.coarser is None:
+        return solution.mesh
+    return replace(solution, trajectory=solution.coarser).mesh
 
 
 class Compared(NamedTuple):

@@ -18,6 +18,7 @@ from ribbonopt import solve
 from ribbonopt.accuracy.estimate import estimate_error, relative_error
 from ribbonopt.cli import main
 from ribbonopt.errors import ModelError
+from ribbonopt.pipeline.prepared import prepare
 from ribbonopt.scene import (
     Boundary,
     Collocation,
@@ -31,6 +32,7 @@ from ribbonopt.scene import (
 )
 from ribbonopt.solution.solution import Solution
 from ribbonopt.solvers import Status
+from ribbonopt.studies.batch.neighbour import Neighbour
 
 sys.path.append(str(Path(__file__).resolve().parents[2] / "scripts"))
 from energy_bars import shares
@@ -102,6 +104,16 @@ def test_bars_shrink_with_the_tolerance() -> None:
         found[tolerance] = bars
     assert found[1e-5]["u0"] < found[1e-3]["u0"] / 10
     assert found[1e-5]["n0"] < found[1e-3]["n0"] / 10
+
+
+def test_a_ribbon_near_by_needs_no_finer_mesh() -> None:
+    scene = replace(clamp(C, None, SMOOTH), formulation="energy", tolerance=1e-6)
+    prepared = prepare(replace(scene, transcription=MESH))
+    first = prepared.solve()
+    near = Neighbour(prepared, first).solve(replace(prepared.scene, law=Variational(delta=0.011)))
+    assert near is not None
+    assert near.solution.coarser is not None
+    assert near.solution.mesh.elements == first.mesh.elements
 
 
 def test_on_one_mesh_there_are_no_bars_and_it_says_why() -> None:
