@@ -11,6 +11,8 @@ Row = dict[str, Any]
 
 Rows = Sequence[Row]
 
+SPECIALS = "specials"  # of the row of a branch: the rows of its special points, in order
+
 DEEPEST = 60  # lists and mappings in each other, in JSON that is read
 
 

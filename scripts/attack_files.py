@@ -104,6 +104,7 @@ class Originals:
                     "text": ribbon.source.text,
                     "set": ribbon.overrides,
                     "inputs": ribbon.inputs,
+                    "followed": ribbon.followed,
                 }
                 for ribbon in study.ribbons
             ]

@@ -99,7 +99,8 @@ def _shifted(trajectory: Trajectory, nodes: Array) -> dict[str, Array]:
     ours, length = trajectory.at_nodes, trajectory.length
     shift = (length * (nodes - trajectory.nodes))[:, None]
     darboux = np.einsum("ki,ikj->kj", ours["u"], np.stack([ours[f"d{i}"] for i in (1, 2, 3)]))
-    found = {"r": ours["r"] + shift * ours["d3"]}
+    tangent = (1 + ours["extension"])[:, None] * ours["d3"]
+    found = {"r": ours["r"] + shift * tangent}
     found |= {d: ours[d] + shift * np.cross(darboux, ours[d]) for d in ("d1", "d2", "d3")}
     slope = np.zeros_like(ours["u"])
     slope[1:] = np.diff(ours["u"], axis=0) / (length * np.diff(trajectory.nodes))[:, None]

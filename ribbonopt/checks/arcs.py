@@ -11,23 +11,20 @@ from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ribbonopt.arrays import Array
 from ribbonopt.guess import Guess
 from ribbonopt.guess.balanced import Balanced
 from ribbonopt.guess.named import ShapeGuess
 from ribbonopt.mechanics.outputs import sheet_slopes
-from ribbonopt.problem import Ribbon
-from ribbonopt.problem.imposed import margins_function
 from ribbonopt.scene import Scene
 from ribbonopt.solution.solution import Solution
-from ribbonopt.transcription.buffered import Mapped
 
 NEGLIGIBLE = 1e-7  # m2 over the largest |m| that has no sign
 FAINT, SEEN = 1e-5, 10.0  # (m2, m3) over the largest |m|, and over the tolerance: is not seen
 BEYOND = 1.05  # |eta| of a mixture
-MARGIN = 1e-6  # of the largest moment: how far below zero a margin of the law may be at most,
-ROUNDED = 1e-12  # and at least
+ROUNDED = 1e-12  # of the largest moment
 EMPTY = 1e-5  # of the length of the ribbon: a phase that may not be there
 SHORTEST = 0.01  # of an arc of a mixture, and of the phase before one that begins at an end
 
@@ -67,10 +64,11 @@ def is_mixture(guess: Guess) -> bool:
     return bool(m2.max() <= NEGLIGIBLE * m3.min() and m3.min() > 0)
 
 
-def sign_changes(solution: Solution) -> Arcs:
+def sign_changes(solution: Solution, every: bool = False) -> Arcs:
     """Return the arcs between sign changes of the law's switch, as stages and ends tell.
 
-    Where nothing leaps there (a planar ribbon) the law is smooth: such changes do not count.
+    Where nothing leaps there (a planar ribbon) the law is smooth: such changes do not count, unless
+    `every` one is asked for.
     """
     o, ends, scale = solution.at_stages, solution.at_nodes, _scale(solution)
     value, leap = (
@@ -85,11 +83,31 @@ def sign_changes(solution: Solution) -> Arcs:
         return Arcs((1,), np.empty(0))
     signs = np.sign(value).astype(int)
     leaps = leap > NEGLIGIBLE * scale
-    at = np.flatnonzero((signs[1:] != signs[:-1]) & (leaps[1:] | leaps[:-1]))
+    changes = np.flatnonzero(signs[1:] != signs[:-1])
+    at = changes if every else _counted(signs, changes, leaps[changes] | leaps[changes + 1])
     # Between the two points the function is straight, to the accuracy of a first guess.
     switches = f[at] + (f[at + 1] - f[at]) * value[at] / (value[at] - value[at + 1])
-    kinds = (int(signs[0]), *(int(signs[i + 1]) for i in at))
+    first = signs[at[0]] if len(at) else signs[0]
+    kinds = (int(first), *(int(signs[i + 1]) for i in at))
     return Arcs(kinds, switches)
+
+
+def _counted(
+    signs: NDArray[np.intp], changes: NDArray[np.intp], leaping: NDArray[np.bool_]
+) -> NDArray[np.intp]:
+    """Return the changes at which something leaps, and what else is needed between these.
+
+    The law of a phase has one sign where it begins and where it ends: between leaps from which it
+    would have both, one change without a leap counts too.
+    """
+    found: list[int] = []
+    for i, leaps in zip(changes, leaping, strict=True):
+        if not leaps:
+            continue
+        if found and signs[found[-1] + 1] != signs[i]:
+            found.append(int(next(c for c in changes if c > found[-1])))
+        found.append(int(i))
+    return np.array(found, np.intp)
 
 
 def leaps(solution: Solution) -> bool:
@@ -194,47 +212,3 @@ def _faint(solution: Solution) -> float:
 
 def _scale(solution: Solution) -> float:
     return float(np.abs(solution.at_stages["m"]).max())
-
-
-def phase_problems(
-    solution: Solution, ribbon: Ribbon, accuracy: float, moments: float = np.inf
-) -> list[str]:
-    """Say where a solution in phases is not one of the law: wrong side of its switch, no mixture.
-
-    Margins of a law are compared in units Dw = L = 1. `accuracy` is that of the equations, relative
-    to the largest load: what must be zero is so to that. `moments` is the error of the moments:
-    what must not be negative is so to that.
-    """
-    problems = []
-    v, fraction, _, phase = solution.trajectory.stages
-    theta, at_nodes = solution.dense.theta, solution.dense.at_nodes
-    scale, force = (float(np.abs(solution.trajectory.at_stages[v]).max()) for v in "mn")
-    loads = max(scale, force)
-    s, s_nodes = (
-        solution.posed.scene.interval[0] + solution.posed.length * at
-        for at in (fraction, solution.trajectory.nodes)
-    )
-    start, end = solution.scene.interval
-    ends = start + (end - start) * solution.trajectory.ends
-    constants = solution.constants[: len(ribbon.constants)]
-    for i, kind in enumerate(solution.sheets):
-        rows, part = phase == i, solution.dense.blocks.layout.phase_slices[i]
-        places = np.concatenate([s[rows], s_nodes[part.start : part.stop + 1]])
-        states = np.concatenate([v[rows], at_nodes[part.start : part.stop + 1]])
-        where = f"between s = {ends[i]:.4g} and {ends[i + 1]:.4g}"
-        names, count, margins = ribbon.kept(_margins)[kind]
-        (values,) = margins(states[:, : len(ribbon.states)], constants, theta, places)
-        least = values.reshape(-1, len(names)).min(axis=0)
-        margin = min(MARGIN * scale, max(moments, ROUNDED * scale))
-        allowed = np.where(np.arange(len(names)) < count, margin, accuracy * loads)
-        short = zip(names, least, allowed, strict=True)
-        problems += [name.format(where=where) for name, value, most in short if value < -most]
-    return problems
-
-
-def _margins(ribbon: Ribbon) -> dict[int, tuple[tuple[str, ...], int, Mapped]]:
-    """Names of the margins of every kind of phase, how many are none of zeros, and all values."""
-    found = {kind: margins_function(ribbon, kind) for kind in (-1, 0, 1)}
-    return {
-        kind: (names, count, Mapped(function)) for kind, (names, count, function) in found.items()
-    }

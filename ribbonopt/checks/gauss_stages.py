@@ -11,11 +11,14 @@ from numpy.typing import NDArray
 
 from ribbonopt.accuracy.estimate import relative_error
 from ribbonopt.arrays import Array
+from ribbonopt.mechanics.laws.law import Stress
+from ribbonopt.mechanics.outputs import own_name
 from ribbonopt.mechanics.section import RodFields
 from ribbonopt.problem import Ribbon
 from ribbonopt.problem.held import held_between
 from ribbonopt.solution.solution import Solution
 from ribbonopt.transcription import Tableau, gauss
+from ribbonopt.transcription.buffered import Mapped
 from ribbonopt.transcription.tableaus import MAX_DEGREE
 
 from .zero_moment import lacks_linearisation
@@ -38,13 +41,14 @@ class GaussStages:
     places : (N K,) array
         Fractions at which the stages are.
     x, z : (N K, nx), (N K, nz) arrays
-        States of the reduced model, and moments along the directors of the free strains.
+        States of the reduced model and of the law's energy form, and the controls of that: moments
+        along the directors of the free strains, or what else the law says.
     ends : (2, nx) array
         States at the start and at the end.
     firsts : (k,) integer array
         Elements that begin at a switch.
     x_switch, z_switch : (k, nx), (k, nz) arrays
-        States and moments there.
+        States and controls there.
     switching : (N K,) array
         What changes its sign where the law switches.
     error : float
@@ -64,12 +68,12 @@ class GaussStages:
     error: float
 
 
-def gauss_stages(solution: Solution, ribbon: Ribbon) -> GaussStages:
+def gauss_stages(solution: Solution, ribbon: Ribbon, theta: Array) -> GaussStages:
     """Return a solution at its own stages where they are those of a Gauss scheme, else at others.
 
     At its own stages it is an equilibrium of the discrete energy too, to rounding, whatever its
     mesh: there the estimated error tells how near it is to the true one. At others it is not, and
-    the gradient of the energy tells.
+    the gradient of the energy tells. `theta` are the numbers of the ribbon.
     """
     trajectory, degree = solution.trajectory, solution.dense.blocks.degree
     widths, parts = np.diff(trajectory.nodes), 1
@@ -92,15 +96,16 @@ def gauss_stages(solution: Solution, ribbon: Ribbon) -> GaussStages:
     points = {k: v[[0, *(firsts // parts), -1]] for k, v in trajectory.at_nodes.items()}
     # Packed together, in order, for quaternions that do not change their sign.
     at = np.concatenate([[0], degree * firsts, [len(places)]])
-    pairs = zip(_fields(along), _fields(points), strict=True)
-    r, frames, n, m = (np.insert(a, at, b, axis=0) for a, b in pairs)
+    every = {k: np.insert(along[k], at, points[k], axis=0) for k in along}
+    r, frames, n, m = _fields(every)
     fields = RodFields(r, frames, n, m)
     # Any point of reference will do: it is for constants, which the energy does without.
     x, _ = ribbon.model.pack(fields, fields.r[0])
     if ribbon.stations:
         ends = trajectory.ends[[0, *turns, -1]]
         x = np.hstack([x, _held(solution, ribbon, np.insert(places, at, ends), fields.r)])
-    z = np.einsum("ki,kij->kj", fields.m, fields.frames)[:, list(ribbon.law.components)]
+    x = np.hstack([x, *(every[own_name(name)][:, None] for name in ribbon.law.states)])
+    z = _controls(every, ribbon, np.insert(places, at, trajectory.ends[[0, *turns, -1]]), theta)
     rows = at + np.arange(len(at))
     inside = np.delete(np.arange(len(x)), rows)
     between = rows[1:-1]
@@ -117,6 +122,22 @@ def gauss_stages(solution: Solution, ribbon: Ribbon) -> GaussStages:
         along["switching"],
         error or 0.0,
     )
+
+
+def _controls(o: Mapping[str, Array], ribbon: Ribbon, fraction: Array, theta: Array) -> Array:
+    """Return the controls (k, nz) of the law, of named outputs at fractions (k,) of the length."""
+    states = [own_name(name) for name in ribbon.law.indirect().states]
+    local, (start, end) = ca.SX.sym("local", 6 + len(states)), ribbon.interval
+    share = ca.SX.sym("share")
+    place = start + share * (end - start)
+    controls = ribbon.law.controls_at(Stress(local[:3], local[3:6], local[6:]))
+    controls = ca.densify(ca.substitute(controls, ribbon.position, place))
+    function = Mapped(
+        ca.Function("controls", [local, ca.SX(0, 1), ribbon.parameters, share], [controls])
+    )
+    given = [o[f"{load}{i}"] for load in "nm" for i in (1, 2, 3)] + [o[name] for name in states]
+    (found,) = function(np.column_stack(given), np.empty(0), theta, fraction)
+    return found.reshape(len(fraction), -1)
 
 
 def _held(solution: Solution, ribbon: Ribbon, fraction: Array, r: Array) -> Array:

@@ -19,7 +19,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ribbonopt.arrays import Array
-from ribbonopt.mechanics.laws.law import Stress
 from ribbonopt.problem import BoundaryValueProblem, Ribbon
 from ribbonopt.solution.solution import Solution
 from ribbonopt.transcription.buffered import Buffered
@@ -76,8 +75,8 @@ class MovingSwitches:
         above, below = (stage_functions(sides[kind])[0] for kind in (1, -1))
         inputs = list(above.inputs)
         change = above.equations - below.values(*inputs)
-        free = len(law.components)
-        stress = Stress.of_moment(law.whole(inputs[0][-free:]))
+        free = problem.algebraic.numel()
+        stress = law.stress_of(inputs[0][-free:], ca.SX.zeros(len(law.states)))
         strains = law.branch(1).strain(stress) - law.branch(-1).strain(stress)
         # Both sides have an energy, so that the second of each is W_Leg.
         (_, up), (_, down) = (law.branch(kind).densities(stress, strains) for kind in (1, -1))
@@ -94,10 +93,11 @@ class MovingSwitches:
         trajectory, firsts = solution.trajectory, stages.firsts
         turns = list(trajectory.turns)
         nx, switches = stages.x.shape[1], trajectory.ends[turns]
-        o = {name: value for name, value in trajectory.outputs(switches).items() if name in "num"}
+        o = trajectory.outputs(switches)
         frames = solution.fields(switches).frames
         n, m = (np.einsum("ki,kij->kj", o[name], frames) for name in "nm")
-        slope = -np.cross(o["u"], m) - np.cross([0.0, 0.0, 1.0], n)  # m' of eq. (2.7)
+        stretched = np.array([0.0, 0.0, 1.0]) * (1 + o["extension"])[:, None]
+        slope = -np.cross(o["u"], m) - np.cross(stretched, n)  # m' of eq. (2.7)
         most = NO_LEAP * float(np.abs(trajectory.at_stages["u"]).max())
         jumps, prices = np.zeros((len(stages.widths), nx)), np.zeros(len(stages.widths))
         turning, stiffness = np.zeros((len(firsts), nx, nx)), np.ones(len(firsts))

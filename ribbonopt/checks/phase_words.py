@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from ribbonopt.scene import Scene
+from ribbonopt.scene.laws import OfWidth
 from ribbonopt.solution.solution import Solution
 
 
@@ -15,7 +16,12 @@ def phase_words(kinds: tuple[int, ...], switch: str = "m2") -> str:
 
 
 def switch_of(scene: Scene) -> str:
-    """Return what changes sign where phases of a scene meet: T = m2 + K11 + K22, or m2 alone."""
+    """Return what changes sign where phases of a scene meet: m2, but for laws and natural strains.
+
+    T = m2 + K11 + K22 with these, A across the generatrices of a ribbon that has a width.
+    """
+    if isinstance(scene.law, OfWidth):
+        return "m2 + eta m3" if scene.natural is None else "A"
     return "m2" if scene.natural is None else "T"
 
 

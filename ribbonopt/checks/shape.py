@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ribbonopt.mechanics.widths import widths
+from ribbonopt.mechanics.widths import own_width, widths
 from ribbonopt.solution.solution import Solution
 
 from .approach import nearest_approach
@@ -50,11 +50,11 @@ def contact_problems(solution: Solution) -> list[str]:
             r, closed = r[:-1], True
     else:
         length, closed, r = band.pieces * (end - start), True, band.line(points)
-    ribbon = solution.scene.ribbon
+    own = own_width(solution.scene)
     width = DRAWN * length  # where it is widest
-    if ribbon is not None:
+    if own is not None:
         along = widths(solution.scene, np.linspace(start, end, points + 1))
-        width = ribbon.width * float(along.max())
+        width = own * float(along.max())
     found = nearest_approach(r / length, width / length, APART * width / length, closed)
     if found is None:
         return []
@@ -62,7 +62,7 @@ def contact_problems(solution: Solution) -> list[str]:
     where = " and s = ".join(f"{start + length * place:.4g}" for place in places)
     if distance <= MEETING:
         return [f"the centre line meets itself at s = {where}: self-contact is not modelled"]
-    wide = f"{width:.3g}" if ribbon is not None else f"{width:.3g} (as drawn: `ribbon` says it)"
+    wide = f"{width:.3g}" if own is not None else f"{width:.3g} (as drawn: `ribbon` says it)"
     return [
         f"the centre line comes within {distance * length:.3g} of itself at s = {where}, nearer "
         f"than the width {wide}: self-contact is not modelled"

@@ -113,7 +113,7 @@ def variation_of(solution: Solution) -> Variation | str:
     name, law = solution.scene.law.type, capabilities(solution.scene)
     if not law.variational:
         return f"the law {name} has no energy"
-    if law.states:
+    if law.states and law.direct() is law:
         return f"the law {name} has states of its own, which its energy here does without"
     none = f"the energy of the law {name} has no second derivatives"
     if unbent_share(solution, law):
@@ -150,7 +150,7 @@ def _on_the_kink(solution: Solution, switch: str) -> str:
     value, small = o["switching"], NEGLIGIBLE * float(np.abs(o["m"]).max())
     if solution.sheets:
         kinds = np.array(solution.sheets)[solution.trajectory.stages[3]]
-        wrong = kinds * value < -small
+        wrong = (kinds * value < -small) & (o["leap"] > 0)
         beyond = f"where it is taken beyond them, {switch} having the wrong sign"
         return beyond if wrong.any() else ""
     near = (np.abs(value) <= small) & (o["leap"] > small)

@@ -18,8 +18,10 @@ from ribbonopt.mechanics.laws.catalogue import is_developable
 from ribbonopt.mechanics.outputs import sheet_slopes
 from ribbonopt.mechanics.widths import widths
 from ribbonopt.scene import RibbonSizes
+from ribbonopt.scene.laws import OfWidth
 from ribbonopt.solution.solution import Solution
 
+from .convexity import leap_problems
 from .shape import contact_problems, planar_problems
 from .zero_moment import zero_moment_problems
 
@@ -41,9 +43,11 @@ def warnings_of(solution: Solution) -> list[str]:
         width = ribbon.width * widths(solution.scene, s)
         result += [*_slenderness(ribbon, width), *_width_of_loop(solution, float(width.min()))]
         result += _taper(s, width)
-        result += _generatrices(solution, s, width) if converged else []
+        doubtful = converged and not isinstance(solution.scene.law, OfWidth)
+        result += _generatrices(solution, s, width) if doubtful else []
     if converged:
         result += zero_moment_problems(solution)
+        result += leap_problems(solution)
         result += spin_problems(solution)
         result += [*planar_problems(solution), *contact_problems(solution)]
     return result
@@ -118,18 +122,20 @@ def generatrix_slopes(solution: Solution, s: Array) -> Array:
     """Slopes eta' (k,) at arclengths s (k,), by the moments; zero where |eta| > 1 or not twisted.
 
     Sadowsky's law has |eta| = tan(phi / 2) with tan phi = m3 / |m2|, so that on either sheet
-    eta' = phi' (1 + eta^2) / 2; m2' = -n1 - u3 m1 and m3' = u2 m1 by eqs. (2.2), (2.7). Where m2
-    changes sign eta leaps, and laws that smooth the leap are not blamed for it. With natural
-    strains they are differences of eta between places on one sheet.
+    eta' = phi' (1 + eta^2) / 2; by eqs. (2.2), (2.7) m2' = u1 m3 - u3 m1 - (1 + e) n1
+    and m3' = u2 m1 - u1 m2. Where m2 changes sign eta leaps, and laws that smooth the leap are not
+    blamed for it. With natural strains they are differences of eta between places on one sheet.
     """
     if solution.scene.natural is not None:
         return _by_differences(solution, s)
     o = solution.outputs(s)
     largest = max(float(np.hypot(o["m2"], o["m3"]).max()), solution.units.moment)
     rows = (np.abs(o["m3"]) > FLAT * largest) & (np.abs(o["eta"]) <= 1 + 1e-9)
-    m1, m2, m3, n1, u2, u3 = (o[name][rows] for name in ("m1", "m2", "m3", "n1", "u2", "u3"))
+    m1, m2, m3, n1, e = (o[name][rows] for name in ("m1", "m2", "m3", "n1", "extension"))
+    u1, u2, u3 = (o[name][rows] for name in ("u1", "u2", "u3"))
     size = np.hypot(m2, m3)
-    turn = (m2 * u2 * m1 + m3 * (n1 + u3 * m1)) / size**2
+    bent, twisted = u1 * m3 - u3 * m1 - (1 + e) * n1, u2 * m1 - u1 * m2  # m2' and m3'
+    turn = (m2 * twisted - m3 * bent) / size**2
     result = np.zeros(len(s))
     result[rows] = (1 + (m3 / (size + np.abs(m2))) ** 2) / 2 * turn
     return result

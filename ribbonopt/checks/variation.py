@@ -97,8 +97,10 @@ class Energy:
     def of(cls, ribbon: Ribbon) -> Energy:
         """Build for the mechanics of a structure of scenes, stated as a minimum of the energy."""
         law, switches = ribbon.law, None
-        problems = {0: minimum(ribbon)} if law.smooth else _sides(ribbon)
-        if not law.smooth:
+        # Where strains fade away nothing leaps, and the place needs no variation of its own.
+        smooth = law.smooth or law.fades
+        problems = {0: minimum(ribbon)} if smooth else _sides(ribbon)
+        if not smooth:
             switches = MovingSwitches.of(ribbon, problems)
         ends = condition_functions(next(iter(problems.values())))
         bent = ca.densify(ca.triu2symm(ends.lagrangian_hessian))
@@ -112,7 +114,7 @@ class Energy:
 
     def variation(self, solution: Solution, theta: Array) -> Variation:
         """Return the second variation at a solution, which has phases if its law needs them."""
-        at, none = gauss_stages(solution, self.ribbon), np.empty(0)
+        at, none = gauss_stages(solution, self.ribbon, theta), np.empty(0)
         N, K, nx = len(at.widths), at.tableau.degree, at.x.shape[1]
         v, kinds = np.hstack([at.x, at.z]), self._kinds(solution, at)
         nv = v.shape[1]

@@ -51,7 +51,7 @@ def verify(solution: Solution, ribbon: Ribbon) -> Verification:
         )
     # The convexified energy itself allows |eta| > 1, as a mixture of both sheets.
     if solution.sheets:
-        from .arcs import phase_problems  # few scenes have phases
+        from .phase_margins import phase_problems  # few scenes have phases
 
         problems += phase_problems(solution, ribbon, TOLERANCE + residual, _moment_error(solution))
     elif not ribbon.law.smooth and not solution.problem.recovered:

@@ -67,7 +67,8 @@ def share_without_moment(solution: Solution, law: ConstitutiveLaw) -> float:
 def _moments(solution: Solution, law: ConstitutiveLaw) -> tuple[Array, float]:
     """Largest moment of a law's free strains at every stage, and the largest load of all."""
     values = solution.trajectory.at_stages
-    free = np.max([np.abs(values[f"m{i + 1}"]) for i in law.components], axis=0)
+    bent = law.components[1:] if law.edgewise else law.components
+    free = np.max([np.abs(values[f"m{i + 1}"]) for i in bent], axis=0)
     return free, max(float(np.abs(values[name]).max()) for name in ("n", "m"))
 
 

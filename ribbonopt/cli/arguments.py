@@ -47,6 +47,7 @@ def parser() -> argparse.ArgumentParser:
         metavar="LIST",
         help="relative errors of n(0), m(0), such as 1e-6,1e-9 (default: 1e-4,1e-6,1e-8,1e-10)",
     )
+    _laws(compare)
 
     bench = verbs.add_parser(
         "bench", help="time against error over degrees and meshes", formatter_class=_help
@@ -154,9 +155,28 @@ def _pairs(verb: argparse.ArgumentParser) -> None:
     verb.add_argument("--out", metavar="DIR", help="folder for CSV, JSON and figure")
 
 
+def _laws(verb: argparse.ArgumentParser) -> None:
+    verb.add_argument(
+        "--laws",
+        metavar="LIST",
+        help="instead: solve it under several laws, such as sadowsky,wunderlich, or all; a scene "
+        "with `continuation` as branches, a study ribbon by ribbon",
+    )
+    verb.add_argument("--width", metavar="W", help="with --laws: of a scene without `ribbon`")
+    verb.add_argument("--thickness", metavar="H", help="with --laws: the same")
+    verb.add_argument("--poisson", metavar="NU", help="with --laws: the same, Poisson's ratio")
+    verb.add_argument(
+        "--edges",
+        metavar="A,B",
+        help="with --laws, for wunderlich: does each end hold the edge straight, or is it free, "
+        "such as straight,free; where the scene leaves that open",
+    )
+    verb.add_argument("--jobs", metavar="N", help="with --laws, of a study: worker processes")
+
+
 def chosen(options: argparse.Namespace) -> tuple[list[str] | None, list[str] | None]:
     """Names of formulations and transcriptions; None for all."""
-    return _words(options.formulations), _words(options.transcriptions)
+    return words(options.formulations), words(options.transcriptions)
 
 
 def numbers(option: str, text: str | None) -> list[float] | None:
@@ -181,9 +201,25 @@ def count(option: str, text: str, most: int) -> int:
     return int(digits)
 
 
+def size(option: str, text: str | None, least: float = 0.0, most: float = 1e9) -> float | None:
+    """Read a number above `least`, at most `most`; SceneError for anything else."""
+    if text is None:
+        return None
+    try:
+        number = float(text)
+    except ValueError:
+        number = float("nan")
+    if not least < number <= most:
+        raise SceneError(
+            f"{option}: found {_short(text)}; expected a number > {least:g}, at most {most:g}"
+        )
+    return number
+
+
 def _short(text: str) -> str:
     return repr(text) if len(text) < 60 else f"{text[:56]!r} ..."
 
 
-def _words(text: str | None) -> list[str] | None:
+def words(text: str | None) -> list[str] | None:
+    """Read a list of words; None where there is none."""
     return None if text is None else [word.strip() for word in text.split(",")]

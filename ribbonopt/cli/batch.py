@@ -88,7 +88,9 @@ def draw(result: Path, out: Path, pairs: list[tuple[str, str]]) -> list[Path]:
     from ribbonopt.studies.batch.files import load_batch
 
     study, rows = load_batch(result)
-    _known(pairs, list(dict.fromkeys(name for row in rows for name in row)))
+    from ribbonopt.studies.batch.special import with_columns
+
+    _known(pairs, list(dict.fromkeys(name for row in rows for name in with_columns(row))))
     return _draw(study["name"], study["ribbons"], study["inputs"], rows, out, pairs)
 
 
@@ -114,8 +116,10 @@ def _draw(
     pairs: list[tuple[str, str]] | None,
 ) -> list[Path]:
     """Write the report, and the figures where they are wanted, and return where."""
+    from ribbonopt.studies.batch.special import with_columns
     from ribbonopt.views.report import write_report
 
+    rows = [with_columns(row) for row in rows]
     report = write_report(rows, inputs, out / "report.html", name=name, count=count)
     if pairs is None:
         return [report]

@@ -19,7 +19,12 @@ if TYPE_CHECKING:
 
 
 def compare(options: argparse.Namespace) -> int:
-    """Solve a scene by all formulations and transcriptions."""
+    """Solve a scene by all formulations and transcriptions, or under several laws."""
+    from .laws import laws, refuse_without
+
+    if options.laws is not None:
+        return laws(options)
+    refuse_without(options)
     tolerances = numbers("--tolerances", options.tolerances)
     scene, _ = load(options)
     from ribbonopt.studies.comparison.compare import compare

@@ -120,12 +120,22 @@ class Chord(Shape):
     @property
     def straight(self) -> bool:
         """Whether a straight ribbon without stress fits these ends."""
+        return self._along(self.length)
+
+    @property
+    def taut(self) -> bool:
+        """Whether these ends hold a straight ribbon longer than it is."""
+        (start, first), (end, _) = self.start, self.end
+        length = float((end - start) @ first[:, 2])
+        return length > self.length and self._along(length) and not self.straight
+
+    def _along(self, length: float) -> bool:
+        """Whether the end is that of a straight ribbon of a length."""
         (start, first), (end, last) = self.start, self.end
-        gap = end - start - self.length * first[:, 2]
-        close = 1e-9 * self.length
+        gap = end - start - length * first[:, 2]
         if self.winding is not None and self.winding.any():
             return False
-        return bool(np.abs(gap).max() < close and np.abs(first - last).max() < 1e-9)
+        return bool(np.abs(gap).max() < 1e-9 * self.length and np.abs(first - last).max() < 1e-9)
 
 
 @dataclass(frozen=True, eq=False)

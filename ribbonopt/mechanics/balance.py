@@ -1,10 +1,11 @@
-"""How force and moment are carried, eqs. (2.6)-(2.7) with loads: n' = -f, m' = n x d3 - c.
+"""How force and moment are carried, eqs. (2.6)-(2.7) with loads: n' = -f, m' = n x r' - c.
 
-f and c are the force and the couple per length. What they are decides how little is unknown:
+r' is d3, or (1 + e) d3 where the centre line stretches; f and c are the force and the couple per
+length (as it was before it stretched). What they are decides how little is unknown:
 
 - no load: n and m_0 are constants, m = m_0 + n x (r - reference);
 - dead loads, with F(s) their force from the start to s: n = n_0 - F, and
-  m = m_0 + n_0 x (r - reference) + a with more states a' = -F x d3 - c, a = 0 at the start: three,
+  m = m_0 + n_0 x (r - reference) + a with more states a' = -F x r' - c, a = 0 at the start: three,
   or two if all forces have one direction, across which a is. A component of F without a closed form
   is one state more, F' = f;
 - loads that follow the ribbon, or the paper's full states: n and m are states.
@@ -116,7 +117,7 @@ class DeadLoads(Balance):
 
     def rates(self, section: Section, x: ca.SX) -> ca.SX:
         force, couple = _acting(self.loads, section, self.theta)
-        whole = {"a": -ca.cross(self._total(section.s, x), section.d3) - couple, "F": force}
+        whole = {"a": -ca.cross(self._total(section.s, x), section.tangent) - couple, "F": force}
         return ca.vertcat(*(whole[name[0]][AXES.index(name[1])] for name in self.states))
 
     def start_conditions(self, x: ca.SX) -> dict[str, ca.SX]:
@@ -170,7 +171,7 @@ class ForceMomentStates(Balance):
 
     def rates(self, section: Section, x: ca.SX) -> ca.SX:
         force, couple = _acting(self.loads, section, self.theta)
-        return ca.vertcat(-force, ca.cross(section.n, section.d3) - couple)
+        return ca.vertcat(-force, ca.cross(section.n, section.tangent) - couple)
 
     def pack(self, fields: RodFields, reference: Array) -> tuple[Array, Array]:
         return np.hstack([fields.n, fields.m]), np.empty(0)

@@ -146,7 +146,7 @@ class SpatialRod(RodModel):
     def rates(self, x: ca.SX, section: Section, u: ca.SX) -> ca.SX:
         q, rest = self._split(x)
         turn = self.orientation.rates(q, u)
-        return ca.vertcat(section.d3, turn, self.balance.rates(section, rest))
+        return ca.vertcat(section.tangent, turn, self.balance.rates(section, rest))
 
     def beyond(self, s: ca.SX) -> ca.SX:
         return self.balance.beyond(s)

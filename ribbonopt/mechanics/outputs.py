@@ -38,6 +38,7 @@ def outputs(
     result["eta"] = u[2] / ca.if_else(u[1] == 0, ca.inf, u[1])
     result |= {f"n{i + 1}": stress.n[i] for i in range(3)}
     result |= {f"m{i + 1}": stress.m[i] for i in range(3)}
+    result["extension"] = ca.SX(rod.extension)
     result["energy"] = energy
     result["potential"] = energy - work
     result["H"] = stress.n[2] + complementary

@@ -112,7 +112,7 @@ class PlanarRod(RodModel):
     def rates(self, x: ca.SX, section: Section, u: ca.SX) -> ca.SX:
         own = self._whole(self.balance.states, x[3:])
         rest = self.balance.rates(section, own)[self._kept(self.balance.states)]
-        return ca.vertcat(section.d3[list(self.plane.inside)], u[1], rest)
+        return ca.vertcat(section.tangent[list(self.plane.inside)], u[1], rest)
 
     def beyond(self, s: ca.SX) -> ca.SX:
         return self.balance.beyond(s)

@@ -16,7 +16,8 @@ from .laws.law import Stress
 class Section:
     """One cross section: lab-frame vectors (3,), arclength, and the law's own states (k,).
 
-    `stepped` is the force (3,) of what acts at single places up to here, if anything does.
+    `stepped` is the force (3,) of what acts at single places up to here, if anything does;
+    `extension` is that of the centre line, so that r' is `tangent`.
     """
 
     r: ca.SX
@@ -28,6 +29,17 @@ class Section:
     s: ca.SX
     own: ca.SX
     stepped: ca.SX | None = None
+    extension: ca.SX | float = 0.0
+
+    @property
+    def stretched(self) -> ca.SX:
+        """Length of the centre line over what it is without stretch, 1 where nothing does."""
+        return 1 + ca.SX(self.extension)
+
+    @property
+    def tangent(self) -> ca.SX:
+        """The derivative r' (3,), lab frame."""
+        return self.stretched * self.d3
 
     def along(self, vector: ca.SX) -> ca.SX:
         """Components (3,) of a lab vector along the directors."""

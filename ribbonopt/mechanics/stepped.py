@@ -1,7 +1,7 @@
 """The balance of a ribbon with stations: n and m of any other balance, less what acts before s.
 
 With P(s) and C(s) the forces and couples of all stations up to s, n = n' - P and m = m' - C + b,
-where n', m' are those of the balance inside and b' = -P x d3, b = 0 at the start.
+where n', m' are those of the balance inside and b' = -P x r', b = 0 at the start.
 
 What is before s follows from s, or in the phases between stations from which of them it is: there
 `passed` holds a number for each station, 1 behind it and 0 before.
@@ -63,7 +63,9 @@ class Stepped(Balance):
     def rates(self, section: Section, x: ca.SX) -> ca.SX:
         assert section.stepped is not None  # as `stepped` says
         inside, (own, _) = replace(section, n=section.n + section.stepped), self._split(x)
-        return ca.vertcat(self.inner.rates(inside, own), -ca.cross(section.stepped, section.d3))
+        return ca.vertcat(
+            self.inner.rates(inside, own), -ca.cross(section.stepped, section.tangent)
+        )
 
     def beyond(self, s: ca.SX) -> ca.SX:
         found = ca.SX.zeros(3)

@@ -6,6 +6,20 @@ import numpy as np
 
 from ribbonopt.arrays import Array
 from ribbonopt.scene import Scene
+from ribbonopt.scene.laws import Sized
+
+
+def own_width(scene: Scene) -> float | None:
+    """Return the width of a scene's ribbon, that of `ribbon` or of its law; None if none is said.
+
+    In the units of the scene.
+    """
+    if scene.ribbon is not None:
+        return scene.ribbon.width
+    width: float | None = (
+        getattr(scene.law, "width", None) if isinstance(scene.law, Sized) else None
+    )
+    return width
 
 
 def widths(scene: Scene, s: Array) -> Array:

@@ -22,7 +22,7 @@ NONE: frozenset[str] = frozenset()
 #: what `ribbonopt.views` writes beside a solution, a branch and a batch
 PICTURES = ("strains.png", "plane.png", "ribbon.png")
 BRANCH_PICTURES = ("branch.png", "ribbons.png")
-BATCH_PICTURES = ("report.html", "outcomes.png", "scatter.png")
+BATCH_PICTURES = ("report.html", "outcomes.png", "scatter.png", "special.png")
 
 
 def declare(folder: Path, names: Iterable[str]) -> None:

@@ -2,20 +2,21 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
 from ribbonopt.checks.phase_words import phase_words
 
-NOTHING = 1e-50  # what guards the laws where m = 0 leaves of zero
+from .digits import digits, upwards
+
 SMALL = 1e-3  # largest component of what is written with powers of ten
 
 
 def report(summary: Mapping[str, Any]) -> str:
     """Return the report of a summary; digits beyond the estimated error are left out."""
     s = summary
-    law = ", ".join(f"{k} = {_plain(v)}" for k, v in s["law"].items() if k != "type")
+    said = {k: v for k, v in s["law"].items() if k != "type" and v is not None}
+    law = ", ".join(f"{k} = {_plain(v)}" for k, v in said.items())
     head = f"{s['name']}: {s['status'].replace('_', ' ')}"
     lines = [
         head + (", verified" if s["verified"] else f"\n  {s['message']}"),
@@ -106,7 +107,7 @@ def _load(load: Mapping[str, Any]) -> str:
     both = [(word, load[word]) for word in ("force", "moment") if any(load[word])]
     texts = []
     for word, vector in both or [("force", load["force"])]:
-        numbers = ", ".join(_number(v, None, small=False) for v in vector)
+        numbers = ", ".join(digits(v, None, small=False) for v in vector)
         texts.append(f"({numbers})" if word == "force" else f"moment ({numbers})")
     return " and ".join(texts)
 
@@ -143,36 +144,10 @@ def _others(equilibria: Sequence[Mapping[str, Any]]) -> list[str]:
 def _row(label: str, value: float | Sequence[float] | None, error: float | None) -> str:
     values = value if isinstance(value, Sequence) else [value]
     small = 0 < max(abs(v or 0.0) for v in values) < SMALL
-    numbers = ", ".join(_number(v, error, small) for v in values)
+    numbers = ", ".join(digits(v, error, small) for v in values)
     text = f"({numbers})" if isinstance(value, Sequence) else numbers
-    bar = "  +- not known" if error is None else f"  +- {_upwards(error)}"
+    bar = "  +- not known" if error is None else f"  +- {upwards(error)}"
     return f"  {label:<25}{text}{bar}"
-
-
-def _upwards(error: float) -> str:
-    """Write a bar with one digit, never smaller than it is."""
-    if not 0 < error < math.inf:
-        return f"{error:.0e}"
-    unit = 10.0 ** math.floor(math.log10(error))
-    return f"{math.ceil(error / unit * (1 - 1e-9)) * unit:.0e}"
-
-
-def _number(value: float | None, error: float | None, small: bool) -> str:
-    """Write a number, `small` ones with a power of ten, to the last digit that the error leaves."""
-    if value is None:
-        return "unknown"
-    if error is None:
-        return f"{value:.6g}" if abs(value) > NOTHING else "0"
-    if abs(value) <= error:
-        return "0"
-    # Twice the bar, so that the last digit printed still stands after rounding.
-    decimals = -math.ceil(math.log10(4 * error))
-    if small:
-        value = round(value, decimals)
-        digits = decimals + math.floor(math.log10(abs(value))) if value else 0
-        return f"{value:.{min(15, digits)}e}" if value else "0"
-    text = f"{value:.{max(0, min(15, decimals))}f}"
-    return "0" if float(text) == 0 else text
 
 
 def _drifts(drift: Mapping[str, float | None]) -> str:

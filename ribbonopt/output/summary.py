@@ -56,7 +56,7 @@ def summarize(solution: Solution) -> dict[str, Any]:
         "worst_condition": checks.worst_condition,
         "residual_between_nodes": checks.residual_between_nodes,
         "law_residual": checks.law_residual,
-        "error_estimate": _error_estimate(solution),
+        "error_estimate": bars_of(solution),
         **_recorded(solution),
         "loads": _loads(solution),
         "reactions": _reactions(solution),
@@ -125,7 +125,7 @@ def _conserved(solution: Solution) -> dict[str, float]:
 
 
 def _recorded(solution: Solution) -> dict[str, Any]:
-    """Return what the scene records, and the bars of that; not known as in `_error_estimate`."""
+    """Return what the scene records, and the bars of that; not known as in `bars_of`."""
     names = dict.fromkeys(solution.scene.record)
     if not names or not solution.status.converged:
         return {"recorded": names, "recorded_error": names}
@@ -152,7 +152,7 @@ def _loads(solution: Solution) -> list[dict[str, Any]]:
 
 
 def _reactions(solution: Solution) -> list[dict[str, Any]]:
-    """Return what the supports and the ends carry; bars not known as in `_error_estimate`."""
+    """Return what the supports and the ends carry; bars not known as in `bars_of`."""
     found = reactions(solution)
     errors: list[float | None] = [None] * len(found)
     if not _unknown(solution):
@@ -164,8 +164,8 @@ def _reactions(solution: Solution) -> list[dict[str, Any]]:
     ]
 
 
-def _error_estimate(solution: Solution) -> dict[str, float | None]:
-    """Estimated absolute errors; None without convergence or linearisation.
+def bars_of(solution: Solution) -> dict[str, float | None]:
+    """Return bars of the answer by name, None without convergence or linearisation.
 
     And for minima on one mesh only.
     """

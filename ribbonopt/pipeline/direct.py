@@ -28,8 +28,8 @@ from ribbonopt.scene import Collocation, Ipopt
 from ribbonopt.solution.solution import Solution
 from ribbonopt.transcription import Mesh
 
-COUNT = 30  # intervals
-MESH = Collocation(scheme="gauss", degree=3, intervals=COUNT)
+MESH = Collocation(scheme="gauss", degree=3, intervals=30)
+FINE = Collocation(scheme="gauss", degree=6, intervals=60)  # where Newton's method needs a better
 SOLVER = Ipopt(tolerance=1e-7, max_iterations=60)
 ENDS = 2.0  # how much they gather at the ends, where a clamp makes a layer
 PLACES = 401  # where states are made slower
@@ -56,6 +56,7 @@ class Direct:
     def __init__(self, posed: Posed, ledger: Ledger) -> None:
         settings = {"formulation": "energy", "states": "reduced", "solver": SOLVER}
         self.posed = posed.under(transcription=MESH, **settings)
+        self.fine = posed.under(transcription=FINE, **settings)
         self.ledger = ledger
 
     @cached_property
@@ -63,21 +64,36 @@ class Direct:
         """Its equations, without loads that have no potential."""
         return Structure.least_energy(self.posed)
 
+    @cached_property
+    def finer(self) -> Structure:
+        """The same on a finer mesh."""
+        return replace(self.structure, posed=self.fine, _programs={}, _phased={})
+
     def guesses(self, others: Callable[..., Iterable[Guess]]) -> Callable[..., Iterator[Guess]]:
-        """Return what gives minima near the solutions that others give, and the rest as it is."""
+        """Return what gives minima near the solutions that others give, and the rest as it is.
+
+        Each again on a finer mesh, if it led nowhere.
+        """
 
         def found(**shape: Any) -> Iterator[Guess]:
             for guess in others(**shape):
-                near = self.minimum(guess) if isinstance(guess, Solution) else guess
+                if not isinstance(guess, Solution):
+                    yield guess
+                    continue
+                near = self._minimum(self.structure, self.posed, self._slowed(guess))
+                if near is not None:
+                    yield near
+                    near = self._minimum(self.finer, self.fine, near)
                 if near is not None:
                     yield near
 
         return found
 
-    def minimum(self, near: Solution) -> Solution | None:
-        """Return a minimum near a solution, if one is found."""
-        attempt = self.structure.attempt(self.posed, self.ledger, _mesh())
-        attempt.run(self._slowed(near), check=False)
+    def _minimum(self, structure: Structure, posed: Posed, near: Guess) -> Solution | None:
+        """Return a minimum near a guess, if one is found."""
+        mesh = _mesh(posed.scene.transcription.intervals)
+        attempt = structure.attempt(posed, self.ledger, mesh)
+        attempt.run(near, check=False)
         best = attempt.best
         return best if best is not None and best.status.converged else None
 
@@ -131,7 +147,7 @@ def _slower(values: Array, places: Array, rate: float) -> Array:
     return np.asarray((above + below) / 2)
 
 
-def _mesh() -> Mesh:
+def _mesh(count: int) -> Mesh:
     """Return a mesh that gathers at both ends."""
-    x = np.linspace(-1, 1, COUNT + 1)
+    x = np.linspace(-1, 1, count + 1)
     return Mesh((np.diff(np.tanh(ENDS * x)) / (2 * np.tanh(ENDS)),))

@@ -81,6 +81,9 @@ class Search(Tried):
         fewer = without_empty(found)
         if fewer is not None and self.run_in(fewer, found, least):
             return True
+        if done and self._leaps_nowhere(found) and self.plain.run(found, quick=True):
+            self._kept(self.plain)
+            return True
         if done and self.structure.ribbon.law.fades:
             # A start on small elements leads nowhere before it is known where phases meet.
             gathered = found.mesh.gathered(LEVELS, RATIO)
@@ -167,6 +170,14 @@ class Search(Tried):
         attempt.run(source, quick=True, check=False)
         found = attempt.best
         return arcs, source if found is None or not found.status.converged else found
+
+    def _leaps_nowhere(self, found: Solution) -> bool:
+        """Whether phases end where the law asked for leaps nowhere, as those of a smooth law may.
+
+        A mixture has m2 = 0, and shows no sign of it.
+        """
+        several = len(set(found.sheets)) > 1 and 0 not in found.sheets
+        return several and self.needs_phases and not self.changes_sign(found)
 
     def _flattened(self, found: Solution | None) -> Solution | None:
         """Return what lies in a plane but for a little within it, if there it is a solution."""

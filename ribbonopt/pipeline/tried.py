@@ -89,8 +89,8 @@ class Tried:
 
     def better_in_phases(self, solution: Solution) -> bool:
         """Whether phases tell strains that rounding would choose: at a sign change, or an end."""
-        ends = self.needs_phases and ends_on_switch(solution)
-        return ends or self.changes_sign(solution)
+        told = self.needs_phases and not self.structure.ribbon.law.fades
+        return (told and ends_on_switch(solution)) or self.changes_sign(solution)
 
     def jumps(self, solution: Solution) -> bool:
         """Whether the law's strains jump along a solution, so that it needs phases to be right."""

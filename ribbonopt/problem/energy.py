@@ -5,6 +5,7 @@ forces and moments must be natural (zero work): it is not imposed but verified o
 which n and m(0) are recovered. Controls:
 
 - smooth laws: the moments, u = dW_Leg/dm, cost m . u - W_Leg;
+- where the centre line stretches n3 as well, e = dW_Leg/dn3, cost that and n3 e;
 - Sadowsky: (u2, u3, k) with -k <= u2 <= k and cost (k + u3^2 / k)^2 / 2, whose minimum over k is
   the convexified energy W_F.
 
@@ -12,12 +13,13 @@ Sign: with equations x_{e+1} - x_e - ... = 0 and the Lagrangian cost + lambda . 
 the derivative of the energy with respect to a shift of the rest of the ribbon, which is n; a turn
 by dt of the rest changes q by dt q / 2, hence m . e_k = lambda_q . (e_k q) / 2. Dead loads f along
 the ribbon are in the cost as -f . r, so that the costate of r is n all along it, whether the start
-is free to move or not; a dead force Q at an end, or at a place beyond s, is there as -Q . d3, and
+is free to move or not; a dead force Q at an end, or at a place beyond s, is there as -Q . r', and
 that costate is n - Q.
 """
 
 from __future__ import annotations
 
+from dataclasses import replace
 from typing import NamedTuple
 
 import casadi as ca
@@ -71,16 +73,17 @@ def minimum(ribbon: Ribbon) -> BoundaryValueProblem:
     names = [f"recovered.{name}" for name in ribbon.constants]
     loads = ca.vertcat(*(ribbon.theta[name] for name in names))
     section, (start, end) = ribbon.section(x[:count], loads), ribbon.interval
-    rod, work = section.rod, ribbon.work(section.rod)
     beyond = dead_force(ribbon) + ribbon.model.beyond(ribbon.position)
-    program = _program(ribbon.law, rod.stress, held.estimate)
+    program = _program(ribbon.law, section.rod.stress, held.estimate)
+    rod = replace(section.rod, extension=program.extension)
+    section, work = replace(section, rod=rod), ribbon.work(rod)
     phase = Phase(
         dynamics=ca.vertcat(ribbon.rates(section, program.u, program.rates), held.rates(rod)),
         length=end - start,
         outputs=outputs(section, ribbon.law, program.u, work) | program.outputs(rod, work),
         path=program.path,
         singular=_singular(ribbon.law, rod.stress),
-        cost=program.cost - ca.dot(beyond, rod.d3) - work,
+        cost=program.cost - ca.dot(beyond, rod.tangent) - work,
     )
     points = ca.SX.sym("start", x.numel()), ca.SX.sym("end", x.numel())
     costate = ca.SX.sym("costate", x.numel())
@@ -122,6 +125,7 @@ class _Program(NamedTuple):
     path: ca.SX
     local: ca.SX
     estimate: ca.SX
+    extension: ca.SX | float = 0.0
     rates: ca.SX | None = None
     told: Relaxed | None = None
 
@@ -144,13 +148,14 @@ def _program(law: ConstitutiveLaw, at: Stress, more: ca.SX) -> _Program:
     r, guessed = law.relaxed(at), law.relaxed(known)
     if r is not None and guessed is not None:
         start = ca.vertcat(known.own, more, guessed.estimate)
-        return _Program(r.controls, r.u, r.cost, r.path, local, start, r.rates, r)
-    z = ca.SX.sym("m", len(law.components))
-    stress = Stress(ca.SX.zeros(3), law.whole(z), at.own)
+        return _Program(r.controls, r.u, r.cost, r.path, local, start, r.extension, r.rates, r)
+    estimate = law.controls_at(known)
+    z = ca.SX.sym("m", estimate.numel())
+    stress = law.stress_of(z, at.own)
     u = law.strain(stress)
     cost, _ = law.densities(stress, u)
-    free = [3 + i for i in law.components]
-    return _Program(z, u, cost, ca.SX(0, 1), local, ca.vertcat(known.own, more, local[free]))
+    start = ca.vertcat(known.own, more, estimate)
+    return _Program(z, u, cost, ca.SX(0, 1), local, start, law.extension(stress))
 
 
 def _singular(law: ConstitutiveLaw, stress: Stress) -> ca.SX:

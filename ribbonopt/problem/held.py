@@ -1,6 +1,6 @@
 """Supports between the ends in the problem of least energy, which is one phase.
 
-What a support holds at s_k is the end of a state of its own, rho' = d3 . e up to s_k and 0 behind,
+What a support holds at s_k is the end of a state of its own, rho' = r' . e up to s_k and 0 behind,
 rho = r . e at the start. The costate of rho is the reaction P, by which n falls at s_k. The moment
 of P behind it, -P x (r - r(s_k)), is known when P is: r - r(s_k) are three more states, which
 nothing depends on.
@@ -49,10 +49,10 @@ class HeldBetween:
     def rates(self, rod: Section) -> ca.SX:
         """Return the derivatives of the states along s."""
         parts = [
-            (rod.s < place) * rod.d3[axis]
+            (rod.s < place) * rod.tangent[axis]
             for axis, place in zip(self.axes, self.places, strict=True)
         ]
-        arms = [(rod.s >= place) * rod.d3 for place in self.places]
+        arms = [(rod.s >= place) * rod.tangent for place in self.places]
         return ca.vertcat(ca.SX(0, 1), *parts, *arms)
 
     def conditions(self, start: ca.SX, end: ca.SX) -> dict[str, ca.SX]:

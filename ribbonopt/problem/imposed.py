@@ -95,7 +95,7 @@ def loaded_stress(ribbon: Ribbon, rod: Section) -> Stress:
     couple = sum((load.couple(rod, theta) for load in ribbon.loads), ca.SX.zeros(3))
     # c2 changes as the couple does, beside what the director's turning changes.
     varying = ca.dot(ca.jacobian(couple, ribbon.position), rod.d2)
-    load = rod.along(force) - ca.vertcat(varying, 0, 0)
+    load = rod.along(force) - ca.vertcat(varying / rod.stretched, 0, 0)
     return rod.stress._replace(load=load, couple=rod.along(couple))
 
 

@@ -17,7 +17,7 @@ from ribbonopt.arrays import Array
 from ribbonopt.mechanics.ends.boundary import conditions_of, start_frame, start_position
 from ribbonopt.mechanics.ends.conditions import Condition
 from ribbonopt.mechanics.laws.asymmetry import changed_by_flip, leaves_plane
-from ribbonopt.mechanics.laws.catalogue import fields_of, numbers_of
+from ribbonopt.mechanics.laws.catalogue import fields_of, membrane_numbers, numbers_of
 from ribbonopt.mechanics.loads.load import Load
 from ribbonopt.scene import Loads, Scene
 from ribbonopt.scene.laws import OfWidth
@@ -99,6 +99,7 @@ class Posed:
         values = {f"law.{name}": value for name, value in numbers_of(scene.law).items()}
         for along in fields_of(scene):
             values |= along.numbers()
+        values |= membrane_numbers(scene)
         values |= {"interval.start": scene.interval[0], "interval.end": scene.interval[1]}
         values |= {f"reference.{axis}": float(position[i]) for i, axis in enumerate("xyz")}
         values |= {f"parameters.{name}": value for name, value in scene.parameters.items()}

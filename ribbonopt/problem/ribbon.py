@@ -146,23 +146,23 @@ class Ribbon:
         s = self.position if s is None else s
         count = len(self.model.states)
         more = (self._passed,) if self._passed is not None else ()
-        r, d1, d2, d3, n, m, own, u, *stepped = self.section_function(
+        r, d1, d2, d3, n, m, own, u, e, *stepped = self.section_function(
             x, c, self.parameters, s, *more
         )
-        rod = Section(r, d1, d2, d3, n, m, s, own, *stepped)
+        rod = Section(r, d1, d2, d3, n, m, s, own, stepped[0] if stepped else None, e)
         return CrossSection(self.model, x[:count], rod, u)
 
     @cached_property
     def section_function(self) -> ca.Function:
-        """Function (x, c, theta, s) of r, d1, d2, d3, n, m, own states and strains u (3,).
+        """Function (x, c, theta, s) of r, d1, d2, d3, n, m, own states, strains u, extension.
 
         With stations also of the force (3,) of what acts up to s. Calling it beats rebuilding it.
         """
         x, c = ca.SX.sym("x", len(self.states)), ca.SX.sym("c", len(self.constants))
         count = len(self.model.states)
         rod = self.model.section(x[:count], c, self.position, self.reference, x[count:])
-        u = self.law.strain(rod.stress)
-        vectors = [rod.r, rod.d1, rod.d2, rod.d3, rod.n, rod.m, rod.own, u]
+        u, e = self.law.strain(rod.stress), self.law.extension(rod.stress)
+        vectors = [rod.r, rod.d1, rod.d2, rod.d3, rod.n, rod.m, rod.own, u, e]
         vectors += [] if rod.stepped is None else [rod.stepped]
         outputs = [ca.densify(vector) for vector in vectors]
         more = [] if self._passed is None else [self._passed]

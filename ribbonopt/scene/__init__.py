@@ -33,6 +33,7 @@ from .laws import (
     Wunderlich,
 )
 from .loads import Loads, OwnLoad
+from .membrane import Membrane
 from .model import (
     Algebraic,
     ArcGuess,
@@ -91,6 +92,7 @@ __all__ = [
     "LoadGuess",
     "Loads",
     "Loop",
+    "Membrane",
     "MoebiusGuess",
     "Natural",
     "Newton",

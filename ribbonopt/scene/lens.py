@@ -36,6 +36,7 @@ _ROOTS: tuple[KeyPath, ...] = (
     ("ribbon",),
     ("natural",),
     ("width",),
+    ("membrane",),
 )
 _ITEMS = {2: ("start", "end"), 3: ("x", "y", "z")}
 _OF_LAWS = {3: ("d1", "d2", "d3")}

@@ -23,6 +23,8 @@ FORCE, FORCE_PER_LENGTH = REACH**2, REACH**3
 WIDTH, NARROW = 1e3, 1e-6
 #: radians in all; a frame keeps ten digits. 1e5 is 16,000 turns
 ANGLE = 1e5
+#: stretch of a ribbon whose ends are held apart: its stretch is linear, and small
+STRETCH = 0.1
 #: ratios of stiffnesses, and of what smooths a law to the law
 RATIO, SMOOTHING = 1e12, 1e6
 

@@ -16,6 +16,7 @@ from .continuation import ContinuationStage
 from .ends import Boundary, HalfTwists, LabVector, Loop, Triple, Value
 from .laws import Law
 from .loads import Loads
+from .membrane import AnyMembrane
 from .natural import Natural
 from .schema.bounds import Bounds
 from .stations import InteriorSupport
@@ -217,3 +218,4 @@ class Scene:
     supports: tuple[InteriorSupport, ...] = ()
     width: Along | None = None
     natural: Natural | None = None
+    membrane: AnyMembrane | None = None

@@ -55,6 +55,7 @@ QUANTITIES: Mapping[str, Named] = {
     "u2": Named("bending", length=-1, at_ends=True),
     "u3": Named("twist", length=-1, at_ends=True),
     "eta": Named("slope of the generatrices, u3 / u2"),
+    "extension": Named("stretch of the centre line, |r'| - 1"),
     "energy": Named("strain energy per length", force=1),
     "potential": Named("energy per length less the work of loads along the ribbon", force=1),
     "H": Named("invariant W_Leg + n3", force=1),

@@ -20,6 +20,7 @@ from .along import scaled
 from .ends import Boundary, End, LabVector, Triple
 from .laws import Law, OwnLaw, Sized, Stiff
 from .loads import AlongAxes, AlongVector, Loads
+from .membrane import in_units
 from .model import Guess, LoadGuess, Reference, RibbonSizes, Scene, StrainGuess
 from .natural import Natural
 from .quantities import dimension
@@ -117,6 +118,7 @@ def in_special_units(scene: Scene, units: Units | None = None) -> Scene:
         guess=_guess(scene.guess, units),
         reference=_reference(scene.reference, units),
         natural=_natural(scene.natural, units, scene.ribbon),
+        membrane=in_units(scene.membrane, units, scene.ribbon),
         switching=switches if isinstance(switches, str) else _over(switches, units.length),
         ribbon=None,
         record={},

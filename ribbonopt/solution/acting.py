@@ -103,13 +103,15 @@ def _along(
     units, theta = solution.units, _symbols(_numbers(solution)[0])
     own, position = solution.posed.loads, ca.SX.sym("s")
     r, d1, d2, d3, n, m = (ca.SX.sym(name, 3) for name in VECTORS)
-    section = Section(r, d1, d2, d3, n, m, position, ca.SX(0, 1))
+    e = ca.SX.sym("e")
+    section = Section(r, d1, d2, d3, n, m, position, ca.SX(0, 1), extension=e)
     vectors = [ca.vertcat(x.force(section, theta), x.couple(section, theta)) for x in own]
-    inputs = [r, d1, d2, d3, n, m, position]
+    inputs = [r, d1, d2, d3, n, m, position, e]
     function = ca.Function("acting", inputs, [ca.densify(vector) for vector in vectors])
     numbers = [(values[name] / units.of(name)).T for name in VECTORS]
     result: dict[str, tuple[Array, Array]] = {}
-    for load, found in zip(own, function.map(len(s)).call([*numbers, s[None]]), strict=True):
+    numbers += [s[None], values["extension"][None]]
+    for load, found in zip(own, function.map(len(s)).call(numbers), strict=True):
         force, couple = np.split(np.array(found).T, 2, axis=1)
         force, couple = force * units.force / units.length, couple * units.force
         if load.name in result:  # as two of a user's own may have it

@@ -10,20 +10,20 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 
 import numpy as np
 
 from ribbonopt.attempt.ledger import Ledger
 from ribbonopt.attempt.structure import Structure
-from ribbonopt.errors import ConvergenceError
 from ribbonopt.guess import Guess, ShapeGuess
 from ribbonopt.guess.shapes import Chord, Shape
 from ribbonopt.mechanics.laws.catalogue import capabilities
 from ribbonopt.mechanics.laws.smooth import (
     ROD,
     first_law,
+    first_laws,
     in_family,
     named,
     sharpened,
@@ -34,7 +34,7 @@ from ribbonopt.scene import Law, Variational
 from ribbonopt.solution.solution import Solution
 
 from .energy import MESH, least_energy_of
-from .first_shape import compresses, follower_loads, loaded, shapes_for
+from .first_shape import compresses, follower_loads, indeterminate, loaded, shapes_for
 from .homotopy import HomotopyPath, follow
 from .loops import closed_posed, fundamental_scene
 from .tracking import smooth_of
@@ -54,6 +54,8 @@ class Automatic:
     """Everything that is built for the automatic start of one structure of scenes, when needed."""
 
     posed: Posed
+    _energies: dict[type, Structure] = field(default_factory=dict)
+    _homotopies: dict[type, Structure] = field(default_factory=dict)
 
     def guesses(self, posed: Posed, ledger: Ledger, shape: Shape | None = None) -> Iterator[Guess]:
         """Yield guesses for a scene of this structure, the best first; each is made when asked for.
@@ -79,13 +81,14 @@ class Automatic:
                 what = "shape that fits the ends" if number == 1 else "shapes that fit the ends"
                 first = f"the first {'' if number == 1 else f'{number} '}{what} led nowhere"
                 ledger.fall_back("shape", f"{first}; the automatic start went on from another")
-            points = self._points(posed, start, ledger, met)
-            if not points and not straight and isinstance(start, Chord) and start.straight:
-                # Far from where the energy began: its loads are brought on from none.
-                straight = self._from_straight(posed, replace(start, bow=0.0), ledger)
-                # What stays straight may be the top of a hill: other shapes come first.
-                points = straight if straight and _is_bent(straight[-1]) else []
-            yield from reversed(points[last])
+            for law in first_laws(posed.scene.law, FIRST):
+                points = self._points(posed, start, law, ledger, met)
+                if not points and not straight and isinstance(start, Chord) and start.straight:
+                    # Far from where the energy began: its loads are brought on from none.
+                    straight = self._from_straight(posed, replace(start, bow=0.0), ledger)
+                    # What stays straight may be the top of a hill: other shapes come first.
+                    points = straight if straight and _is_bent(straight[-1]) else []
+                yield from reversed(points[last])
         if straight and not _is_bent(straight[-1]):
             yield from reversed(straight[last])
 
@@ -95,16 +98,17 @@ class Automatic:
         law = capabilities(self.posed.scene)
         return LAST if law.direct() is law else BLUNT
 
-    @cached_property
-    def _energy(self) -> Structure:
-        closed = closed_posed(self.posed)
-        return Structure.least_energy(
-            least_energy_of(closed, first_law(self.posed.scene.law, FIRST))
-        )
+    def _energy(self, law: Law) -> Structure:
+        """Return what finds least energies: the numbers of a law may tell which it begins with."""
+        if type(law) not in self._energies:
+            least = least_energy_of(closed_posed(self.posed), law)
+            self._energies[type(law)] = Structure.least_energy(least)
+        return self._energies[type(law)]
 
-    @cached_property
-    def _homotopy(self) -> Structure:
-        return Structure.of(smooth_of(self.posed, first_law(self.posed.scene.law, FIRST)))
+    def _homotopy(self, law: Law) -> Structure:
+        if type(law) not in self._homotopies:
+            self._homotopies[type(law)] = Structure.of(smooth_of(self.posed, law))
+        return self._homotopies[type(law)]
 
     @cached_property
     def _piece(self) -> Automatic | None:
@@ -121,25 +125,20 @@ class Automatic:
                 yield unfolded(guess, posed)
 
     def _points(
-        self, posed: Posed, shape: Shape, ledger: Ledger, met: list[float]
+        self, posed: Posed, shape: Shape, law: Law, ledger: Ledger, met: list[float]
     ) -> list[Solution]:
-        """Equilibria on the way down, the nearest to the scene's law last.
+        """Equilibria on the way down from a smooth law, the nearest to the scene's law last.
 
         `met` are energies of rods from which others led nowhere; this one's is added.
         """
         own = posed.scene.law
-        law, guess = first_law(own, FIRST), ShapeGuess(shape)
+        guess = ShapeGuess(shape)
         last = sharpness(own, self._last)
-        if isinstance(shape, Chord) and shape.straight and not _bends(posed, shape):
+        if isinstance(shape, Chord) and _fits(posed, shape) and not _bends(posed, shape):
             # At this delta the law is linear: it can be bent from a straight ribbon.
             started = self._from_straight(posed, shape, ledger)
             if not started and not loaded(posed):
-                raise ConvergenceError(
-                    "the ribbon is straight and without stress: it cannot bend in its own plane, "
-                    "so that the loads of its ends there are not determined; shorten or turn it, "
-                    "if only a little",
-                    "indeterminate",
-                )
+                raise indeterminate(posed, shape)
             return started
         points: list[Solution] = []
         start: Guess = guess
@@ -174,7 +173,7 @@ class Automatic:
 
     def _least(self, posed: Posed, law: Law, start: Guess, ledger: Ledger) -> Solution:
         """Least energy from a guess; worth nothing unless converged."""
-        attempt = self._energy.attempt(least_energy_of(closed_posed(posed), law))
+        attempt = self._energy(law).attempt(least_energy_of(closed_posed(posed), law))
         attempt.run(start, check=False)
         assert attempt.best is not None  # whether converged or not
         (report,) = attempt.ledger.reports
@@ -187,12 +186,17 @@ class Automatic:
         self, posed: Posed, law: Law, guess: Guess, last: float, ledger: Ledger
     ) -> HomotopyPath:
         started = time.perf_counter()
-        followed = follow(self._homotopy, posed, law, guess, last)
+        followed = follow(self._homotopy(law), posed, law, guess, last)
         reached = _delta(followed.points[-1].scene.law) if followed.points else " (lost at once)"
         lost = "" if followed.complete or not followed.points else " (lost there)"
         step = f"newton in {followed.steps} steps{reached}{lost}"
         ledger.note(step, time.perf_counter() - started, followed.iterations)
         return followed
+
+
+def _fits(posed: Posed, chord: Chord) -> bool:
+    """Whether a straight ribbon fits the ends of a chord, stretched if it can be."""
+    return chord.straight or (chord.taut and capabilities(posed.scene).stretches)
 
 
 def _bends(posed: Posed, chord: Chord) -> bool:

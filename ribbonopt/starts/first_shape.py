@@ -8,6 +8,7 @@ from dataclasses import replace
 import numpy as np
 
 from ribbonopt.arrays import Array
+from ribbonopt.errors import ConvergenceError
 from ribbonopt.guess import FollowerLoads, IntegratedLoads
 from ribbonopt.guess.named import loop_shape
 from ribbonopt.guess.placing import place_ends
@@ -15,6 +16,7 @@ from ribbonopt.guess.shapes import Chord, Shape
 from ribbonopt.mechanics.ends.conditions import Component, Frame
 from ribbonopt.mechanics.ends.frames import DIRECTORS
 from ribbonopt.mechanics.ends.winding import winding
+from ribbonopt.mechanics.laws.catalogue import capabilities
 from ribbonopt.problem import Posed, Ribbon
 from ribbonopt.scene import LoadGuess
 from ribbonopt.solution.potential import dead_force_of
@@ -58,6 +60,19 @@ def shapes_for(posed: Posed, *, wound: bool = True) -> Iterator[Shape]:
         return  # other turns are not what the scene says
     for turns in (1.0, -1.0):
         yield replace(plain, bow=0.5 * bow, turns=turns)
+
+
+def indeterminate(posed: Posed, chord: Chord) -> ConvergenceError:
+    """Return what to say where a straight ribbon between clamps leaves loads undetermined."""
+    law = capabilities(posed.scene)
+    rigid = "it cannot bend in its own plane, so that the loads of its ends there are"
+    if 0 in law.components and not law.stretches:
+        rigid = "it cannot stretch, so that the force along it is"
+    state = "held straight" if chord.taut else "straight and without stress"
+    return ConvergenceError(
+        f"the ribbon is {state}: {rigid} not determined; shorten or turn it, if only a little",
+        "indeterminate",
+    )
 
 
 def loaded(posed: Posed) -> bool:

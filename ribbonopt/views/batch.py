@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
-from ribbonopt.plain import Rows, is_number
+from ribbonopt.plain import SPECIALS, Rows, is_number
 from ribbonopt.text import drawn
 
 from .branch import COLOURS
@@ -30,7 +30,7 @@ PALETTE = tuple(colour for colour in COLOURS if colour != TWIST)  # which tells 
 def save_batch_figures(
     rows: Rows, inputs: Sequence[str], folder: str | Path, pairs: Sequence[ColumnPair] = ()
 ) -> list[Path]:
-    """Write outcomes.png and scatter.png into an existing folder and return where.
+    """Write outcomes.png and scatter.png, of branches special.png, into a folder; return where.
 
     Parameters
     ----------
@@ -39,7 +39,7 @@ def save_batch_figures(
     inputs
         Columns that were swept.
     folder
-        Where; files of these names are replaced.
+        Where, an existing one; files of these names are replaced.
     pairs
         Columns (x, y) of the first four panels of the scatter; the usual ones if there are none.
 
@@ -53,12 +53,18 @@ def save_batch_figures(
         "outcomes.png": partial(plot_outcomes, rows),
         "scatter.png": partial(plot_scatter, rows, chosen, inputs),
     }
+    if any(row.get(SPECIALS) for row in rows):
+        from .special import plot_special
+
+        drawings["special.png"] = partial(plot_special, rows, inputs)
     return draw_all(drawings, Path(folder)).paths
 
 
 def usual_pairs(rows: Rows, inputs: Sequence[str]) -> list[ColumnPair]:
     """Return what is worth seeing: the inputs against the energy, and against each other."""
     swept = [key for key in inputs if is_numeric(rows, key)]
+    if any(row.get(SPECIALS) for row in rows):
+        return [((swept or ["number"])[0], "special1")]
     if not swept:
         return [(next((key for key in inputs if words(rows, key)[1:]), "number"), "energy")]
     return [*((key, "energy") for key in swept[:2]), *([(swept[0], swept[1])] if swept[1:] else [])]

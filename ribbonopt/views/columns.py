@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from ribbonopt.plain import Rows, is_number
+from ribbonopt.plain import SPECIALS, Rows, is_number
 from ribbonopt.scene.quantities import ANSWERS, START_VECTORS
 
 ColumnPair = tuple[str, str]
@@ -20,7 +20,7 @@ COSTS = ("start", "iterations", "path", "seconds", "note", "message")
 
 def columns(rows: Rows, inputs: Sequence[str] = ()) -> list[str]:
     """Return the names of all columns: inputs, how it ended, what came out, what it cost."""
-    found = list(dict.fromkeys(name for row in rows for name in row))
+    found = list(dict.fromkeys(name for row in rows for name in row if name != SPECIALS))
     first = ("number", "scene", *inputs, "status", "verified", *ANSWERS, "error")
     others = [name for name in found if name not in (*first, *COSTS)]
     return [name for name in dict.fromkeys((*first, *others, *COSTS)) if name in found]

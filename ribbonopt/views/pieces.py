@@ -73,8 +73,12 @@ def in_plane(pieces: tuple[Piece, ...]) -> float:
 
 
 def is_rod(solution: Solution) -> bool:
-    """Whether the law leaves u1 free: such a rod is drawn as a strip along d2, whatever u1 is."""
-    return 0 in capabilities(solution.scene).components
+    """Whether a law that is no ribbon's leaves u1 free: it is drawn as a strip along d2.
+
+    Generatrices of a ribbon stay what they are where it bends in its own plane too.
+    """
+    law = capabilities(solution.scene)
+    return 0 in law.components and not law.developable
 
 
 def sample_pieces(solution: Solution, rows: int = ROWS) -> tuple[Piece, ...]:

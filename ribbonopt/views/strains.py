@@ -9,7 +9,7 @@ import numpy as np
 
 from ribbonopt.solution.solution import Solution
 
-from .pieces import Array, Piece
+from .pieces import Array, Piece, in_plane
 from .style import (
     ALLOWED,
     BENDING,
@@ -62,14 +62,16 @@ def draw_strains(subject: Subject) -> Figure:
         _label(axes, axes, subject, r"strains $u_1,\ u_2,\ u_3$")
         return figure
     top, bottom = figure.subplots(2, 1, sharex=True, height_ratios=(2.4, 1))
-    _plot(top, subject, ("u2", "u3"))
+    edgewise = ("u1",) if in_plane(subject.solved) > 0 else ()
+    _plot(top, subject, (*edgewise, "u2", "u3"))
     _plot(bottom, subject, ("eta",))
     if subject.across == 0:
         _shade(bottom)
     else:
         _limit(bottom, subject)
     bottom.set_ylabel(r"$\eta = u_3/u_2$")
-    _label(top, bottom, subject, r"strains $u_2,\ u_3$")
+    strains = r"strains $u_1,\ u_2,\ u_3$" if edgewise else r"strains $u_2,\ u_3$"
+    _label(top, bottom, subject, strains)
     return figure
 
 

@@ -7,6 +7,7 @@ from dataclasses import dataclass, field
 from ribbonopt.checks.topology import closure
 from ribbonopt.errors import ViewError
 from ribbonopt.mechanics.laws.catalogue import curvature_across
+from ribbonopt.mechanics.widths import own_width
 from ribbonopt.scene.units import Units
 from ribbonopt.solution.solution import Solution
 
@@ -101,7 +102,7 @@ class Subject:
 def subject_of(solution: Solution, complete: bool) -> Subject:
     """Sample a solution, once for all figures; with the rest of its band where it has one."""
     start, end = solution.scene.interval
-    ribbon = solution.scene.ribbon
+    width = own_width(solution.scene)
     band = closure(solution) if complete else None
     count = 1 if band is None else band.pieces
     solved = sample_pieces(solution, max(FEWEST_ROWS, min(ROWS, 2 * ROWS // count)))
@@ -111,7 +112,7 @@ def subject_of(solution: Solution, complete: bool) -> Subject:
         solved=solved,
         mirrored=() if band is None else continued(band, solved),
         units=solution.units,
-        half_width=None if ribbon is None else ribbon.width / 2,
+        half_width=None if width is None else width / 2,
         count=count,
         across=curvature_across(solution.scene),
         rod=is_rod(solution),

@@ -1,7 +1,8 @@
 """The ribbon as a surface: swept by its generatrices r + v (d2 + eta d3), |v| <= half_width.
 
 With u1 = 0 and b = d2 + eta d3, b' = eta' d3: along a generatrix the normal is d1 everywhere, and
-the surface is regular while half_width |eta'| < 1 (section 2 of the paper). Where u2 changes sign
+the surface is regular while half_width |eta'| < 1 (section 2 of the paper); u1 leaves the normal as
+it is, with eta' + u1 (1 + eta^2) in the place of eta'. Where u2 changes sign
 and u3 does not vanish, eta leaps from one sign to the other, which no ribbon of finite width can
 follow: there |eta| is drawn at most LEAP_SLOPE |s - s*| / half_width, so that the generatrices fan
 out from about a point of one edge, as they do on a real Moebius ribbon.
@@ -156,8 +157,9 @@ def _regular_half_width(pieces: tuple[Piece, ...]) -> float:
     steepest = 0.0
     for piece in pieces:
         rows = np.diff(piece.s) > FINE * length
-        slope = np.abs(np.diff(_bounded(piece.eta))[rows]) / np.diff(piece.s)[rows]
-        slope = slope * piece.widths[1:][rows]
+        eta = _bounded(piece.eta)
+        slope = np.diff(eta)[rows] / np.diff(piece.s)[rows] + (piece.u1 * (1 + eta**2))[1:][rows]
+        slope = np.abs(slope) * piece.widths[1:][rows]
         steepest = max(steepest, float(slope.max()))
     return 1 / max(steepest, 1e-300)
 

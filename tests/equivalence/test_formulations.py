@@ -28,15 +28,19 @@ EQUATIONS = ("formulation=inverted", BOUNDED, FREE, "formulation=differentiated"
 ENERGY = "formulation=energy"
 
 # Loads n(0), m(0): SCIENCE section 5 (half and whole Moebius), the exact helix (section 5), the
-# elastica of elliptic integrals.
+# elastica of elliptic integrals, SCIENCE-NEXT section 5 (extensible ribbon).
 TRUTH = {
     "moebius_half": (HALF_MOEBIUS["n0"], HALF_MOEBIUS["m0"]),
     "moebius_regularized": (REGULARIZED[1e-2]["n0"], REGULARIZED[1e-2]["m0"]),
     "helix_clamped": ((0, 12.5, 6.25), (0, 3.75, 5)),
     "elastica_clamped": ((0, 0, -45.2259556678), (0, 6.61180050, 0)),
+    "extensible_clamped": (
+        (-3.2860898525, -3.7762068058, -1.7395962384),
+        (2.2251158402, 1.6110355251, -0.0653687590),
+    ),
 }
 # Digits to which the truth above is known.
-KNOWN = {"elastica_clamped": 1e-8}
+KNOWN = {"elastica_clamped": 1e-8, "extensible_clamped": 6e-11}
 
 
 def errors(found: Solution, name: str) -> tuple[float, float]:

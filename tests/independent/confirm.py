@@ -13,9 +13,11 @@ from typing import Any
 import numpy as np
 
 from .curved import EITHER
-from .described import AXES, knots, number, parts, prescribed, strip_of
-from .loaded import ROWS, Point, Strip
+from .described import AXES, knots, number, parts, strip_of
+from .loaded import Point, Strip
 from .rod import Array, dot
+from .samples import Samples, boundary
+from .wide import ETA, P, Wide
 
 MOST = 1e3
 AGAIN = ", taken anew"
@@ -24,7 +26,7 @@ CHECKED = 16  # places at least
 RTOL = 1e-12
 SAMPLES = 40  # of each phase: the sign of T
 ZERO = 1e-7  # of moments: a T as small as that all along a phase is that of a mixture
-BESIDE = 1e-13  # of the length, in front of a station or behind it
+LAYERS = 1.5  # stops for each width of a ribbon that has one: errors grow as exp(sqrt(24) s / w)
 
 
 @dataclass(frozen=True)
@@ -49,8 +51,10 @@ def examine(solution: Any) -> Confirmed:
     """Return the largest mismatch, and what it is."""
     scene = solution.posed.scene
     a, b = scene.interval
-    given = Samples(solution, a, b)
-    strip, held = with_reactions(strip_of(scene), scene, given)
+    strip = strip_of(scene)
+    width = strip.width if isinstance(strip, Wide) else None
+    given = Samples(solution, a, b, width)
+    strip, held = with_reactions(strip, scene, given)
     phases = a + (b - a) * np.asarray(solution.trajectory.ends)
     stations = [p.at for p in strip.points]
     loads = getattr(scene, "loads", None)
@@ -59,8 +63,11 @@ def examine(solution: Any) -> Confirmed:
     said += parts(getattr(scene, "natural", None), ("curvature", "twist", "across"))
     bends = np.concatenate([knots(x) for x in said])
     bends = bends[(bends > a) & (bends < b)]
-    stops = merged([phases, stations, bends, np.linspace(a, b, CHECKED + 1)])
+    count = CHECKED if width is None else max(CHECKED, int(LAYERS * (b - a) / width))
+    stops = merged([phases, stations, bends, np.linspace(a, b, count + 1)])
     kinds, wrong = sheets(strip, given, phases, scene)
+    if not strip.switched:  # but mixtures there may be, of which the solution tells
+        kinds = [int(kind != 0) for kind in getattr(solution, "sheets", ())] or kinds
     if wrong:
         return Confirmed(np.inf, wrong, 0)
     found, sides = march(strip, given, stops, phases, kinds)
@@ -68,33 +75,6 @@ def examine(solution: Any) -> Confirmed:
     worst = max(found, key=lambda pair: pair[0] if np.isfinite(pair[0]) else np.inf)
     restarts = sum(AGAIN in where for _, where in found)
     return Confirmed(float(worst[0]), worst[1], restarts)
-
-
-@dataclass(frozen=True)
-class Samples:
-    """States of a solution, units Dw = L = 1."""
-
-    solution: Any
-    a: float
-    b: float
-
-    def __call__(self, s: float, side: int = 1) -> Array:
-        """State (20, 1) at an arclength; side -1: in front of what acts or switches there.
-
-        Else behind it, by as little: the phases of a solution meet there but for rounding.
-        """
-        x = (s - self.a) / (self.b - self.a)
-        at = self.solution.trajectory.outputs(np.clip([x + side * BESIDE], 0, 1))
-        y = np.zeros((ROWS, 1))
-        for i, name in enumerate(("r", "d1", "d2", "d3", "n", "m")):
-            y[3 * i : 3 * i + 3, 0] = at[name][0]
-        return y
-
-    @property
-    def sizes(self) -> tuple[float, float]:
-        """Units of forces and moments: one and the largest of them."""
-        at = self.solution.trajectory.outputs(np.linspace(0, 1, 65))
-        return 1 + float(np.abs(at["n"]).max()), 1 + float(np.abs(at["m"]).max())
 
 
 def merged(arclengths: list[Any]) -> list[float]:
@@ -107,8 +87,8 @@ def merged(arclengths: list[Any]) -> list[float]:
 
 
 def with_reactions(
-    strip: Strip, scene: Any, given: Samples
-) -> tuple[Strip, list[tuple[float, str]]]:
+    strip: Strip | Wide, scene: Any, given: Samples
+) -> tuple[Strip | Wide, list[tuple[float, str]]]:
     """Add what supports between the ends take, as the solution has it; gaps of their places."""
     theta, points, held = scene.parameters, list(strip.points), []
     for support in getattr(scene, "supports", ()) or ():
@@ -124,13 +104,13 @@ def with_reactions(
     return replace(strip, points=tuple(points)), held
 
 
-def sheets(strip: Strip, given: Samples, phases: Array, scene: Any) -> tuple[list[int], str]:
+def sheets(strip: Strip | Wide, given: Samples, phases: Array, scene: Any) -> tuple[list[int], str]:
     """Kinds of the phases, by T of the solution; what is wrong with them."""
-    if not strip.material.switched:
+    if not strip.switched:
         return [1] * (len(phases) - 1), ""
     chi = getattr(scene.law, "chi", 0)
     kinds = []
-    size = given.sizes[1]
+    _, size, _ = given.sizes
     for first, last in pairwise(phases):
         inside = first + (last - first) * (np.arange(SAMPLES) + 0.5) / SAMPLES
         T = np.array([strip.turn(given(s), np.array([s]))[0] for s in inside]) / size
@@ -148,27 +128,31 @@ def sheets(strip: Strip, given: Samples, phases: Array, scene: Any) -> tuple[lis
     return kinds, ""
 
 
-def planar(strip: Strip, given: Samples, inside: Array, size: float) -> bool:
+def planar(strip: Strip | Wide, given: Samples, inside: Array, size: float) -> bool:
     """Whether the ribbon only bends: then both sheets meet where T vanishes."""
     for s in inside:
-        _, K12, K22, _ = strip.material.natural.moments(np.array([s]))
+        _, K12, K22, _ = strip.natural.moments(np.array([s]))
         y = given(s)
-        if max(abs(dot(y[9:12], y[15:18])[0] + 2 * K12[0]), abs(K22[0])) > ZERO**2 * size:
+        sideways = [dot(y[9:12], y[15:18])[0] + 2 * K12[0], K22[0]]
+        if isinstance(strip, Wide):
+            sideways += [y[ETA, 0], y[P, 0]]
+        if np.abs(sideways).max() > ZERO**2 * size:
             return False
     return True
 
 
 def march(
-    strip: Strip, given: Samples, stops: list[float], phases: Array, kinds: list[int]
+    strip: Strip | Wide, given: Samples, stops: list[float], phases: Array, kinds: list[int]
 ) -> tuple[list[tuple[float, str]], tuple[Array, Array]]:
     """Gaps at all stops, over their growth; and the states at both ends."""
-    force, moment = given.sizes
-    units = np.concatenate([np.ones(12), np.full(3, force), np.full(3, moment)])[:, None]
-    off = OFF * np.concatenate([np.full(3, force), np.full(3, moment)])
+    force, moment, p = given.sizes
+    rows = given.compared
+    units = np.array([1.0] * 12 + [force] * 3 + [moment] * 3 + [1.0, p])[: len(rows), None]
+    varied = rows[12:]  # all but places and directors
 
     def started(s: float, side: int) -> Array:
-        y = np.repeat(given(s, side), 7, axis=1)
-        y[12:18, 1:] += np.diag(off)
+        y = np.repeat(given(s, side), 1 + len(varied), axis=1)
+        y[varied, 1:] += np.diag(OFF * units[12:, 0])
         return y
 
     found = []
@@ -179,8 +163,8 @@ def march(
         kind = kinds[min(np.searchsorted(phases, (s + after) / 2) - 1, len(kinds) - 1)]
         y = strip.piece(y, s, after, int(kind), RTOL)
         told = given(after, -1)
-        gap = np.abs((y[:18, :1] - told[:18]) / units).max()
-        growth = max(1.0, np.abs((y[:18, 1:] - y[:18, :1]) / units).max() / OFF)
+        gap = np.abs((y[rows, :1] - told[rows]) / units).max()
+        growth = max(1.0, np.abs((y[rows, 1:] - y[rows, :1]) / units).max() / OFF)
         again = growth > MOST
         found.append((gap / growth, f"s = {after:.6g}{AGAIN if again else ''}"))
         if again:
@@ -188,45 +172,18 @@ def march(
         here = [p.at for p in strip.points if abs(p.at - after) < 1e-11]
         if here and after < stops[-1]:
             y = strip.jump(y, here[0])
-        if strip.material.switched and np.abs(phases[1:-1] - after).min(initial=1) < 1e-11:
+        if strip.switched and np.abs(phases[1:-1] - after).min(initial=1) < 1e-11:
             found.append(switched(strip, kinds, phases, y, after, moment))
     return found, (first[:, :1], told)
 
 
 def switched(
-    strip: Strip, kinds: list[int], phases: Array, y: Array, s: float, moment: float
+    strip: Strip | Wide, kinds: list[int], phases: Array, y: Array, s: float, moment: float
 ) -> tuple[float, str]:
     """T where the sheet changes, which is zero there."""
     i = int(np.abs(phases - s).argmin())
     if kinds[i - 1] == kinds[i] or EITHER in kinds[i - 1 : i + 1]:
         return 0.0, ""  # a station
-    T = strip.turn(y, np.full(7, s)) / moment
+    T = strip.turn(y, np.full(y.shape[1], s)) / moment
     growth = max(1.0, float(np.abs(T[1:] - T[0]).max() / OFF))
     return float(abs(T[0])) / growth, f"switch at {s:.6g}"
-
-
-def boundary(
-    scene: Any, given: Samples, strip: Strip, sides: tuple[Array, Array]
-) -> list[tuple[float, str]]:
-    """Gaps of what the scene prescribes at both ends."""
-    force, moment = given.sizes
-    found = []
-    ends = {"start": scene.boundary.start, "end": scene.boundary.end}
-    for (name, end), y in zip(ends.items(), sides, strict=True):
-        if end is None:
-            continue
-        asked = prescribed(end, scene.parameters)
-        if name == "end":
-            y = strip.jump(y, given.b)
-        sign = 1 if name == "end" else -1
-        frame = y[3:12].reshape(3, 3)
-        gaps = {
-            "position": y[:3, 0] - asked["r"],
-            "directors": frame - asked["directors"],
-            "force": (y[12:15, 0] - sign * asked["n"]) / force,
-            "moment": (y[15:18, 0] - sign * asked["m"]) / moment,
-        }
-        found += [
-            (float(np.nan_to_num(np.abs(g)).max()), f"{k} at {name}") for k, g in gaps.items()
-        ]
-    return found

@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from .plates import Plate
 from .rod import Array
 
 Along = float | Callable[[Array], Array]
@@ -48,6 +49,8 @@ class Natural:
 class Material:
     """A law: sadowsky, variational (delta), kirchhoff or rod (B1, B2, B3 and natural strains).
 
+    Or that of a `plate`, extensible or sano.
+
     Sadowsky's law is taken by sheets as in `Law`: the kind is the sign of T = m2 + K11 + K22 (in
     units of the width); EITHER is the larger one, in the plane.
     """
@@ -58,6 +61,7 @@ class Material:
     strains_of_rod: tuple[float, float, float] = (0.0, 0.0, 0.0)
     natural: Natural = Natural()
     width: Along = 1.0
+    plate: Plate | None = None
 
     @property
     def switched(self) -> bool:
@@ -79,6 +83,14 @@ class Material:
                 raise ValueError("a rod has no curvature across")
             u2, u3 = a / self.B[1], b / self.B[2]
             legendre = (a * u2 + b * u3) / 2
+        elif self.plate is not None:
+            if np.any(K22):
+                raise ValueError("natural strains across are not known of this law")
+            u2, u3 = self.plate.strains(a, b)
+            energy = self.plate.unit**2 * self.plate.energy(
+                u2 / self.plate.unit, u3 / self.plate.unit
+            )
+            legendre = a * u2 + b * u3 - energy
         elif self.name == "sadowsky":
             N = np.array([[a, b / 2], [b / 2, K22]]).transpose(2, 0, 1)
             values, vectors = np.linalg.eigh(N)

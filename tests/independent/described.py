@@ -13,14 +13,20 @@ import numpy as np
 from scipy.interpolate import CubicSpline
 
 from .curved import Along, Material, Natural, value
+from .inplane import InPlane
 from .loaded import Point, Strip, rotated
 from .path import turned
+from .plates import extensible, sano
 from .rod import Array
+from .wide import Wide
 
 WORDS = {name: getattr(np, name) for name in ("sqrt", "sin", "cos", "tan", "exp", "log", "abs")}
 WORDS |= {"pi": np.pi, "deg": np.pi / 180}
 AXES, DIRECTORS = ("x", "y", "z"), ("d1", "d2", "d3")
-LAWS = ("sadowsky", "single_sheet", "variational", "kirchhoff", "rod")
+NATURAL = ("curvature", "twist", "across")
+LAWS = ("sadowsky", "single_sheet", "variational", "kirchhoff", "rod", "extensible", "sano")
+EDGES = {"clamped": "straight", "sliding": "straight"}
+EDGES |= {"pinned": "free", "held": "free", "free": "free"}
 
 
 def number(said: Any, parameters: Mapping[str, float], unknown: float = 0.0) -> float:
@@ -67,7 +73,7 @@ def parts(said: Any, names: tuple[str, ...] = AXES) -> list[Any]:
     return [getattr(said, name, None) for name in names]
 
 
-def strip_of(scene: Any) -> Strip:
+def strip_of(scene: Any) -> Strip | Wide:
     """Return the strip that a scene describes, without reactions; ValueError where none can."""
     theta = scene.parameters
     loads, width = getattr(scene, "loads", None), getattr(scene, "width", None)
@@ -79,13 +85,18 @@ def strip_of(scene: Any) -> Strip:
     if any(weight):
         force = [_sum(f, g, w) for f, g in zip(force, weight, strict=True)]
     couple = [along(v, theta) for v in parts(getattr(loads, "couple", None))]
-    return Strip(
-        material_of(scene, w),
+    acting = (
         tuple(force),
         tuple(couple),
         along(getattr(loads, "pressure", None), theta),
         tuple(p for load in getattr(loads, "points", ()) for p in points_of(load, theta)),
+        inplane_of(getattr(scene, "membrane", None), theta),
     )
+    if scene.law.type == "wunderlich":
+        if width is not None:
+            raise ValueError("a wide ribbon of variable width is not known here")
+        return Wide(number(scene.law.width, theta), natural_of(scene), *acting)
+    return Strip(material_of(scene, w), *acting)
 
 
 def _sum(force: Along, weight: float, width: Along) -> Along:
@@ -97,22 +108,58 @@ def _sum(force: Along, weight: float, width: Along) -> Along:
 
 def material_of(scene: Any, width: Along) -> Material:
     """Return the law with natural strains and width."""
-    law, theta, said = scene.law, scene.parameters, getattr(scene, "natural", None)
+    law, said = scene.law, getattr(scene, "natural", None)
     if law.type not in LAWS:
         raise ValueError(f"law {law.type} is not known here")
-    names = ("curvature", "twist", "across")
-    ratio = number(getattr(said, "poisson_ratio", None), theta)
-    natural = Natural(*(along(getattr(said, name, None), theta) for name in names), ratio)
-    found = {"natural": natural, "width": width}
+    found = {"natural": natural_of(scene), "width": width}
     if law.type == "rod":
-        if said is not None and any(getattr(said, name, 0) for name in names):
+        if said is not None and any(getattr(said, name, 0) for name in NATURAL):
             raise ValueError("a rod with natural strains twice is not known here")
         return Material("rod", B=tuple(law.B), strains_of_rod=tuple(law.natural), **found)
     if law.type == "kirchhoff":
         return Material("kirchhoff", B=(np.inf, law.B2, law.B3), **found)
     if law.type == "variational":
         return Material("variational", law.delta, **found)
+    if law.type in ("extensible", "sano"):
+        if width != 1.0:
+            raise ValueError(f"a {law.type} ribbon of variable width is not known here")
+        plate = (
+            extensible(law.width, law.thickness, law.poisson_ratio)
+            if law.type == "extensible"
+            else sano(law.B2, law.B3, law.zeta)
+        )
+        return Material(law.type, plate=plate, **found)
     return Material("sadowsky", **found)
+
+
+def natural_of(scene: Any) -> Natural:
+    """Return the strains of the free ribbon."""
+    said, theta = getattr(scene, "natural", None), scene.parameters
+    ratio = number(getattr(said, "poisson_ratio", None), theta)
+    return Natural(*(along(getattr(said, name, None), theta) for name in NATURAL), ratio)
+
+
+def inplane_of(said: Any, theta: Mapping[str, float]) -> InPlane:
+    """Return how the ribbon gives in its own plane."""
+    names = ("bending", "stretching")
+    return InPlane(*(number(getattr(said, name, None), theta, np.inf) for name in names))
+
+
+def edge_of(end: Any) -> str | None:
+    """Whether the edge of a wide ribbon is straight across an end or free; None: not told here.
+
+    At a flip the ribbon goes on as its own image: eta is odd about d2, and even about d1.
+    """
+    said: str | None = getattr(end, "edge", None)
+    if said is None and end.support == "flip":
+        return "straight" if end.axis == "d2" else "free"
+    if said is None and end.support is None:
+        turns = [end.directors, *(getattr(end, d, None) for d in DIRECTORS)]
+        if all(v is None for v in turns):
+            return "free"
+        held = end.position is not None and end.directors is not None
+        return "straight" if held and end.force is None and end.moment is None else None
+    return EDGES.get(end.support) if said is None and isinstance(end.support, str) else said
 
 
 def points_of(load: Any, theta: Mapping[str, float]) -> list[Point]:
@@ -159,6 +206,8 @@ def frame_of(said: Any, theta: Mapping[str, float]) -> Array | None:
 def prescribed(end: Any, theta: Mapping[str, float]) -> dict[str, Array]:
     """What an end holds, (3,) and (3, 3) with NaN for what is free: r, directors, n and m.
 
+    `own n` and `own m` are loads along the directors.
+
     Of supports `clamped`, `pinned` and `free` all is known, of others what is plain.
     """
     place = np.array([number(v, theta, np.nan) for v in parts(end.position)])
@@ -173,7 +222,8 @@ def prescribed(end: Any, theta: Mapping[str, float]) -> dict[str, Array]:
     for name, of in (("force", "n"), ("moment", "m")):
         said = getattr(end, name, None)
         follows = said is not None and any(getattr(said, d, None) is not None for d in DIRECTORS)
-        loads[of] = np.full(3, np.nan)
+        along = [number(getattr(said, d, None), theta, np.nan) for d in DIRECTORS]
+        loads[f"own {of}"], loads[of] = np.array(along), np.full(3, np.nan)
         if name in plain and not follows:
             loads[of] = np.array([number(v, theta) for v in parts(said)])
     if end.support in ("sliding", "flip", "held"):

@@ -14,6 +14,7 @@ CONFIGS = Path(__file__).parents[2] / "configs"
 EXPECTED = {
     "cantilever",
     "elastica_clamped",
+    "extensible_clamped",
     "helix",
     "moebius_half",
     "moebius_half_full",
@@ -21,6 +22,7 @@ EXPECTED = {
     "moebius_regularized",
     "moebius_variational",
     "ribbon_si",
+    "sano_clamped",
 }
 NAMES = sorted(path.stem for path in CONFIGS.glob("*.yaml"))
 each_scene = pytest.mark.parametrize("name", NAMES)

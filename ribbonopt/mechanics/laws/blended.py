@@ -13,10 +13,10 @@ import casadi as ca
 from .implicit import ImplicitLaw, polynomial_form
 from .law import ConstitutiveLaw, RibbonLaw, Stress
 from .relations import Components, bending, blended_strain, inverse, sheet_sum
-from .sadowsky import SwitchedLaw
+from .sadowsky import SheetedLaw
 
 
-class BlendedLaw(SwitchedLaw):
+class BlendedLaw(SheetedLaw):
     """The family of eq. (C 1)."""
 
     variational = False

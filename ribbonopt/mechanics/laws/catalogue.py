@@ -18,8 +18,9 @@ import casadi as ca
 
 from ribbonopt.errors import ModelError
 from ribbonopt.scene import Law, OwnLaw, Scene
+from ribbonopt.scene.membrane import stiffnesses
 
-from .law import ConstitutiveLaw
+from .law import ConstitutiveLaw, Stress
 
 if TYPE_CHECKING:
     from ribbonopt.mechanics.along import Field
@@ -125,6 +126,11 @@ def relation_of(scene: Scene, theta: Callable[[str], ca.SX], position: ca.SX) ->
         from .tapered import tapered  # few scenes have a width of their own
 
         law = tapered(law, along["width"], position)
+    if scene.membrane is not None:
+        from .membrane import with_membrane  # few scenes have a membrane that gives
+
+        finite = {name: theta(f"membrane.{name}") for name in stiffnesses(scene.membrane)}
+        law = with_membrane(law, finite, along.get("width", 1.0), position)
     return law
 
 
@@ -139,6 +145,15 @@ def fields_of(scene: Scene) -> tuple[Field, ...]:
         members = vars(scene.natural).items()
         named |= {f"natural.{name}": 0.0 if value is None else value for name, value in members}
     return tuple(Field(name, value) for name, value in named.items() if value is not None)
+
+
+def membrane_numbers(scene: Scene) -> dict[str, float]:
+    """Return the finite stiffnesses in the ribbon's own plane by the names of their parameters.
+
+    None that the sizes of a `ribbon` tell: these stand in a scene in units Dw = L = 1 only.
+    """
+    found = stiffnesses(scene.membrane).items()
+    return {f"membrane.{name}": float(value) for name, value in found if value is not None}
 
 
 def curvature_across(scene: Scene) -> float | None:
@@ -160,13 +175,24 @@ def curvature_across(scene: Scene) -> float | None:
 def capabilities(scene: Scene) -> ConstitutiveLaw:
     """Return the relation of a scene, its law in numbers, to be asked what it has."""
     known = {f"law.{name}": ca.SX(value) for name, value in numbers_of(scene.law).items()}
+    known |= {name: ca.SX(value) for name, value in membrane_numbers(scene).items()}
     return relation_of(scene, lambda name: known.get(name, ca.SX.sym(name)), ca.SX.sym("s"))
 
 
-def is_linear(law: Law) -> bool:
-    """Whether a law by itself has an energy that is smooth at m = 0: a start may begin with it."""
-    found = law_of(law, {name: ca.SX.sym(name) for name in _numbers(law)}, ca.SX.sym("s"))
-    return found.linear_at_zero and found.variational
+def is_linear(law: Law, up_to: float = math.inf) -> bool:
+    """Whether a law by itself has an energy that is smooth at m = 0: a start may begin with it.
+
+    And, if its strains may leap, that they do not at twisting moments `up_to` that.
+    """
+    numbers = {name: ca.SX(value) for name, value in numbers_of(law).items()}
+    unknown = {name: ca.SX.sym(name) for name in _numbers(law)}
+    found = law_of(law, unknown | numbers, ca.SX.sym("s"))
+    if not (found.linear_at_zero and found.variational):
+        return False
+    if found.smooth:
+        return True
+    leap = found.switching(Stress.of_moment(ca.SX(ca.DM([0, 0, up_to])))).leap
+    return bool(ca.evalf(leap) == 0)
 
 
 def is_developable(scene: Scene) -> bool:

@@ -15,8 +15,9 @@ from typing import TYPE_CHECKING
 
 import casadi as ca
 
+from .energy_form import EnergyForm
 from .implicit import ImplicitLaw
-from .parts import Relaxed, Singular, Stress, Switch
+from .parts import Singular, Stress, Switch
 
 if TYPE_CHECKING:
     from .natural import NaturalStrains
@@ -24,11 +25,9 @@ if TYPE_CHECKING:
 __all__ = ["ConstitutiveLaw", "RibbonLaw", "Stress"]
 
 
-class ConstitutiveLaw(ABC):
+class ConstitutiveLaw(EnergyForm, ABC):
     """A relation between strains and moments; see the module for frame and units."""
 
-    #: strains that are not zero by themselves, by index
-    components: tuple[int, ...] = (1, 2)
     #: a strain energy exists, so that H = W_Leg + n3 is an invariant (section 7)
     variational: bool = True
     #: the law demands |eta| <= 1 of a solution, eq. (4.1)
@@ -43,6 +42,10 @@ class ConstitutiveLaw(ABC):
     natural: bool = False
     #: turning all sections by one angle about d3 changes nothing, or may: a rod that spins freely
     spins: bool = False
+    #: u1 = m1 / B1 beside a ribbon's law, which knows nothing of it
+    edgewise: bool = False
+    #: the centre line stretches: r' = (1 + e) d3, `extension`
+    stretches: bool = False
     #: strains have a kink or a jump where `switching` changes sign; `branch` continues either side
     kinked: bool = False
     #: its sides are two sheets that may mix, as Sadowsky's
@@ -53,10 +56,6 @@ class ConstitutiveLaw(ABC):
     switch_name: str = "m2"
     #: `moment` is exact and a closed form, cheap to differentiate; else it serves guesses only
     closed_moment: bool = True
-    #: names of states of its own along the ribbon, with `rates`, `end_conditions`, `own_guess`
-    states: tuple[str, ...] = ()
-    #: names of the controls of its energy form, where their guess is not of n and m alone
-    controls: tuple[str, ...] = ()
 
     @abstractmethod
     def strain(self, stress: Stress) -> ca.SX:
@@ -85,11 +84,6 @@ class ConstitutiveLaw(ABC):
         equations = self.moment(self.whole(u)) - stress.m[free] if closed else u - strain
         return ImplicitLaw(u, equations, ca.SX(0, 1), strain)
 
-    def whole(self, free: ca.SX) -> ca.SX:
-        """Return the vector (3,) whose `components` are given, all others zero."""
-        values = dict(zip(self.components, ca.vertsplit(free), strict=True))
-        return ca.vertcat(*(values.get(i, ca.SX(0)) for i in range(3)))
-
     def densities(self, stress: Stress, u: ca.SX) -> tuple[ca.SX, ca.SX]:
         """Strain energy W and complementary energy per length, W + W_Leg = m . u.
 
@@ -101,6 +95,10 @@ class ConstitutiveLaw(ABC):
         found = self.complementary_energy(stress)
         return (work / 2, work / 2) if found is None else (work - found, found)
 
+    def extension(self, stress: Stress) -> ca.SX:
+        """Extension e of the centre line, r' = (1 + e) d3."""
+        return ca.SX(0)
+
     def direct(self) -> ConstitutiveLaw:
         """Return the law as the energy form states it: without those states that are costates."""
         return self
@@ -108,10 +106,6 @@ class ConstitutiveLaw(ABC):
     def indirect(self) -> ConstitutiveLaw:
         """Return the law with all its states, of which conditions speak; `direct` backwards."""
         return self
-
-    def relaxed(self, stress: Stress) -> Relaxed | None:
-        """Return the program of the energy where that is no function of the moments, or None."""
-        return None
 
     def sheet_slope(self, stress: Stress, u: ca.SX) -> ca.SX | None:
         """Return what is at most 1 in size where a sheet allows strains u (3,); None where eta is.
@@ -126,6 +120,13 @@ class ConstitutiveLaw(ABC):
         None where these can only shift the moments, so that K22 must be zero: `shifted`.
         """
         return None
+
+    def at_width(self, width: ca.SX) -> ConstitutiveLaw:
+        """Return the law, per width, where the ribbon has another width, in units of its own.
+
+        The law itself where a strip of it knows nothing of how wide it is.
+        """
+        return self
 
     # Own states: none but for laws that declare them.
 
@@ -144,14 +145,6 @@ class ConstitutiveLaw(ABC):
     def singular(self, stress: Stress) -> tuple[Singular, ...]:
         """Return where strains are singular functions of complex s; nowhere if nothing is known."""
         return ()
-
-    def most_rate(self) -> ca.SX:
-        """Return the largest rate of its own states, (k,), where its energy form bounds it."""
-        return ca.inf * ca.SX.ones(len(self.states))
-
-    def controls_for(self, stress: Stress, rates: ca.SX) -> ca.SX:
-        """Return what controls of its energy form, `controls` by name, give its states rates."""
-        return ca.SX(0, 1)
 
     # Switching: of use to kinked laws, and to find phases for them on solutions of smooth ones.
 

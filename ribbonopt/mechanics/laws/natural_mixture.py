@@ -3,7 +3,7 @@
 From T = 0 along the arc, K being K11 + K22: n1 + m1 u3 = K' and, that differentiated,
 u2 (n3 + m3 u3 - m1^2 / 4) = 2 n2 u3 + m2 u3^2 + m1 K12' / 2 - K''. Off the arc T is linear in s.
 With a width w forces and moments are those over w, and K' is (w K)' / w. Loads along the ribbon
-act as in `sadowsky.MixtureLaw`.
+act as in `mixture.MixtureLaw`.
 """
 
 from __future__ import annotations
@@ -20,7 +20,7 @@ from .parts import Singular
 
 @dataclass(frozen=True, eq=False)
 class NaturalMixtureLaw(ConstitutiveLaw):
-    """The mixture of both sheets; see `sadowsky.MixtureLaw`, which has no natural strains."""
+    """The mixture of both sheets; see `mixture.MixtureLaw`, which has no natural strains."""
 
     sides: NaturalSides
     natural = True

@@ -32,7 +32,7 @@ class NaturalSides:
         return Switch(T, norm(2 * self.k.K22, c))
 
     def entering(self, kinds: tuple[int, ...], i: int, stress: Stress) -> Mapping[str, ca.SX]:
-        """Return what holds where phase i begins; see `SwitchedLaw.entering`."""
+        """Return what holds where phase i begins; see `switched.SwitchedLaw`."""
         zero = {"T = 0": self.switching(stress).value}
         if kinds[i] == 0 and i < len(kinds) - 1:
             return zero | {"n1 + m1 u3 = K'": self.drift(stress)}

@@ -8,6 +8,25 @@ from typing import NamedTuple
 
 import casadi as ca
 
+#: what a law declares of itself, but for its own states: a law around it declares the same
+DECLARED = (
+    "components",
+    "variational",
+    "bounds_eta",
+    "developable",
+    "smooth",
+    "linear_at_zero",
+    "natural",
+    "spins",
+    "edgewise",
+    "stretches",
+    "kinked",
+    "sheeted",
+    "fades",
+    "switch_name",
+    "closed_moment",
+)
+
 
 class Stress(NamedTuple):
     """What a law may read of a section: n, m (3,) along the directors, and its own states.
@@ -58,7 +77,7 @@ class Relaxed:
     """A convexified energy as a smooth program over controls along the ribbon.
 
     `controls` (nz,) symbols; `u` (3,) strains, `cost` per length and `path` (<= 0) as expressions
-    of them; `estimate` (nz,), where to start, of the stress.
+    of them; `estimate` (nz,), where to start, of the stress; `extension`, of the centre line.
 
     A law with states of its own says of these controls also the `rates` of its states, and at a
     stress: the `strain` (3,) that they should be, the `complementary` energy, and `own`, states of
@@ -74,3 +93,4 @@ class Relaxed:
     strain: ca.SX | None = None
     complementary: ca.SX | None = None
     own: Mapping[str, ca.SX] = field(default_factory=dict)
+    extension: ca.SX | float = 0.0

@@ -15,7 +15,8 @@ import casadi as ca
 
 from .implicit import ImplicitLaw, bounded
 from .law import ConstitutiveLaw, RibbonLaw, Stress
-from .parts import Relaxed, Singular
+from .mixture import MixtureLaw
+from .parts import Relaxed
 from .relations import (
     Components,
     convexified_energy,
@@ -25,53 +26,34 @@ from .relations import (
     sheet_moment,
     sheet_sum,
 )
+from .switched import SwitchedLaw
 
 if TYPE_CHECKING:
     from .natural import NaturalStrains
 
 
-class SwitchedLaw(RibbonLaw):
-    """A law whose strains have a jump or a kink at m2 = 0, in phases of one sheet or a mixture."""
+class SheetedLaw(SwitchedLaw):
+    """A law whose sides are the sheets of eqs. (2.4)-(2.5), or may mix as they do."""
 
-    kinked = True
     sheeted = True
 
-    def branch(self, kind: int) -> ConstitutiveLaw:
-        return self.sheet(kind) if kind else MixtureLaw()
-
     def sheet(self, chi: int) -> ConstitutiveLaw:
-        """Return the law of the side chi = sign(m2), continued analytically beyond m2 = 0."""
         return SingleSheetLaw(ca.SX(chi))
 
-    def entering(self, kinds: tuple[int, ...], i: int, stress: Stress) -> Mapping[str, ca.SX]:
-        zero = {"m2 = 0": stress.m[1]}
-        # What a mixture demands where it begins it keeps to its end, so that one end will do. At an
-        # end of the ribbon none of it is asked, and `zeros` tell whether the ends allow it: those
-        # of a symmetric band do, those of a clamp only by design, as for a helix.
-        if kinds[i] == 0 and i < len(kinds) - 1:
-            return zero | {"n1 + m1 u3 = 0": mixture_drift(stress)}
-        return {} if kinds[i - 1] == 0 and i > 1 else zero
+    @property
+    def mixture(self) -> MixtureLaw:
+        return SheetMixtureLaw()
 
-    def margins(self, kind: int, stress: Stress, u: ca.SX) -> Mapping[str, ca.SX]:
-        if kind:
-            wrong = "m2 has the wrong sign {where}: no equilibrium of Sadowsky's ribbon"
-            return {wrong: kind * stress.m[1]}
-        return {
-            "the mixture {where} is unstable: K < 0": mixture_stiffness(stress),
-            "|u2| > |u3| {where}: not a mixture": ca.fabs(u[2]) - ca.fabs(u[1]),
-        }
+    def on_sheet(self, kind: int, stress: Stress) -> Mapping[str, ca.SX]:
+        wrong = "m2 has the wrong sign {where}: no equilibrium of Sadowsky's ribbon"
+        return {wrong: kind * stress.m[1]}
 
-    def zeros(self, kind: int, stress: Stress) -> Mapping[str, ca.SX]:
-        if kind:
-            return {}
-        return {
-            "m2 is not zero {where}: not a mixture": stress.m[1],
-            "n1 + m1 u3 is not zero {where}: not a mixture": mixture_drift(stress),
-        }
+    def between(self, stress: Stress, u: ca.SX) -> Mapping[str, ca.SX]:
+        return {"|u2| > |u3| {where}: not a mixture": ca.fabs(u[2]) - ca.fabs(u[1])}
 
 
 @dataclass(frozen=True, eq=False)
-class SadowskyLaw(SwitchedLaw):
+class SadowskyLaw(SheetedLaw):
     """Both sheets; energy W_F, the convexified W_S.
 
     At m2 = 0 `strains` returns u2 = 0, the mixture of both for which W_F was made.
@@ -146,24 +128,11 @@ class SingleSheetLaw(RibbonLaw):
         return sheet_sum(m2, m3, self.chi) ** 2 / 8
 
 
-class MixtureLaw(ConstitutiveLaw):
-    """Arcs of both sheets, epsilon = 0: m2 = 0, u3 = m3 / 4, u2 = (2 n2 u3 - f1) / K.
+class SheetMixtureLaw(MixtureLaw):
+    """Arcs of both sheets, epsilon = 0: m2 = 0, u3 = m3 / 4."""
 
-    Under a couple c per length n1 + c2 + m1 u3 is what is kept, and u2 has - 2 u3 c1 - m1 c3 / 4.
-
-    The strain u2 keeps m2 at zero along the arc; no moment gives it. With a term in m2 (zero along
-    the arc) it keeps n1 + m1 u3 where it is even off the arc, so that m2 is linear in s there and
-    zero along the arc if that and m2 are zero at one point of it.
-    """
-
-    def strain(self, stress: Stress) -> ca.SX:
-        u3 = stress.m[2] / 4
-        turning = (2 * stress.n[1] + u3 * stress.m[1]) * u3
-        if stress.load is not None:
-            turning -= stress.load[0]
-        if stress.couple is not None:
-            turning -= 2 * u3 * stress.couple[0] + stress.m[0] * stress.couple[2] / 4
-        return ca.vertcat(0, turning / mixture_stiffness(stress), u3)
+    def twist(self, m3: ca.SX) -> tuple[ca.SX, ca.SX]:
+        return m3 / 4, ca.SX(1) / 4
 
     def moment(self, u: ca.SX) -> ca.SX:
         return ca.vertcat(0, 4 * u[2])
@@ -171,21 +140,5 @@ class MixtureLaw(ConstitutiveLaw):
     def energy(self, u: ca.SX) -> ca.SX:
         return 2 * u[2] ** 2
 
-    def singular(self, stress: Stress) -> tuple[Singular, ...]:
-        return (Singular(mixture_stiffness(stress), ca.SX(0), ca.fabs(stress.m[2])),)
-
     def complementary_energy(self, stress: Stress) -> ca.SX:
         return sadowsky_complementary_energy(stress.m[1], stress.m[2])
-
-
-def mixture_drift(stress: Stress) -> ca.SX:
-    """Minus the rate of m2 along a mixture: n1 + c2 + m1 u3, a constant, zero where it is one."""
-    if stress.couple is not None:
-        return mixture_drift(stress._replace(couple=None)) + stress.couple[1]
-    return stress.n[0] + stress.m[0] * stress.m[2] / 4
-
-
-def mixture_stiffness(stress: Stress) -> ca.SX:
-    """K = n3 + m3 u3 - m1^2 / 4 of a mixture, which must not be negative."""
-    n, m = stress.n, stress.m
-    return n[2] + m[2] ** 2 / 4 - m[0] ** 2 / 4

@@ -84,6 +84,9 @@ class ShiftedLaw(ConstitutiveLaw):
     def switching(self, stress: Stress) -> Switch:
         return self.base.switching(self._shifted(stress))
 
+    def at_width(self, width: ca.SX) -> ConstitutiveLaw:
+        return replace(self, base=self.base.at_width(width))
+
     def branch(self, kind: int) -> ConstitutiveLaw:
         if kind == 0 and self.sides is not None:
             return NaturalMixtureLaw(self.sides)

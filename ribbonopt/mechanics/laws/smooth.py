@@ -18,19 +18,29 @@ from .catalogue import is_linear
 ROD = 1.0  # delta at which the law is linear
 UNEVEN = 0.3  # ratio of a rod's stiffnesses below which it is approached from a more even one
 EVEN = 0.8  # the ratio to begin with there: less than 1, so that it is known which is the larger
+USUAL = 20.0  # twisting moments, Dw = L = 1, that shapes of a start have
 
 
 def first_law(law: Law, delta: float) -> Law:
-    """Return the smooth law to begin with: the law itself where its energy is smooth at m = 0.
+    """Return the smooth law to begin with: the law itself where its energy is smooth.
 
     Of rods that are too uneven a more even one. Otherwise the variational law, at `delta` or, where
     that is the law, at its own if larger.
     """
     if isinstance(law, Stiff):
         return sharpened(law, EVEN) if _ratio(law) < UNEVEN else law
-    if is_linear(law):
+    if is_linear(law, up_to=USUAL):
         return law
     return Variational(delta=max(delta, sharpness(law, 0.0)))
+
+
+def first_laws(law: Law, delta: float) -> tuple[Law, ...]:
+    """Return the smooth laws to begin with, each where those before it lead nowhere.
+
+    One that may leap at moments beyond the usual ones is not the only one.
+    """
+    first = first_law(law, delta)
+    return (first,) if is_linear(first) or in_family(first) else (first, Variational(delta=delta))
 
 
 def sharpness(law: Law, other: float) -> float:

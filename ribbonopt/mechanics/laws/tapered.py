@@ -1,7 +1,8 @@
 """Any law along a ribbon of varying width w(s), in units of the width that Dw is made of.
 
-The energy per length is w W(u), so that strains are those of m / w, and W_Leg,w = w W_Leg(m / w);
-H' = -w' W(u). Good for |w'| << 1.
+The energy per length is w W(u), W that of a strip of this width (`at_width`), so that strains are
+those of m / w, and W_Leg,w = w W_Leg(m / w); H' = -w' W(u) where W knows no width. Good for
+|w'| << 1.
 """
 
 from __future__ import annotations
@@ -15,22 +16,7 @@ from ribbonopt.errors import ModelError
 
 from .implicit import ImplicitLaw
 from .law import ConstitutiveLaw, Stress
-from .parts import Relaxed, Singular, Switch
-
-_DECLARED = (
-    "components",
-    "variational",
-    "bounds_eta",
-    "developable",
-    "smooth",
-    "linear_at_zero",
-    "natural",
-    "spins",
-    "kinked",
-    "sheeted",
-    "switch_name",
-    "closed_moment",
-)
+from .parts import DECLARED, Relaxed, Singular, Switch
 
 
 def tapered(law: ConstitutiveLaw, width: ca.SX, position: ca.SX) -> ConstitutiveLaw:
@@ -47,7 +33,7 @@ def tapered(law: ConstitutiveLaw, width: ca.SX, position: ca.SX) -> Constitutive
             "say what a width does to them; let the law depend on s, and remove width",
             "width",
         )
-    return TaperedLaw(law, width, ca.jacobian(width, position))
+    return TaperedLaw(law.at_width(width), width, ca.jacobian(width, position))
 
 
 @dataclass(frozen=True, eq=False)
@@ -64,7 +50,7 @@ class TaperedLaw(ConstitutiveLaw):
     mixture: bool = False
 
     def __post_init__(self) -> None:
-        for name in _DECLARED:
+        for name in DECLARED:
             object.__setattr__(self, name, getattr(self.law, name))
 
     def strain(self, stress: Stress) -> ca.SX:

@@ -158,7 +158,7 @@ class DirectWunderlichLaw(WunderlichLaw):
     def direct(self) -> ConstitutiveLaw:
         return self
 
-    def indirect(self) -> ConstitutiveLaw:
+    def indirect(self) -> WunderlichLaw:
         return WunderlichLaw(self.width, self.k)
 
     def xi(self, stress: Stress) -> ca.SX:
@@ -179,6 +179,10 @@ class DirectWunderlichLaw(WunderlichLaw):
 
     def controls_for(self, stress: Stress, rates: ca.SX) -> ca.SX:
         xi = ca.atanh(rates * self.width / 2)
+        return ca.vertcat(self.bending(stress, xi), xi)
+
+    def controls_at(self, stress: Stress) -> ca.SX:
+        xi = self.indirect().xi(stress)
         return ca.vertcat(self.bending(stress, xi), xi)
 
     def relaxed(self, stress: Stress) -> Relaxed:

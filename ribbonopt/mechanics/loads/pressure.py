@@ -1,4 +1,7 @@
-"""Pressure: a force per length along the normal d1, which follows the ribbon, n' = -p d1."""
+"""Pressure: a force per length along the normal d1, which follows the ribbon, n' = -p d1.
+
+Per length as it is stretched, if it stretches: n' = -p (1 + e) d1.
+"""
 
 from __future__ import annotations
 
@@ -37,7 +40,7 @@ class Pressure(Load):
         return self.largest
 
     def force(self, section: Section, theta: Theta) -> ca.SX:
-        return self.p.at(section.s, theta) * section.d1
+        return self.p.at(section.s, theta) * section.stretched * section.d1
 
     def symmetries(self, motions: Array) -> Array:
         return np.eye(motions.shape[1])  # it follows every motion
@@ -77,11 +80,11 @@ class PlanarPressure(DeadLoad):
         return self.p.numbers()
 
     def force(self, section: Section, theta: Theta) -> ca.SX:
-        return self.p.at(section.s, theta) * section.d1
+        return self.p.at(section.s, theta) * section.stretched * section.d1
 
     def work(self, section: Section, theta: Theta) -> ca.SX:
         arm = section.r - ca.vertcat(*(theta(f"reference.{axis}") for axis in "xyz"))
-        return self.p.at(section.s, theta) * ca.dot(arm, section.d1) / 2
+        return self.p.at(section.s, theta) * section.stretched * ca.dot(arm, section.d1) / 2
 
     def total(self, s: ca.SX, theta: Theta) -> ca.SX:
         return ca.SX.zeros(3)

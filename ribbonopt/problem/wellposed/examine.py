@@ -15,7 +15,7 @@ from ribbonopt.problem.ribbon import Ribbon
 
 from .linearized import linearize
 from .motions import refuse_motions
-from .reach import held_along
+from .reach import held_along, stretch_of
 from .symmetric import refuse_asymmetry
 
 Sample = tuple[Array, Array]
@@ -125,14 +125,16 @@ def refuse_unreachable(posed: Posed) -> None:
     """
     scene = posed.given
     gap, length = gap_between_ends(scene), scene.interval[1] - scene.interval[0]
-    if gap > length * (1 + 1e-12):
+    share = stretch_of(scene)
+    if gap > length * (1 + share + 1e-12):
+        more = f", which may stretch by {share:.0%}" if share else ""
         raise ConvergenceError(
             f"unreachable: the prescribed positions of the ends are {gap:.6g} apart "
             f"(boundary.start.position, boundary.end.position), the ribbon is {length:.6g} long "
-            "(interval); bring them together or lengthen the ribbon",
+            f"(interval){more}; bring them together or lengthen the ribbon",
             status="unreachable",
         )
-    if abs(gap - length) <= length * 1e-12 and not held_along(scene):
+    if not share and abs(gap - length) <= length * 1e-12 and not held_along(scene):
         raise ConvergenceError(
             f"unreachable: the ends are {gap:.6g} apart (boundary.start.position, "
             f"boundary.end.position), as far as the ribbon is long (interval): it would have to be "
@@ -143,7 +145,7 @@ def refuse_unreachable(posed: Posed) -> None:
     if scene.supports:
         from .between import refuse_taut  # few scenes have any
 
-        refuse_taut(scene)
+        refuse_taut(scene, share)
 
 
 def refuse_idle_settings(posed: Posed, ribbon: Ribbon) -> None:
@@ -153,7 +155,8 @@ def refuse_idle_settings(posed: Posed, ribbon: Ribbon) -> None:
         return
     raise ModelError(
         f"switching: {list(scene.switching)} is of no use here: phases are for the inverted "
-        "formulation and for laws with a kink at m2 = 0 (sadowsky, regularized, homotopy), found "
-        f"{scene.formulation} and {scene.law.type}; leave it out",
+        "formulation and for laws whose strains may leap or kink (sadowsky, regularized, homotopy, "
+        f"wunderlich, extensible, sano), found {scene.formulation} and {scene.law.type}; leave "
+        "it out",
         "switching",
     )

@@ -101,8 +101,8 @@ def along_itself(conditions: Linearized, z: Array) -> Array:
     start, end, c = conditions.parts(z)
     posed, section = conditions.posed, conditions.ribbon.section_function
     for at, x, s in zip((0, conditions.nx), (start, end), posed.scene.interval, strict=True):
-        u = np.array(section(x, c, posed.values, s)[-1]).ravel()
-        result[at : at + 3, 0] = matrix_of(x[3:7])[:, 2]
+        u, e = (np.array(part).ravel() for part in section(x, c, posed.values, s)[7:9])
+        result[at : at + 3, 0] = (1 + e) * matrix_of(x[3:7])[:, 2]
         result[at + 3 : at + 7, 0] = np.array(product(x[3:7], (0.0, *u))) / 2
     return conditions.length * result
 

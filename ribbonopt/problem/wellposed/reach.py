@@ -1,4 +1,7 @@
-"""Goals of a continuation that no ribbon reaches, because its ends would be too far apart."""
+"""Goals of a continuation that no ribbon reaches, because its ends would be too far apart.
+
+A ribbon that stretches reaches a little further (`limits.STRETCH`), and need not be straight there.
+"""
 
 from __future__ import annotations
 
@@ -10,9 +13,11 @@ from ribbonopt.arrays import Array
 from ribbonopt.errors import ModelError
 from ribbonopt.mechanics.ends.boundary import gap_between_ends
 from ribbonopt.mechanics.ends.frames import components, frame_of
+from ribbonopt.mechanics.laws.catalogue import capabilities
 from ribbonopt.scene import ContinuationStage, Scene
 from ribbonopt.scene.faults import KeyPath, dotted
 from ribbonopt.scene.lens import with_value
+from ribbonopt.scene.limits import STRETCH
 from ribbonopt.scene.stages import begin_of, end_of, located_stages
 
 PLACES = 201  # along the way, and those that tell whether the distance changes
@@ -34,6 +39,11 @@ def refuse_far_goals(scene: Scene) -> None:
             _refuse_far(scene, stage, begin, end, key)
         last = end_of(stage)
         scene = scene if last is None else with_value(scene, stage.parameter, last)
+
+
+def stretch_of(scene: Scene) -> float:
+    """Return the share of its length by which a ribbon may be stretched between its ends."""
+    return STRETCH if scene.membrane is not None and capabilities(scene).stretches else 0.0
 
 
 def held_along(scene: Scene) -> bool:
@@ -62,10 +72,10 @@ def _goals(stage: ContinuationStage, path: KeyPath) -> list[tuple[KeyPath, float
 def _refuse_far(
     scene: Scene, stage: ContinuationStage, begin: float, end: float, key: KeyPath
 ) -> None:
-    name = stage.parameter
+    name, share = stage.parameter, stretch_of(scene)
 
     def slack(value: float) -> float:
-        return _slack(with_value(scene, name, value))
+        return share + _slack(with_value(scene, name, value))
 
     here = slack(begin)
     if not here >= -ROUNDING:
@@ -78,24 +88,31 @@ def _refuse_far(
     beyond = np.flatnonzero(found < -ROUNDING)
     there = with_value(scene, name, end)
     if not len(beyond):
-        if abs(slack(end)) > ROUNDING or held_along(there):
+        if share or abs(slack(end)) > ROUNDING or held_along(there):
             return
         limit = end
     else:
         first = int(beyond[0])
         limit = _limit(slack, float(values[first - 1]), float(values[first]))
-    raise ModelError(_message(there, name, begin, end, limit, dotted(key)), dotted(key))
+    raise ModelError(_message(there, name, begin, end, limit, dotted(key), share), dotted(key))
 
 
-def _message(there: Scene, name: str, begin: float, end: float, limit: float, key: str) -> str:
+def _message(
+    there: Scene, name: str, begin: float, end: float, limit: float, key: str, share: float
+) -> str:
     gap, length = gap_between_ends(there), there.interval[1] - there.interval[0]
-    if gap > length * (1 + ROUNDING):
+    if gap > length * (1 + share + ROUNDING):
         where = f"where the ends are {gap:.6g} apart and the ribbon is {length:.6g} long"
     elif limit == end:
         where = f"where the ends are as far apart as the ribbon is long, {length:.6g}, and it would"
         where += " have to be straight, but is held across that line"
     else:
         where = "and on the way to it the ends are further apart than the ribbon is long"
+    if share:
+        where += f", which may stretch by {share:.0%}"
+        return (
+            f"{key}: found {end:g}, {where}; from {begin:g} it can go up to {name} = {limit:.10g}"
+        )
     return (
         f"{key}: found {end:g}, {where}; from {begin:g} it can go up to {name} = {limit:.10g}, "
         "where it is straight and where loads grow without bound if it is held across that line; "

@@ -29,6 +29,7 @@ _NEVER_ZERO = (
     "largest",
     "tolerance",
     "distance",
+    "membrane",
 )
 
 

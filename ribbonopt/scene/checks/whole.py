@@ -77,6 +77,10 @@ def check(scene: Scene) -> list[Problem]:
         from .natural import check_natural  # few scenes have natural strains
 
         problems += check_natural(scene)
+    if scene.membrane is not None:
+        from .membrane import check_membrane  # as above
+
+        problems += check_membrane(scene, scene.membrane)
     if scene.loads.points or scene.supports:
         from .stations import check_stations  # few scenes have any
 

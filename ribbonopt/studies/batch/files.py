@@ -1,7 +1,8 @@
 """Batches on disk: a row for each ribbon, appended as it comes; nothing that is there is lost.
 
-`rows.jsonl` holds one JSON object in a line; `table.csv` has them sorted by number; `study.json`
-says which study it is; `solutions/NUMBER` are full results.
+`rows.jsonl` holds one JSON object in a line; `table.csv` has them sorted by number; `special.csv`
+the special points of branches; `study.json` says which study it is; `solutions/NUMBER` are full
+results.
 """
 
 from __future__ import annotations
@@ -20,14 +21,15 @@ from ribbonopt.output.disk import Appended
 from ribbonopt.output.places import unwritable
 from ribbonopt.output.staging import replacing
 from ribbonopt.output.table import write_table
-from ribbonopt.plain import Row
+from ribbonopt.plain import SPECIALS, Row, Rows
 
 from .cells import as_cell
 from .kept import OneEach
 from .saved import ROWS, STUDY, read_rows, read_study
+from .special import special_rows, with_columns
 from .study import Study
 
-TABLE, SOLUTIONS = "table.csv", "solutions"
+TABLE, SPECIAL, SOLUTIONS = "table.csv", "special.csv", "solutions"
 
 
 class BatchFolder:
@@ -48,7 +50,7 @@ class BatchFolder:
         self.rows, self._twice, self._finished = OneEach(), False, False
         try:
             with contextlib.ExitStack() as refused:
-                own = {ROWS, TABLE, STUDY, SOLUTIONS, *BATCH_PICTURES}
+                own = {ROWS, TABLE, SPECIAL, STUDY, SOLUTIONS, *BATCH_PICTURES}
                 self.folder = refused.enter_context(claimed(self.folder, own))
                 self._begin(resume)
                 self._claimed = refused.pop_all()  # the folder is ours until it is closed
@@ -88,9 +90,6 @@ class BatchFolder:
         if self._finished:
             return
         self._finished = True
-        names: dict[str, None] = {}
-        for row in self.rows:
-            names |= dict.fromkeys(row)
         put_all_right(self.folder / SOLUTIONS)  # of workers that were ended, and dead batches
         try:
             self._file.close()
@@ -100,11 +99,18 @@ class BatchFolder:
                 return
             if self._twice:
                 self._write_rows()
-            columns = sorted_columns(list(names), self.study.keys)
-            rows = sorted(self.rows, key=lambda row: int(row["number"]))
-            write_table(self.folder / TABLE, columns, (self._told(row) for row in rows))
+            self._write_tables()
         except OSError as error:
             raise self._full(error) from error
+
+    def _write_tables(self) -> None:
+        rows = sorted(self.rows, key=lambda row: int(row["number"]))
+        told = [self._told(with_columns(row)) for row in rows]
+        columns = sorted_columns(_names(told), self.study.keys)
+        write_table(self.folder / TABLE, columns, told)
+        if any(SPECIALS in row for row in rows):
+            special = list(special_rows(told, self.study.keys))
+            write_table(self.folder / SPECIAL, _names(special), special)
 
     def _told(self, row: Row) -> Row:
         """Return a row whose inputs are as a CSV of inputs would give them."""
@@ -155,11 +161,15 @@ class BatchFolder:
         self.rows = OneEach(read_rows(self.folder, known, self.study))
 
 
+def _names(rows: Rows) -> list[str]:
+    return list(dict.fromkeys(name for row in rows for name in row))
+
+
 def sorted_columns(names: list[str], inputs: Sequence[str]) -> list[str]:
     """Return columns: number, scene, inputs, what came out, and what it cost last."""
     first = ["number", "scene", *inputs, "status", "verified", "energy"]
     last = ["start", "iterations", "path", "note", "message", "seconds"]
-    middle = [name for name in sorted(names) if name not in (*first, *last)]
+    middle = [name for name in sorted(names) if name not in (*first, *last, SPECIALS)]
     return [name for name in (*first, *middle, *last) if name in names]
 
 

@@ -55,7 +55,7 @@ class Neighbour:
         posed, old = self.prepared.posed(scene), self.solution
         search = self.prepared.search(posed)
         attempts = search.on_mesh(old.sheets, mesh_to_begin(old), old.trajectory.ends[1:-1])
-        if self._run(attempts) and attempts.best is not None:
+        if self._run(attempts) and attempts.best is not None and _in_order(attempts.best):
             found = attempts.best
             if found.sheets or not (search.phases_help and search.better_in_phases(found)):
                 finer = self._finer(found, served=attempts.factorizations == 0)
@@ -104,6 +104,11 @@ class Neighbour:
             return analyse(found, self.finer if served else None, keep=served).factors
         except np.linalg.LinAlgError:
             return None
+
+
+def _in_order(found: Solution) -> bool:
+    """Whether all phases have a length: where one has not, others are needed, and no bar is."""
+    return bool((np.diff(found.trajectory.ends) > 0).all())
 
 
 def _same_meaning(attempts: Attempt, old: Solution) -> bool:

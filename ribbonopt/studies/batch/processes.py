@@ -186,6 +186,7 @@ def message(
             "text": ribbon.source.text,
             "set": ribbon.overrides,
             "inputs": ribbon.inputs,
+            "followed": ribbon.followed,
         }
         for ribbon in ribbons
     ]

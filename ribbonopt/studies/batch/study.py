@@ -17,6 +17,7 @@ from ribbonopt.scene.yamlio import loads_scene
 
 from .cells import as_yaml
 from .inputs import NOTHING, InputRows, Inputs
+from .special import BRANCH_COLUMNS
 
 #: of every row; a ribbon that failed has some of them only
 COLUMNS = (
@@ -24,6 +25,10 @@ COLUMNS = (
     *("start", "iterations", "path", "note", "message", "seconds"),
 )
 EQUILIBRIA = "equilibria"  # a column where scenes ask for several
+NOT_CONTINUED = (
+    "continuation: missing, the study continues every ribbon (`continue: true`); add for example "
+    "'continuation: {parameter: law.epsilon, to: 1e-4, scale: log}'"
+)
 TAKEN = "every row has that already; choose another name"
 
 
@@ -39,13 +44,15 @@ class Source:
 class Sweep:
     """A source with the inputs of its ribbons, and what holds for all of them.
 
-    `where` says where the study names each key.
+    `where` says where the study names each key; `followed` whether each ribbon is continued as its
+    scene says, and not solved alone.
     """
 
     source: Source
     common: Inputs = field(default_factory=dict)
     inputs: InputRows = NOTHING
     where: Mapping[str, str] = field(default_factory=dict)
+    followed: bool = False
 
     def check(self) -> str:
         """Read the first ribbon; return what is wrong with the scene by itself, "" if nothing.
@@ -66,6 +73,8 @@ class Sweep:
     @property
     def recorded(self) -> tuple[str, ...]:
         """Names of what rows hold for this scene alone; none of a bad scene."""
+        if self.followed:
+            return BRANCH_COLUMNS
         try:
             scene = self._scene(self.common | self.inputs[0])
         except SceneError:
@@ -77,6 +86,8 @@ class Sweep:
             scene = self._scene(inputs)
         except SceneError as error:
             return str(error)
+        if self.followed:  # what is recorded stands in a table of its own
+            return "" if scene.continuation else f"{self.source.name}: {NOT_CONTINUED}"
         taken = sorted({*scene.record} & {*COLUMNS, EQUILIBRIA, *self.inputs.keys})
         if taken:
             return f"{self.source.name}: record.{taken[0]}: {TAKEN}"
@@ -88,12 +99,13 @@ class Sweep:
 
 @dataclass(frozen=True)
 class StudyRibbon:
-    """One ribbon of a study: its number, its scene and its inputs."""
+    """One ribbon of a study: its number, its scene and its inputs, and whether it is continued."""
 
     number: int
     source: Source
     common: Inputs
     inputs: Inputs
+    followed: bool = False
 
     @property
     def overrides(self) -> list[str]:
@@ -145,7 +157,8 @@ class Study:
         numbers = itertools.count(1)
         for sweep in self.sweeps:
             for inputs in sweep.inputs:
-                yield StudyRibbon(next(numbers), sweep.source, sweep.common, inputs)
+                number, followed = next(numbers), sweep.followed
+                yield StudyRibbon(number, sweep.source, sweep.common, inputs, followed)
 
     def check(self) -> None:
         """Refuse a study of too many ribbons, or none of whose ribbons can be solved.
@@ -169,7 +182,10 @@ class Study:
     @property
     def digest(self) -> str:
         """What tells this study from others: everything that decides its rows."""
-        parts = [[sweep.source.text, sweep.common, list(sweep.inputs)] for sweep in self.sweeps]
+        parts = [
+            [sweep.source.text, sweep.common, list(sweep.inputs), *[True] * sweep.followed]
+            for sweep in self.sweeps
+        ]
         return hashlib.sha256(json.dumps(parts).encode()).hexdigest()
 
 

@@ -11,6 +11,7 @@ A study file names a scene (or several) and what is swept over it:
       list: [{parameters.a: 1}, {parameters.a: 2, law.delta: 0.1}]
       random: {count: 100, seed: 1, over: {parameters.a: {uniform: [0, 1]}}}
       csv: rows.csv                      # a column for each key
+    continue: true                       # follow the `continuation` of each; false: solve it alone
     save: failed                         # full solutions: all | failed | none
     time_limit: 60                       # seconds for a ribbon
 """
@@ -21,23 +22,25 @@ import glob
 import itertools
 import os
 from collections.abc import Mapping, Sequence
+from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
 from ribbonopt.errors import SceneError
 from ribbonopt.plain import is_number
+from ribbonopt.reading import read_text
 from ribbonopt.scene import Scene
 from ribbonopt.scene.faults import InvalidSceneError, KeyPath, Place, dotted, report, suggestion
 from ribbonopt.scene.limits import SECONDS
 from ribbonopt.scene.schema.annotations import written_keys
-from ribbonopt.scene.yamlio import plain_yaml, read_yaml
+from ribbonopt.scene.yamlio import SCENE, plain_yaml, read_yaml
 from ribbonopt.text import name_fault
 
 from .cells import as_yaml
 from .inputs import NOTHING, Inputs, fault, rows_of, text_of
 from .study import Source, Study, Sweep
 
-KEYS = ("name", "scene", "set", "sweep", "save", "time_limit")
+KEYS = ("name", "scene", "set", "sweep", "continue", "save", "time_limit")
 SAVE = ("all", "failed", "none")
 
 
@@ -77,6 +80,17 @@ def load_study(paths: Sequence[str | Path], overrides: Sequence[str] = ()) -> St
     return Study(name, tuple(sweeps), **settings)
 
 
+def is_study(path: str | Path) -> bool:
+    """Whether a path is that of a study, or of several files; False where it cannot be read."""
+    if os.path.isdir(path) or any(character in str(path) for character in "*?["):
+        return True
+    try:
+        found = plain_yaml(read_text(path, replace(SCENE, piped=False)), str(path))
+    except SceneError:
+        return False
+    return isinstance(found, dict) and ("sweep" in found or "scene" in found)
+
+
 def _named_after(file: Path) -> str:
     """Return the name of what a file says, where no other is given."""
     return "batch" if name_fault(file.stem) else file.stem
@@ -113,6 +127,11 @@ def _study(
         raise fault(("name",), "expected a name for the study and its folder of results", name)
     if wrong := name_fault(name):
         raise fault(("name",), wrong, name)
+    followed = data.get("continue", False)
+    if not isinstance(followed, bool):
+        raise fault(
+            ("continue",), "expected true or false: whether ribbons are continued", followed
+        )
     if data.get("save", "none") not in SAVE:
         raise fault(("save",), f"expected one of {', '.join(SAVE)}", data["save"])
     limit = data.get("time_limit", 1.0)
@@ -145,7 +164,8 @@ def _study(
             raise SceneError(f"--set {key}: is swept, {where.get(key, file)}; change it there")
         where[key] = f"--set {key}"
     return [
-        Sweep(_source(file, text, item, places), given | common, rows, where) for item in scenes
+        Sweep(_source(file, text, item, places), given | common, rows, where, followed)
+        for item in scenes
     ]
 
 

@@ -11,7 +11,7 @@ import os
 import sys
 import threading
 import time
-from collections.abc import Iterator
+from collections.abc import Callable, Iterator
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -42,9 +42,13 @@ class Worker:
         """Yield for every ribbon that it begins, and its row; those of `skip` are passed over."""
         before: Family | None = None
         for ribbon in chunk["ribbons"]:
-            if ribbon["number"] in chunk["skip"]:
+            known = ribbon["number"] in chunk["known"]
+            if ribbon["number"] in chunk["skip"] or (known and ribbon["followed"]):
                 continue
             yield {"at": ribbon["number"]}
+            if ribbon["followed"]:
+                yield {"row": self._followed(ribbon, chunk)}
+                continue
             row, found, family = self._solved(ribbon, before)
             before = family or before
             if ribbon["number"] not in chunk["known"]:
@@ -58,25 +62,26 @@ class Worker:
         self, ribbon: dict[str, Any], before: Family | None
     ) -> tuple[Row, Solution | None, Family | None]:
         """Return row and solution of a ribbon, and what the next one may start from."""
-        started = time.perf_counter()
-        row: Row = {"number": ribbon["number"], "scene": ribbon["source"], **ribbon["inputs"]}
         found, family = None, None
-        try:
-            scene = loads_scene(ribbon["text"], ribbon["source"], ribbon["set"])
-            row["scene"] = scene.name
-            found, start, family = solve_beside(
-                self._prepared(scene), scene, ribbon["number"], before
-            )
+
+        def solve(scene: Scene, row: Row) -> None:
+            nonlocal found, family
+            number = ribbon["number"]
+            found, start, family = solve_beside(self._prepared(scene), scene, number, before)
             row |= _outcome(found, start)
             row |= _recorded(found, row)
-        except RibbonoptError as error:
-            status = getattr(error, "status", "bad_input")
-            row |= {"status": status, "verified": False, "message": str(error)}
-        except Exception as error:  # whatever it is, the other ribbons go on
-            message = f"{type(error).__name__}: {error}"
-            row |= {"status": "error", "verified": False, "message": message}
-        row["seconds"] = time.perf_counter() - started
-        return finite(row), found, family
+
+        return _row(ribbon, solve), found, family
+
+    def _followed(self, ribbon: dict[str, Any], chunk: dict[str, Any]) -> Row:
+        """Return the row of a ribbon that is continued."""
+        from .branches import follow  # few studies ask for it
+
+        def answer(scene: Scene, row: Row) -> None:
+            place = _place(chunk, ribbon)
+            row |= follow(scene, self._prepared, chunk["save"], place, 2 * WATCH)
+
+        return _row(ribbon, answer)
 
     def _prepared(self, scene: Scene) -> Prepared:
         """Return the structure of a scene, built once."""
@@ -84,6 +89,24 @@ class Worker:
         if structure not in self._built:
             self._built[structure] = prepare(replace(scene, continuation=None))
         return self._built[structure]
+
+
+def _row(ribbon: dict[str, Any], answer: Callable[[Scene, Row], None]) -> Row:
+    """Return the row of a ribbon, to which `answer` adds, or which says why that failed."""
+    started = time.perf_counter()
+    row: Row = {"number": ribbon["number"], "scene": ribbon["source"], **ribbon["inputs"]}
+    try:
+        scene = loads_scene(ribbon["text"], ribbon["source"], ribbon["set"])
+        row["scene"] = scene.name
+        answer(scene, row)
+    except RibbonoptError as error:
+        status = getattr(error, "status", "bad_input")
+        row |= {"status": status, "verified": False, "message": str(error)}
+    except Exception as error:  # whatever it is, the other ribbons go on
+        message = f"{type(error).__name__}: {error}"
+        row |= {"status": "error", "verified": False, "message": message}
+    row["seconds"] = time.perf_counter() - started
+    return finite(row)  # type: ignore[no-any-return]
 
 
 def _outcome(found: Solution, start: str) -> Row:
@@ -117,17 +140,23 @@ def _recorded(found: Solution, row: Row) -> Row:
 def _save(chunk: dict[str, Any], ribbon: dict[str, Any], row: Row, found: Solution | None) -> None:
     """Keep the full solution where the study wants it."""
     wanted = chunk["save"] == "all" or (chunk["save"] == "failed" and not row["verified"])
-    if not wanted or found is None or not chunk["folder"]:
+    place = _place(chunk, ribbon)
+    if not wanted or found is None or place is None:
         return
     from ribbonopt.output.results import save_solution
     from ribbonopt.output.staging import staged_result
 
-    place = Path(chunk["folder"]) / "solutions" / str(ribbon["number"])
     # A worker of a batch that was killed may be there for a moment; not on disk at once, which
     # would cost as much as a solve.
     with staged_result(place, wait=2 * WATCH, durable=False) as stage:
         save_solution(found, stage.folder)
         stage.commit()
+
+
+def _place(chunk: dict[str, Any], ribbon: dict[str, Any]) -> Path | None:
+    """Return the folder of what is kept of a ribbon; None for nowhere."""
+    folder = chunk["folder"]
+    return Path(folder) / "solutions" / str(ribbon["number"]) if folder else None
 
 
 def serve() -> None:

@@ -70,7 +70,17 @@ def buckling_loads(scene: Scene, parameter: str, start: float, end: float) -> tu
     # Another formulation has the same straight states; one that minimises may not find them.
     first = with_value(replace(scene, formulation="inverted", continuation=None), parameter, start)
     prepared = prepare(first)
-    return buckling_from(prepared, prepared.solve(), parameter, start, end)
+    straight = prepared.solve()
+    found = buckling_from(prepared, straight, parameter, start, end)
+    bent = float(np.abs(straight.at_nodes["u1"]).max())
+    if not found and prepared.ribbon.law.edgewise and bent > 0:
+        raise ModelError(
+            f"{parameter}: no buckling load was found, but the ribbon is bent in its own plane "
+            "before it buckles (membrane.bending), where some may be missed; search a smaller "
+            "range, or leave membrane.bending out",
+            "membrane.bending",
+        )
+    return found
 
 
 def buckling_from(
@@ -196,7 +206,7 @@ class _States:
     @cached_property
     def _rod(self) -> Prepared | None:
         law, scene = self.prepared.ribbon.law, self.straight.scene
-        return twin_of(scene) if has_twin(law, self.parameter) else None
+        return twin_of(scene) if has_twin(law, scene, self.parameter) else None
 
     @cached_property
     def ribbon(self) -> Ribbon:

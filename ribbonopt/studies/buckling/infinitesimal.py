@@ -84,12 +84,18 @@ class Deflected:
         section = self.marked.section(x, c)
         u = ca.SX.sym("u", 3)
         rates = self.marked.rates(section, u)
-        straight = ca.substitute(rates, u, ca.SX.zeros(3))
+        # Bent in its own plane at most, which is no matter of its law.
+        law, there = self.ribbon.law, ca.SX.zeros(3)
+        if law.edgewise:
+            alone = section.rod.stress._replace(m=ca.vertcat(section.rod.stress.m[0], 0, 0))
+            there = self._at_base(ca.vertcat(law.strain(alone)[0], 0, 0))
+        straight = ca.substitute(self._at_base(rates), u, there)
+        change = ca.substitute(self._at_base(self._linear(rates)), u, there)
         # The rates are affine in u.
         bent = ca.substitute(
             self._at_base(ca.jtimes(rates, u, u)), u, self._at_base(strain(self.stress))
         )
-        return ca.vertcat(self._at_base(straight), self._at_base(self._linear(straight)) + bent)
+        return ca.vertcat(straight, change + bent)
 
     def conditions(self, points: Sequence[ca.SX]) -> dict[str, ca.SX]:
         """Conditions of the straight state, then those of the deflection.

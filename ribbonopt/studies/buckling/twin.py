@@ -9,6 +9,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from ribbonopt.attempt.structure import Structure
+from ribbonopt.mechanics.laws.catalogue import capabilities
 from ribbonopt.mechanics.laws.law import ConstitutiveLaw
 from ribbonopt.pipeline.prepared import Prepared
 from ribbonopt.problem import Posed
@@ -18,9 +19,11 @@ from ribbonopt.scene import Kirchhoff, Scene
 STIFF = Kirchhoff(B2=1.737, B3=2.391)
 
 
-def has_twin(law: ConstitutiveLaw, parameter: str) -> bool:
+def has_twin(law: ConstitutiveLaw, scene: Scene, parameter: str) -> bool:
     """Whether a rod has the same unknowns, and the parameter that moves."""
-    return not parameter.startswith("law.") and law.components == (1, 2) and not law.states
+    if parameter.startswith("law.") or law.states:
+        return False
+    return law.components == capabilities(twin_scene(scene)).components
 
 
 def twin_scene(scene: Scene) -> Scene:

@@ -37,7 +37,12 @@ class Continuation:
     ----------
     scene : Scene
         The scene, whose `continuation` says what is followed.
+    near : Solution or None
+        An equilibrium, of another law perhaps, near which the first one is looked for before the
+        automatic start; none unless it is set.
     """
+
+    near: Solution | None = None
 
     def __init__(self, scene: Scene, prepared: Prepared | None = None) -> None:
         """Prepare; nothing is solved yet. `prepared` is the same structure, built before.
@@ -74,6 +79,12 @@ class Continuation:
         """Follow all stages from the start."""
         return self.resume(Nothing())
 
+    @property
+    def first_scene(self) -> Scene:
+        """The scene where the first stage begins."""
+        curve = self.curve(0, self.scene)
+        return curve.scene_at(curve.begin)
+
     def curve(self, stage: int, scene: Scene) -> Curve:
         """Return the curve of a stage that begins at a scene.
 
@@ -105,4 +116,5 @@ class Continuation:
         """Return a stage that begins where the one before has ended."""
         solution = None if before is None else before.solution
         curve = self.curve(number, self.scene if solution is None else solution.scene)
-        return RibbonStage(self.prepared, curve, self.recorder, solution)
+        near = self.near if number == 0 else None
+        return RibbonStage(self.prepared, curve, self.recorder, solution, near)

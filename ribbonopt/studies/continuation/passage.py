@@ -12,14 +12,17 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ribbonopt.arrays import Array
+from ribbonopt.checks.arcs import Arcs, leaps, sign_changes
 from ribbonopt.solution.solution import Solution
 
 from .leaving import admitted, leaving
 from .phases import Change, What, margins, one_sign
+from .refound import on_finer_meshes
 from .relaid import in_other_phases
 from .segment import Segment
 from .walk.points import FOLD, KINK, POINT, Point
 from .walk.protocol import Passage, Trial
+from .walk.tangents import near
 
 if TYPE_CHECKING:
     from .ribbons import RibbonEquations
@@ -38,7 +41,9 @@ def passage(
     """
     if not point.solution.sheets:
         kind = one_sign(point.solution)
-        if not kind or (trial.converged and one_sign(trial.solution) == kind):
+        if not kind:
+            return _in_its_phases(equations, point, trial, expected)
+        if trial.converged and one_sign(trial.solution) == kind:
             return None
         # A trial that did not converge may have stumbled over the leap of a law without phases.
         if not (trial.converged or equations.prepared.search(point.solution.posed).needs_phases):
@@ -77,13 +82,18 @@ def _passed(
     }
     if inside and not any(arc < way.whole / 2 for arc in arcs.values()):
         return _merged(equations, a, float(trial.unknowns[-1]), inside)
-    return _behind(equations, a, way.point(min(arcs.values())), beyond)
+    first = min(arcs, key=lambda change: arcs[change])
+    return _behind(equations, a, way.point(arcs[first]), first, beyond)
 
 
 def _behind(
-    equations: RibbonEquations, a: Point[Solution], event: Point[Solution], beyond: list[Change]
+    equations: RibbonEquations,
+    a: Point[Solution],
+    event: Point[Solution],
+    change: Change,
+    beyond: list[Change],
 ) -> Passage[Solution]:
-    """Return how a branch goes on behind an event, at which changes are due."""
+    """Return how a branch goes on behind an event, where one of the changes due has come."""
     ways = leaving(equations, event)
     if not ways:
         raise np.linalg.LinAlgError(_told(a.solution, beyond))
@@ -91,7 +101,11 @@ def _behind(
     beside = stretch[0] if stretch else first
     kind = FOLD if event.tangent[-1] * beside.tangent[-1] < 0 else POINT
     crossed = len(ways) > 1 or beside.sign * event.sign < 0
-    return Passage(a, replace(event, kind=KINK if crossed else kind), stretch, first)
+    kind = KINK if crossed else kind
+    event = replace(event, kind=kind)
+    wanted = kind != POINT and equations.curve.special
+    located = on_finer_meshes(equations, event, change) if wanted else None
+    return Passage(a, event, stretch, first, located)
 
 
 def _ahead(
@@ -110,7 +124,8 @@ def _ahead(
     change = min(arcs, key=lambda c: arcs[c], default=None)
     if change is None or not arcs[change] < way.whole:
         return None
-    return _behind(equations, a, way.point(way.extrapolated(change, arcs[change])), [change])
+    event = way.point(way.extrapolated(change, arcs[change]))
+    return _behind(equations, a, event, change, [change])
 
 
 def _on_sheet(
@@ -121,6 +136,49 @@ def _on_sheet(
     attempt = search.on_mesh((kind,), point.solution.mesh)
     point = replace(point, solution=attempt.restored(point.unknowns[:-1]))
     return point, equations.correct_at(point.solution, trial.unknowns)
+
+
+def _in_its_phases(
+    equations: RibbonEquations, point: Point[Solution], trial: Trial[Solution], expected: Array
+) -> Passage[Solution] | None:
+    """Return the same for a point whose law leaps somewhere, but not where its switch has zeros.
+
+    It is smooth without phases, which only tell where one begins with a leap. None where the trial
+    has none either.
+    """
+    search = equations.prepared.search(point.solution.posed)
+    if not leaps(point.solution) or (trial.converged and not search.changes_sign(trial.solution)):
+        return None
+    begin = _posed_again(equations, point, sign_changes(point.solution, every=True))
+    if begin is None:
+        return None
+    gap = equations.reduced(point.solution, expected - point.unknowns)
+    arc = equations.metric.product(gap, equations.reduced(point.solution, point.tangent))
+    ahead = begin.unknowns + arc * begin.tangent
+    there = equations.correct_at(begin.solution, ahead)
+    found = passage(equations, begin, there, ahead)
+    if found is not None or not there.converged:
+        return found
+    way = admitted(equations, begin, there)
+    return None if way is None else Passage(begin, begin, None, way)
+
+
+def _posed_again(
+    equations: RibbonEquations, point: Point[Solution], arcs: Arcs
+) -> Point[Solution] | None:
+    """Return a point in phases between its own sign changes, None where it is none."""
+    search = equations.prepared.search(point.solution.posed)
+    try:
+        attempt, w = in_other_phases(search, point.solution, arcs.kinds, arcs.switches)
+        found = equations.correct_at(attempt.restored(w), np.append(w, point.position))
+        if not found.converged:
+            return None
+        ahead = equations.reduced(point.solution, point.tangent)
+        local, tangent = near(equations, found.solution, found.unknowns, ahead)
+    except np.linalg.LinAlgError:
+        return None
+    parts = replace(point, solution=found.solution, unknowns=found.unknowns)
+    return replace(parts, tangent=tangent, sign=local.sign)
 
 
 def _lost(solution: Solution, expected: Array) -> list[Change]:

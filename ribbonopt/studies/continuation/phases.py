@@ -100,7 +100,7 @@ def spares(solution: Solution, phase: int) -> list[tuple[float, float, int]]:
     """Return what a mixture has to spare where that is least: at either end, or inside.
 
     Position in the phase, 0 to 1; by how much |u2| = 2 |n2 u3 / K| is below |u3|, relative to that
-    (see `ribbonopt.mechanics.laws.sadowsky.MixtureLaw`); sign of u2.
+    (see `ribbonopt.mechanics.laws.mixture.MixtureLaw`); sign of u2.
     """
     sigma, (n2, n3, m1, m3) = _along(solution, phase, "n2", "n3", "m1", "m3")
     ratio = 2 * n2 / (n3 + (m3**2 - m1**2) / 4)

@@ -167,7 +167,7 @@ class RibbonEquations:
         """The same with a linear law, where straight states have a linearisation."""
         if "rod" not in self._kept:
             self._kept["rod"] = None
-            if has_twin(self.prepared.ribbon.law, self.curve.name):
+            if has_twin(self.prepared.ribbon.law, self.curve.scene, self.curve.name):
                 curve = Curve(twin_scene(self.curve.scene), self.curve.stage)
                 twin = twin_of(curve.scene_at(curve.start))
                 self._kept["rod"] = RibbonEquations(twin, curve, self.metric)

@@ -20,12 +20,16 @@ from .ribbons import RibbonEquations
 
 @dataclass(frozen=True, eq=False)
 class RibbonStage:
-    """One stage; `before` is the solution that the stage before has ended with."""
+    """One stage; `before` is the solution that the stage before has ended with.
+
+    `near` is one near which the first is looked for, before the automatic start.
+    """
 
     prepared: Prepared
     curve: Curve
     recorder: Recorder
     before: Solution | None = None
+    near: Solution | None = None
 
     @property
     def range(self) -> Curve:
@@ -57,7 +61,8 @@ class RibbonStage:
         """
         curve = self.curve
         scene = curve.scene_at(curve.begin)
-        found = self.prepared.solve(scene, guess=self.before, fallback=self.before is None)
+        guess = self.before or self.near
+        found = self.prepared.solve(scene, guess=guess, fallback=self.before is None)
         if not found.verified:
             raise ConvergenceError(
                 f"no solution to begin with, at {curve.name} = {curve.stage.from_:g}: "

@@ -122,3 +122,23 @@ def test_phases_that_a_scene_names_begin_on_the_side_where_the_ribbon_is(
     found = given_arcs(source, named)
     assert found.kinds == (mirror, -mirror, mirror)
     np.testing.assert_allclose(found.switches, (0.2, 0.6))
+
+
+def test_changes_without_a_leap_count_where_a_phase_would_end_on_the_other_side() -> None:
+    # The switch changes its sign at .2, .4, .6 and .8; the law leaps beyond a twist alone.
+    m2 = np.prod([STAGES - place for place in (0.2, 0.4, 0.6, 0.8)], axis=0)
+    m2 = m2 / np.abs(m2).max()
+
+    def leaping(*places: float) -> Array:
+        return np.max([np.abs(STAGES - place) < 0.05 for place in places], axis=0) * 0.5
+
+    nowhere = sign_changes(ribbon(1.0, m2, np.zeros(200)))
+    assert nowhere.kinds == (1,)
+    one = sign_changes(ribbon(1.0, m2, leaping(0.4)))
+    assert one.kinds == (-1, 1)
+    np.testing.assert_allclose(one.switches, [0.4], atol=1e-3)
+    apart = sign_changes(ribbon(1.0, m2, leaping(0.2, 0.6)))
+    assert apart.kinds == (1, -1, 1, -1)
+    np.testing.assert_allclose(apart.switches, [0.2, 0.4, 0.6], atol=1e-3)
+    beside = sign_changes(ribbon(1.0, m2, leaping(0.4, 0.6)))
+    assert beside.kinds == (-1, 1, -1)

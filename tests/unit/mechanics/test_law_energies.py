@@ -14,9 +14,11 @@ from scipy.optimize import minimize_scalar
 from ribbonopt.mechanics.laws import relations as laws
 from ribbonopt.mechanics.laws.blended import HomotopyLaw, RegularizedLaw
 from ribbonopt.mechanics.laws.catalogue import LAWS, law_class
+from ribbonopt.mechanics.laws.extensible import ExtensibleLaw
 from ribbonopt.mechanics.laws.kirchhoff import KirchhoffLaw
 from ribbonopt.mechanics.laws.law import RibbonLaw
 from ribbonopt.mechanics.laws.sadowsky import SadowskyLaw, SingleSheetLaw
+from ribbonopt.mechanics.laws.sano import SanoLaw
 from ribbonopt.mechanics.laws.variational import VariationalLaw
 
 Pairs = np.ndarray
@@ -28,6 +30,8 @@ WITH_ENERGY = [
     SingleSheetLaw(-1),
     VariationalLaw(0.3),
     VariationalLaw(0.01),
+    ExtensibleLaw(0.2, 0.1, 0.3),  # convex at all strains of these tests
+    SanoLaw(1, 2, 0.05),
 ]
 with_energy = pytest.mark.parametrize("law", WITH_ENERGY, ids=str)
 convex = pytest.mark.parametrize(
@@ -55,6 +59,7 @@ def moments_of(law: RibbonLaw) -> Pairs:
 
 def test_every_variational_law_has_both_energies_and_no_other_has_one() -> None:
     numbers = {"B2": 1, "B3": 2, "chi": 1, "epsilon": 0.1, "rho": 0.5, "delta": 0.1}
+    numbers |= {"width": 0.2, "thickness": 0.1, "poisson_ratio": 0.3, "zeta": 0.05}
     for kind in (kind for kind in map(law_class, LAWS) if issubclass(kind, RibbonLaw)):
         law = kind(**{name: numbers[name] for name in kind.__dataclass_fields__})
         assert (law.stored(1.0, 0.5) is not None) is law.variational

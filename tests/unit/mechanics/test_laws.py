@@ -75,14 +75,14 @@ def axes() -> Pairs:
 
 
 def test_every_law_is_tested() -> None:
-    # These have their own files: test_rod_law.py, test_wunderlich_law.py.
-    assert {*CASES, "rod", "wunderlich"} == set(LAWS)
+    # These have their own files: test_rod_law.py, test_wunderlich_law.py, test_quartic_laws.py.
+    assert {*CASES, "rod", "wunderlich", "extensible", "sano"} == set(LAWS)
 
 
 def test_laws_of_scenes_and_of_mechanics_have_the_same_names_and_fields() -> None:
     written = {cls().type: [f.name for f in fields(cls) if f.name != "type"] for cls in LAW_CLASSES}
     assert set(written) == set(LAWS)
-    for name in CASES:
+    for name in (*CASES, "extensible", "sano"):
         assert written[name] == [f.name for f in fields(law_class(name))]
 
 

@@ -5,8 +5,8 @@ import re
 from hypothesis import given
 from hypothesis import strategies as st
 
-from ribbonopt.output.report import _number as number
-from ribbonopt.output.report import _upwards as upwards
+from ribbonopt.output.digits import digits as number
+from ribbonopt.output.digits import upwards
 
 errors = st.floats(1e-14, 1e3)
 values = st.floats(1e-8, 1e8) | st.floats(-1e8, -1e-8)

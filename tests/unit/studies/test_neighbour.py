@@ -9,8 +9,9 @@ import pytest
 
 from ribbonopt.accuracy.estimate import analyse, relative_error
 from ribbonopt.pipeline.prepared import Prepared, prepare
-from ribbonopt.scene import Scene, load_scene
+from ribbonopt.scene import Scene, load_scene, loads_scene
 from ribbonopt.solvers.newton import NewtonSolver
+from ribbonopt.studies.batch.family import solve_beside
 from ribbonopt.studies.batch.neighbour import Neighbour
 
 CONFIGS = Path(__file__).parents[3] / "configs"
@@ -49,6 +50,26 @@ def walk(prepared: Prepared, epsilons: list[float], *more: str) -> list[Neighbou
         assert beside is not None
         found.append(beside)
     return found
+
+
+def test_a_phase_without_length_is_no_neighbour() -> None:
+    """From one arch to the next a phase of Sadowsky's ribbon shrinks beyond nothing."""
+    text = """
+name: arch
+law: {type: sadowsky}
+parameters: {turn: 1.0}
+boundary:
+  start: {support: clamped, position: [0, 0, 0], directors: identity}
+  end: {support: clamped, position: [0, 0.05, 0.8], directors: {turns: [{z: turn}]}}
+tolerance: 1e-6
+"""
+    built, family, phases = prepare(loads_scene(text)), None, []
+    for number, turn in enumerate((1.5, 1.0, 0.2)):
+        scene = loads_scene(text, overrides=[f"parameters.turn={turn}"])
+        found, _, family = solve_beside(built, scene, number, family)
+        assert found.verified
+        phases.append(len(found.sheets))
+    assert phases[-1] < phases[0]
 
 
 def test_neighbours_are_the_solutions_of_their_scenes(prepared: Prepared) -> None:

@@ -61,12 +61,15 @@ class Passage(Generic[S]):
         is singular.
     after : Point
         The first point in the next layout, finished.
+    located : Point or None
+        The event as exact as asked, in a layout of its own; None where the event itself does.
     """
 
     begin: Point[S]
     event: Point[S]
     stretch: tuple[Point[S], Point[S]] | None
     after: Point[S]
+    located: Point[S] | None = None
 
 
 class Linearised(Protocol):

@@ -28,7 +28,8 @@ LONGEST = 0.5  # arclength of a step where the position turns
 DIGITS = 1e-12  # of a position, relative to the span
 DOUBTS = 3  # times that a step is shortened because something on it was not resolved
 JUMPED = "not where the branch was going: it may have changed to another equilibrium"
-UNRESOLVED = "not resolved: {} on the way from the point before"
+NOT_RESOLVED = "not resolved"
+UNRESOLVED = NOT_RESOLVED + ": {} on the way from the point before"
 
 
 class Stepper(Generic[S]):
@@ -112,7 +113,7 @@ class Stepper(Generic[S]):
         parts = [self._special(passed.begin, passed.event, goal)]
         special = list(parts[0].points)
         if self.range.special and passed.event.kind != POINT:
-            special.append(passed.event)
+            special.append(passed.located or passed.event)
         if passed.stretch is not None:
             parts.append(self._special(*passed.stretch, goal))
             special += parts[1].points

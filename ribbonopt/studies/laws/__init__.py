@@ -1,0 +1,1 @@
+"""One scene, branch or study under several laws, side by side."""
