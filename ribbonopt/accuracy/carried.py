@@ -28,7 +28,7 @@ def reaction_errors(solution: Solution) -> tuple[float, ...]:
     bar = SAFETY * found.more if found.known else math.nan
     ours, theirs = (
         [place.force for place in reactions(each)]
-        for each in (solution, replace(solution, trajectory=found.better))
+        for each in (solution, replace(solution, trajectory=found.other))
     )
     size = max((float(np.abs(force).max()) for force in ours), default=0.0)
     gaps = (float(np.abs(a - b).max()) for a, b in zip(ours, theirs, strict=True))

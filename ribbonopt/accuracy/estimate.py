@@ -8,6 +8,8 @@ solution is the estimate, and four times that the bar.
 Two schemes agree, and are wrong, where the stages of both step over a layer of the law. So the law
 says where its layers are, and what is conserved witnesses: where either finds more than the schemes
 differ by, the local error is that, and the errors of the answer grow with it.
+
+A minimum is compared with the answer on elements twice as wide instead, see `compared`.
 """
 
 from __future__ import annotations
@@ -20,20 +22,26 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ribbonopt.arrays import Array
+from ribbonopt.errors import ModelError
 from ribbonopt.mechanics.outputs import own_name
+from ribbonopt.scene import Ipopt
 from ribbonopt.solution.potential import dead_force_of
 from ribbonopt.solution.solution import Solution
 from ribbonopt.solution.trajectory import Trajectory
 from ribbonopt.solvers.condense import CondensedSystem
 from ribbonopt.solvers.protocols import Factors
 
-from .gaps import LEAST, RESOLVED, gaps_at_nodes, gaps_between
+from .compared import compared
+from .gaps import LEAST, RESOLVED, gaps_at_nodes, gaps_between, sizes_of
 from .layers import Layers, clear_of, layers, overlooked
 from .spin import spins
 
 UNIT = 3e-16  # local error by rounding alone
 SAFETY = 4.0  # bar over estimate: what the next better scheme itself may miss
 DOUBTFUL = 3.0  # times the difference of the schemes, from which on errors are not known,
+#: times solver tolerance^(2/3): of a minimum with a jump. The barrier of its inequality costs
+#: strains min(tol / d^2, sqrt(tol / d)) at the distance d, where elements are as wide
+BARRIER = 30.0
 SMALL = 1e-4  # unless they are smaller than this all the same
 BLURRED = 1e-14  # of the length: by how much rounding moves a layer, over that by which it may
 USUAL = 1e-8  # tolerance of scenes that have none
@@ -42,12 +50,13 @@ QUIET = 1e-12  # local errors that are rounding
 
 @dataclass(frozen=True, eq=False)
 class Analysis:
-    """What the next better scheme says of a solution.
+    """What the next better scheme says of a solution; of a minimum, that on coarser elements.
 
     Attributes
     ----------
-    better : Trajectory
-        The solution after one Newton step of that scheme.
+    trajectory, other : Trajectory
+        What elements are of, and the solution after one Newton step of that scheme. Of a minimum
+        both the answer on the coarser elements: what the solution is compared with.
     local : (N,) array
         Local error of every element: what it adds to the states at its end, each state relative to
         its size along the ribbon.
@@ -64,9 +73,12 @@ class Analysis:
         Singularities of the law near each phase.
     factors : Factors or None
         Factors of the better scheme, if they were to be kept.
+    least : float
+        What the solver leaves of the relative error on any mesh, where that is more than rounding.
     """
 
-    better: Trajectory
+    trajectory: Trajectory
+    other: Trajectory
     local: Array
     inside: Array
     errors: Mapping[str, float]
@@ -75,10 +87,13 @@ class Analysis:
     known: bool
     layers: tuple[Layers, ...]
     factors: Factors | None = None
+    least: float = 0.0
 
 
 def analyse(solution: Solution, near: Factors | None = None, *, keep: bool = False) -> Analysis:
-    """Analyse a solution of a square problem; LinAlgError if its equations are singular.
+    """Analyse a solution; LinAlgError if its equations are singular.
+
+    ModelError for a minimum that was found on one mesh only.
 
     `near` are factors kept from a solution on the same mesh, so near that with its own factors
     Newton's method contracted by q: the errors then come out with a relative error of q / (1 - q).
@@ -134,6 +149,8 @@ def _worst(errors: Mapping[str, float], sizes: Mapping[str, float]) -> tuple[flo
 
 
 def _analysed(solution: Solution, near: Factors | None, keep: bool) -> Analysis:
+    if solution.problem.recovered:
+        return _of_minimum(solution)
     trajectory, tolerance = solution.trajectory, solution.posed.scene.tolerance or USUAL
     dense = trajectory.dense
     finer, split = dense.refined()
@@ -151,7 +168,7 @@ def _analysed(solution: Solution, near: Factors | None, keep: bool) -> Analysis:
     local = np.abs(residuals.nodes / size).max(axis=1).reshape(-1, split).sum(axis=1)
     near_by = tuple(layers(trajectory, i) for i in range(len(trajectory.problem.phases)))
     clear = clear_of(trajectory, near_by, BLURRED / tolerance)
-    errors, sizes = gaps_at_nodes(trajectory, better, split, clear), _sizes(trajectory)
+    errors, sizes = gaps_at_nodes(trajectory, better, split, clear), sizes_of(trajectory)
     witnessed = np.maximum(_witness(better, split), overlooked(trajectory, near_by))
     local, doubt = _more(local, witnessed)
     # Rounding of one element counts as its local error does.
@@ -170,7 +187,43 @@ def _analysed(solution: Solution, near: Factors | None, keep: bool) -> Analysis:
         errors["states"] = max(errors["states"], float(local.max()))
     kept = factors if keep else None
     known = doubt <= DOUBTFUL or _worst(errors, sizes)[0] <= SMALL
-    return Analysis(better, local, inside, errors, sizes, more, known, near_by, kept)
+    return Analysis(trajectory, better, local, inside, errors, sizes, more, known, near_by, kept)
+
+
+def _of_minimum(solution: Solution) -> Analysis:
+    coarse, fine = solution.coarser, solution.trajectory
+    if coarse is None:
+        raise ModelError(
+            "the answer of the energy formulation has no bars: it was found on one mesh only, with "
+            "nothing to compare it with; give the scene a tolerance, or use another formulation",
+            "tolerance",
+        )
+    near_by = tuple(layers(coarse, i) for i in range(len(coarse.problem.phases)))
+    sizes, scene = sizes_of(fine), solution.posed.scene
+    least = scene.solver.tolerance if isinstance(scene.solver, Ipopt) else Ipopt().tolerance
+    open_in = least / (scene.tolerance or USUAL)
+    errors, local, inside = compared(coarse, fine, near_by, sizes, open_in)
+    local, more = _more(local, overlooked(coarse, near_by))
+    rounding = least * len(fine.nodes)  # costates take up what each element leaves
+    jumps = any(near.jump.any() for near in near_by)
+    barrier = BARRIER * least ** (2 / 3) if jumps else 0.0
+    left = dict.fromkeys(errors, max(rounding, barrier))
+    left |= dict.fromkeys(("energy", "potential"), rounding)  # of strains they know the square
+    # Strains are controls of their elements: what other elements overlook moves them as the loads.
+    strains = dict.fromkeys(("u0", "u", RESOLVED), sizes["u0"])
+    moved = max(errors["n0"], errors["m0"]) / max(sizes["n0"], LEAST)
+    errors = {
+        name: error + (more - 1) * min(error, moved * strains.get(name, np.inf))
+        for name, error in errors.items()
+    }
+    errors = {
+        name: max(error, left[name] * max(sizes.get(name, 0.0), LEAST))
+        for name, error in errors.items()
+    }
+    # What a jump costs at most is known, of other layers it is a guess.
+    known = jumps or more <= DOUBTFUL or _worst(errors, sizes)[0] <= SMALL
+    parts = coarse, coarse, local, inside, errors, sizes, more, known, near_by
+    return Analysis(*parts, least=SAFETY * left["n0"])
 
 
 def _of_rod(trajectory: Trajectory) -> NDArray[np.intp]:
@@ -197,19 +250,3 @@ def _witness(better: Trajectory, split: int) -> Array:
         steps = np.abs(np.diff(nodes[name])) / scale
         found = np.maximum(found, steps.reshape(-1, split).sum(axis=1))
     return found
-
-
-def _sizes(trajectory: Trajectory) -> dict[str, float]:
-    """Return what the errors are relative to."""
-    start = trajectory.at_nodes
-    loads = max(float(np.abs(start[name][0]).max()) for name in ("n", "m"))
-    strains = float(np.abs(trajectory.at_stages["u"]).max())
-    return {
-        "n0": loads,
-        "m0": loads,
-        "u0": strains,
-        "H0": max(loads, abs(float(start["H"][0]))),
-        "energy": abs(trajectory.energy),
-        "states": 1.0,
-        RESOLVED: strains,
-    }

@@ -51,6 +51,22 @@ def gaps_at_nodes(
     return errors | {"u": strains, RESOLVED: resolved}
 
 
+def sizes_of(trajectory: Trajectory) -> dict[str, float]:
+    """Return what the errors of the answers are relative to."""
+    start = trajectory.at_nodes
+    loads = max(float(np.abs(start[name][0]).max()) for name in ("n", "m"))
+    strains = float(np.abs(trajectory.at_stages["u"]).max())
+    return {
+        "n0": loads,
+        "m0": loads,
+        "u0": strains,
+        "H0": max(loads, abs(float(start["H"][0]))),
+        "energy": abs(trajectory.energy),
+        "states": 1.0,
+        RESOLVED: strains,
+    }
+
+
 def gaps_between(
     trajectory: Trajectory,
     better: Trajectory,

@@ -35,12 +35,14 @@ Complex = NDArray[np.complex128]
 class Layers:
     """Singularities near one phase: relative positions (k,), and by how much strains change.
 
-    Where they `fade` (k,), by that times the distance; nowhere by default.
+    Where they `fade` (k,), by that times the distance; where they `jump` (k,) they are smooth on
+    either side; nowhere by default.
     """
 
     places: Complex
     sizes: Array
     fades: NDArray[np.bool_] | None = None
+    jumps: NDArray[np.bool_] | None = None
 
     @classmethod
     def none(cls) -> Layers:
@@ -51,6 +53,11 @@ class Layers:
     def fade(self) -> NDArray[np.bool_]:
         """Which of them fade."""
         return np.zeros(len(self), bool) if self.fades is None else self.fades
+
+    @property
+    def jump(self) -> NDArray[np.bool_]:
+        """Which of them jump."""
+        return np.zeros(len(self), bool) if self.jumps is None else self.jumps
 
     def __len__(self) -> int:
         """Return how many there are."""
@@ -68,7 +75,8 @@ class Layers:
         over = np.where(np.abs(x.real) <= 1, widths, np.minimum(widths, beside))
         sizes = self.sizes[:, None] * np.where(self.fade[:, None], over, 1.0)
         missed = sizes * over * rho ** -(order + 1.0)
-        return np.asarray(np.where(rho < seen(degree), SHARE * missed, 0.0).max(axis=0))
+        unseen = np.where(self.jump[:, None], np.abs(x.real) <= 1, rho < seen(degree))
+        return np.asarray(np.where(unseen, SHARE * missed, 0.0).max(axis=0))
 
     def close(self, nodes: Array) -> NDArray[np.bool_]:
         """Elements (n,) in which strains change faster than the nodes show."""
@@ -88,6 +96,8 @@ class Layers:
         larger = (self.sizes * depth / target) ** (1 / (order + 1))
         larger = np.maximum(larger, seen(degree))
         widths = 4 * distance / (larger - 1 / larger)
+        # Beside a jump nothing is to be resolved: only the element that holds it is to be narrow.
+        widths[:, self.jump] = np.maximum(distance, target / self.sizes / SHARE)[:, self.jump]
         matters = self.sizes * np.where(self.fade, distance**2, 1.0) > target
         return np.asarray(np.where(matters, widths, np.inf).min(axis=1))
 
@@ -131,8 +141,8 @@ def layers(trajectory: Trajectory, phase: int) -> Layers:
     # In a moment that fades away everything is near to zero, and of no account.
     near &= sizes > FAINT * rows[:, :, 2].max()
     stage, which = np.nonzero(near)
-    fade = rows[stage, which, 3] > 0
-    return Layers(sigma[stage] + offset[stage, which], sizes[stage, which], fade)
+    places, kind = sigma[stage] + offset[stage, which], rows[stage, which, 3]
+    return Layers(places, sizes[stage, which], kind > 0, kind < 0)
 
 
 def clear_of(

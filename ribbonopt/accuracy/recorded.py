@@ -35,7 +35,7 @@ def recorded_errors(solution: Solution) -> dict[str, float]:
     if not solution.scene.record:
         return {}
     found = analyse(solution)
-    better = replace(solution, trajectory=found.better)
+    better = replace(solution, trajectory=found.other)
     bar = SAFETY * found.more if found.known else math.nan
     result = {}
     for name, text, s in _formulas(solution):

@@ -11,6 +11,7 @@ import casadi as ca
 import numpy as np
 
 from ribbonopt.accuracy.carried import reaction_errors
+from ribbonopt.accuracy.compared import alone
 from ribbonopt.accuracy.estimate import estimate_error
 from ribbonopt.checks.phase_words import switch_of
 from ribbonopt.checks.topology import count_half_twists
@@ -133,7 +134,7 @@ def _recorded(solution: Solution) -> dict[str, Any]:
     with np.errstate(all="ignore"):
         values = recorded(solution)
         try:
-            unknown = solution.problem.recovered or lacks_linearisation(solution)
+            unknown = alone(solution) or lacks_linearisation(solution)
             errors = names if unknown else recorded_errors(solution)
         except np.linalg.LinAlgError:
             errors = names
@@ -164,7 +165,10 @@ def _reactions(solution: Solution) -> list[dict[str, Any]]:
 
 
 def bars_of(solution: Solution) -> dict[str, float | None]:
-    """Return bars of the answer by name, None without convergence or linearisation, of minima."""
+    """Return bars of the answer by name, None without convergence or linearisation.
+
+    And for minima on one mesh only.
+    """
     if _unknown(solution):
         return dict.fromkeys(ANSWERS)
     try:
@@ -176,7 +180,7 @@ def bars_of(solution: Solution) -> dict[str, float | None]:
 def _unknown(solution: Solution) -> bool:
     """Whether there can be no bars."""
     without = not solution.status.converged or lacks_linearisation(solution)
-    return without or bool(solution.problem.recovered)
+    return without or alone(solution)
 
 
 def versions() -> dict[str, str]:

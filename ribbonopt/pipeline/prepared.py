@@ -113,7 +113,7 @@ class Prepared:
         started = time.perf_counter()
         search = self.search(scene)
         done = search.run_smooth(guess) if isinstance(guess, Solution) else search.run(guess)
-        return self._with_costs(search, time.perf_counter() - started, done)
+        return self._with_costs(search, started, done)
 
     def search(self, scene: Scene | Posed | None = None) -> Search:
         """Return a search for solutions of a scene of this structure; nothing is solved yet."""
@@ -173,9 +173,9 @@ class Prepared:
             guesses = partial(self.automatic.guesses, posed, search.ledger)
             search = from_nothing(search, guesses, prepare)
             done = search.settled
-        return self._with_costs(search, time.perf_counter() - started, done)
+        return self._with_costs(search, started, done)
 
-    def _with_costs(self, search: Search, seconds: float, done: bool) -> Solution:
+    def _with_costs(self, search: Search, started: float, done: bool) -> Solution:
         """Return the best solution found, with what it has cost."""
         ledger, best = search.ledger, search.best
         if best is None:
@@ -190,7 +190,7 @@ class Prepared:
             best = without_phases(search, self, prepare) or best
         return replace(
             best,
-            timings=ledger.timings(self.seconds, seconds),
+            timings=ledger.timings(self.seconds, time.perf_counter() - started),
             iterations=ledger.iterations,
             given_up=(*ledger.given_up, *other_phases(search)),
             fell_back=tuple(ledger.fell_back.values()),
@@ -240,7 +240,7 @@ def prepare(scene: Scene) -> Prepared:
     started = time.perf_counter()
     posed = Posed.of(validate_scene(scene))
     structure = Structure.of(posed)
-    refuse_idle_settings(posed, structure.ribbon, structure.problem)
+    refuse_idle_settings(posed, structure.ribbon)
     examine(structure.ribbon, structure.problem, posed)
     structure.build()
     return Prepared(structure, time.perf_counter() - started)

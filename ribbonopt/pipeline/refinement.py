@@ -6,13 +6,13 @@ of the answer is small enough. Each solve starts on the solution before, by Newt
 
 from __future__ import annotations
 
-import time
 from collections.abc import Callable
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ribbonopt.accuracy.compared import alone
 from ribbonopt.accuracy.estimate import SAFETY, analyse, relative_error
 from ribbonopt.accuracy.layers import Layers
 from ribbonopt.accuracy.remesh import (
@@ -32,16 +32,20 @@ from ribbonopt.solution.solution import Solution
 from ribbonopt.solvers import Status
 from ribbonopt.transcription import Mesh
 
+from .halving import AttemptOn, Halving
+
 if TYPE_CHECKING:
-    from ribbonopt.attempt.attempt import Attempt
     from ribbonopt.problem import Ribbon
     from ribbonopt.scene import Scene
+    from ribbonopt.transcription.structure import Blocks
 
 ROUNDS = 20
 SLOW = 0.3  # share of the error before that a round should leave
 AIM = 0.5  # share of the tolerance that a new mesh aims at
 CLOSE = 10.0  # times the tolerance, from where on a mesh that helped little was not fine enough
 GROUND = 2e-14  # local error of an element that is rounding
+MOST = 190  # elements of a minimum, of a phase
+LEFT = 3.0  # times what the solver leaves, below which finer meshes are of little use
 GROWTH = 2.0  # most that the number of elements grows in a round
 
 
@@ -49,7 +53,7 @@ def refine(
     solution: Solution,
     tolerance: float,
     ribbon: Ribbon,
-    attempt_on: Callable[[Mesh, Array], Attempt],
+    attempt_on: AttemptOn,
     aim: float = AIM,
 ) -> Solution:
     """Return a verified solution whose error, relative to the sizes of the answer, is small enough.
@@ -63,7 +67,7 @@ def refine(
     ribbon
         Mechanics, to verify what comes out.
     attempt_on
-        Gives the means to solve on a mesh, phases meeting at given fractions of the length.
+        Gives the means to solve on a mesh.
     aim
         Share of the tolerance that a new mesh aims at.
 
@@ -72,49 +76,52 @@ def refine(
     Solution
         With a status that says so where the tolerance could not be met.
     """
-    first, steps, before = solution, list(solution.steps), np.inf
-    best, least, status = solution, np.inf, Status.TOLERANCE_MISSED
+    first, before, means = solution, np.inf, Halving(attempt_on, list(solution.steps))
+    found = means.compared(solution)
+    if found is None:
+        return _missed(replace(solution, steps=tuple(means.steps)), tolerance)
+    solution, steps = found, means.steps
+    best, smallest, status = solution, np.inf, Status.TOLERANCE_MISSED
     for _ in range(ROUNDS):
         try:
             error, _ = relative_error(solution)
         except np.linalg.LinAlgError:
             lost = Status.SINGULAR
             return replace(solution, status=lost, message=lost.value, steps=tuple(steps))
-        if error < least:
-            best, least = solution, error
+        if error < smallest:
+            best, smallest = solution, error
         if error <= tolerance:
             # In phases the signs of m2 are judged by the error, which is known only now.
             same = solution is first and not solution.sheets
             done = solution if same else verified(solution, ribbon)
             return replace(done, steps=tuple(steps))
-        if error > SLOW * before and _is_rounding(solution, tolerance):
+        least = analyse(solution).least
+        if _is_left(error, least) or (error > SLOW * before and _is_rounding(solution, tolerance)):
             status = Status.ROUNDED
             break
-        started = time.perf_counter()
         stuck, close = error > SLOW * before, error <= CLOSE * tolerance
-        goal = aim * tolerance * (1 / CLOSE if stuck and close else 1.0)
-        mesh, short = _better_mesh(solution, goal, error, stuck and not close)
+        surprised = stuck and not close and not solution.problem.recovered
+        goal = max(aim * tolerance * (1 / CLOSE if stuck and close else 1.0), least)
+        mesh, short = _better_mesh(solution, goal, error, surprised)
         before = error
         try:
-            attempt = attempt_on(mesh, solution.trajectory.ends[1:-1])
+            found = means.on(mesh, solution, error)
         except TooLargeError:  # what there is is worth more than a message
             break
-        if not attempt.run(solution, quick=True, check=False) or attempt.best is None:
+        if found is None:
             break
-        solution = attempt.best
-        steps.append(
-            {
-                "step": f"mesh of {sum(mesh.elements)} intervals for an error of {error:.0e}",
-                "iterations": attempt.iterations,
-                "seconds": time.perf_counter() - started,
-            }
-        )
+        solution = found
         if short:
             break
-    if solution is not best and relative_error(solution)[0] > least:
+    if solution is not best and relative_error(solution)[0] > smallest:
         solution = best
     solution = verified(replace(solution, steps=tuple(steps)), ribbon)
     return _missed(solution, tolerance, status) if solution.verified else solution
+
+
+def _is_left(error: float, least: float) -> bool:
+    """Whether an error is what the solver leaves on any mesh."""
+    return error <= LEFT * least
 
 
 def _is_rounding(solution: Solution, tolerance: float) -> bool:
@@ -152,50 +159,67 @@ def _better_mesh(
 
     `surprised` that the mesh before did not, it expects a layer that no stage has met so far.
     """
-    blocks, found = solution.dense.blocks, analyse(solution)
-    local, known = found.local, found.layers
-    widths, phases, short = blocks.widths(solution.dense.p), [], False
+    found = analyse(solution)
+    trajectory, local, known = found.trajectory, found.local, found.layers
+    dense, blocks, minimum = trajectory.dense, trajectory.dense.blocks, solution.problem.recovered
+    widths, phases, short = blocks.widths(dense.p), [], False
     target = float(local.sum()) * min(1.0, aim / error) / len(local)
     # Inside an element the collocation polynomial counts, whose order is lower.
     inside = (SAFETY * found.inside / aim) ** (1 / (blocks.degree + 1))
-    rho = analyticity(solution.dense.decay())
+    rho = analyticity(dense.decay())
     if surprised:
         rho = np.where(local > target, UNSEEN, rho)
-    lengths = np.diff(solution.trajectory.ends) * solution.trajectory.length
+    lengths, most = np.diff(trajectory.ends) * trajectory.length, MOST if minimum else SIZES[-1]
     for part, near, length in zip(blocks.layout.phase_slices, known, lengths, strict=True):
         h = widths[part]
         wanted = wanted_widths(h, local[part], rho[part], blocks.order, target)
         wanted = np.minimum(wanted, h / np.maximum(inside[part], 1 / WIDEST))
-        limits = _limits(near, blocks.degree, blocks.order, target / length) if len(near) else ()
+        if minimum:  # controls have a lower order still, and are singular where strains fade
+            open_ = SAFETY * found.inside[part]
+            widest = wanted_widths(h, open_, rho[part], blocks.degree - 1, aim)
+            wanted = np.minimum(wanted, widest)
+        limits = _limits(near, blocks, target / length, bool(minimum)) if len(near) else ()
         positions, share = graded(h, wanted, *limits)
         count = max(int(np.ceil(share[-1])), len(h) // 2)
-        size = size_for(min(count, int(GROWTH * len(h))))
-        short = short or (size == SIZES[-1] and count > size)
+        size = size_for(min(count, int(GROWTH * len(h)), most))
+        short = short or (size == most and count > size)
         phases.append(redistributed(positions, share, size))
     return Mesh(tuple(phases)), short
 
 
 def _limits(
-    near: Layers, degree: int, order: int, target: float
+    near: Layers, blocks: Blocks, target: float, minimum: bool
 ) -> tuple[Array, Callable[[Array], Array]]:
-    """Return where layers are, and the widths that resolve them."""
-    return near.places.real, lambda positions: near.widths(positions, degree, order, target)
+    """Return where layers are, and the widths that resolve them.
+
+    In elements so narrow that no jump matters in them a minimum tells nothing of its controls.
+    """
+    least = target / float(near.sizes.max(initial=target)) if minimum else 0.0
+    return near.places.real, lambda positions: np.maximum(
+        near.widths(positions, blocks.degree, blocks.order, target), least
+    )
 
 
-def _missed(solution: Solution, tolerance: float, status: Status) -> Solution:
+def _missed(
+    solution: Solution, tolerance: float, status: Status = Status.TOLERANCE_MISSED
+) -> Solution:
     """Return the solution, with what keeps its error from being small enough."""
+    if alone(solution):
+        why = "No minimum was found on a finer mesh, with which to compare this one"
+        return replace(solution, status=status, message=f"{status.value}. {why}")
     error, name = relative_error(solution)
     if error <= tolerance:
         return solution
-    local = analyse(solution).local
+    found = analyse(solution)
+    local, nodes, (start, end) = found.local, found.trajectory.nodes, solution.scene.interval
     element = int(np.argmax(local))
-    a, b = solution.nodes[element], solution.nodes[element + 1]
+    a, b = start + (end - start) * nodes[element : element + 2]
     return replace(
         solution,
         status=status,
         message=(
             f"{status.value}. The relative error of {name} is {error:.1e}, asked "
-            f"was {tolerance:.1e}, on {len(local)} intervals; most of it comes from s = {a:.4g} to "
-            f"s = {b:.4g}"
+            f"was {tolerance:.1e}, on {len(solution.nodes) - 1} intervals; most of it "
+            f"comes from s = {a:.4g} to s = {b:.4g}"
         ),
     )

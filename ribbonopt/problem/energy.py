@@ -29,7 +29,7 @@ from ribbonopt.mechanics.ends.conditions import Component
 from ribbonopt.mechanics.ends.placement import LoadAlong
 from ribbonopt.mechanics.laws.law import ConstitutiveLaw, Stress
 from ribbonopt.mechanics.laws.parts import Relaxed
-from ribbonopt.mechanics.outputs import outputs, own_name
+from ribbonopt.mechanics.outputs import outputs, own_name, singular
 from ribbonopt.mechanics.rotations import product
 from ribbonopt.mechanics.section import Section
 
@@ -82,6 +82,7 @@ def minimum(ribbon: Ribbon) -> BoundaryValueProblem:
         length=end - start,
         outputs=outputs(section, ribbon.law, program.u, work) | program.outputs(rod, work),
         path=program.path,
+        singular=_singular(ribbon.law, rod.stress),
         cost=program.cost - ca.dot(beyond, rod.tangent) - work,
     )
     points = ca.SX.sym("start", x.numel()), ca.SX.sym("end", x.numel())
@@ -155,6 +156,15 @@ def _program(law: ConstitutiveLaw, at: Stress, more: ca.SX) -> _Program:
     cost, _ = law.densities(stress, u)
     start = ca.vertcat(known.own, more, estimate)
     return _Program(z, u, cost, ca.SX(0, 1), local, start, law.extension(stress))
+
+
+def _singular(law: ConstitutiveLaw, stress: Stress) -> ca.SX:
+    """Where a law is singular, and where its strains jump: here no phase ends there."""
+    found = singular(law, stress)
+    if law.smooth or law.fades:
+        return found
+    switch = law.switching(stress)
+    return ca.vertcat(found, ca.horzcat(switch.value, 0, switch.leap / 2, -1))
 
 
 def dead_force(ribbon: Ribbon) -> ca.SX:

@@ -39,7 +39,7 @@ class Solution:
     trajectory : Trajectory
         The equations that were solved and the numbers, all phases read as one.
     status, message : Status, str
-        How the solve ended.
+        How it ended.
     multipliers : (ng,) array
         Lagrange multipliers of the discretised equations.
     iterations : int
@@ -49,16 +49,16 @@ class Solution:
     steps : tuple of mappings
         The steps that led here, with their cost.
     skipped, given_up, fell_back : tuples of str
-        What this scene did not need; what it asked for and did not lead to this answer; what was
-        tried before what did.
+        What it did not need; what it asked for and did not lead here; what was tried before.
     verification : Verification
         What was checked afterwards.
     others : tuple of Solution
-        Other equilibria of the scene, where several starts were asked for, by increasing energy.
-    times : int
-        How many of those starts led here.
+        Other equilibria of the scene, of several starts, by increasing energy; `times` is how many
+        of those led here.
     sheets : tuple of int
         Kinds of the phases: sign of m2, or 0 for a mixture of both sheets; empty for one phase.
+    coarser : Trajectory or None
+        Of a minimum, that on elements twice as wide, if it has one: its bars.
     """
 
     posed: Posed
@@ -76,6 +76,7 @@ class Solution:
     others: tuple[Solution, ...] = ()
     times: int = 1
     sheets: tuple[int, ...] = ()
+    coarser: Trajectory | None = None
 
     @property
     def scene(self) -> Scene:

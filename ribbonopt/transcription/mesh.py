@@ -55,6 +55,20 @@ class Mesh:
             phases.append(np.diff(inner) / (inner[-1] - inner[0]))
         return Mesh(tuple(phases))
 
+    def halved(self) -> Mesh:
+        """Return a mesh with two elements for each."""
+        return Mesh(tuple(np.repeat(widths / 2, 2) for widths in self.phases))
+
+    def through(self, places: Array) -> Mesh:
+        """Return a mesh of one phase with the nodes nearest to places (k,), fractions, moved there.
+
+        Places are inside, in order and further apart than its elements are wide.
+        """
+        (widths,) = self.phases
+        nodes = np.append(0.0, np.cumsum(widths) / widths.sum())
+        nodes[1 + np.abs(nodes[1:-1] - places[:, None]).argmin(axis=1)] = places
+        return Mesh((np.diff(np.sort(nodes)),))
+
     def gathered(self, levels: int, ratio: float) -> Mesh:
         """Return a mesh with more elements where phases meet: the last of each in `levels` more.
 

@@ -212,16 +212,6 @@ def test_a_finer_mesh_is_tried_once_where_refinement_led_nowhere(configs: Path) 
     assert tried(found) is missed and not asked  # refinement did lead somewhere
 
 
-def test_energy_formulation_takes_no_tolerance(
-    configs: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
-) -> None:
-    out = tmp_path / "result"
-    sets = ["--set", "formulation=energy", "--set", "tolerance=1e-6", "--out", str(out)]
-    assert main(["solve", str(configs / "moebius_variational.yaml"), *sets]) == 2
-    assert "tolerance" in capsys.readouterr().err
-    assert not list(tmp_path.iterdir())
-
-
 @pytest.mark.parametrize("tolerance", ["0", "-1e-6", "1e-14", "0.5", "small"])
 def test_tolerances_that_make_no_sense_are_bad_input(
     configs: Path, capsys: pytest.CaptureFixture[str], tolerance: str

@@ -62,7 +62,8 @@ class Singular(NamedTuple):
 
     `re` and `im` have one dimension, whichever; `size` says by how much strains change there, as a
     moment. Near the real axis that is a layer, which a mesh must resolve to be of use. Where it
-    `fades` (1, else 0) strains change there in proportion to the distance, but for a logarithm.
+    `fades` (1, else 0) strains change there in proportion to the distance, but for a logarithm;
+    where that is -1 they jump, and are analytic on either side.
     """
 
     re: ca.SX

@@ -148,15 +148,9 @@ def refuse_unreachable(posed: Posed) -> None:
         refuse_taut(scene, share)
 
 
-def refuse_idle_settings(posed: Posed, ribbon: Ribbon, problem: BoundaryValueProblem) -> None:
+def refuse_idle_settings(posed: Posed, ribbon: Ribbon) -> None:
     """Raise a ModelError where a scene asks for what its problem has not."""
     scene = posed.given
-    if scene.tolerance is not None and problem.recovered:
-        raise ModelError(
-            "tolerance: the energy formulation has no estimate of its error; leave it out, or use "
-            "another formulation",
-            "tolerance",
-        )
     if isinstance(scene.switching, str) or (ribbon.law.kinked and scene.formulation == "inverted"):
         return
     raise ModelError(

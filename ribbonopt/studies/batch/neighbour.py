@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ribbonopt.accuracy.compared import mesh_to_begin
 from ribbonopt.accuracy.estimate import analyse
 from ribbonopt.arrays import Array
 from ribbonopt.attempt.attempt import Attempt
@@ -53,7 +54,7 @@ class Neighbour:
         """
         posed, old = self.prepared.posed(scene), self.solution
         search = self.prepared.search(posed)
-        attempts = search.on_mesh(old.sheets, old.mesh, old.trajectory.ends[1:-1])
+        attempts = search.on_mesh(old.sheets, mesh_to_begin(old), old.trajectory.ends[1:-1])
         if self._run(attempts) and attempts.best is not None and _in_order(attempts.best):
             found = attempts.best
             if found.sheets or not (search.phases_help and search.better_in_phases(found)):

@@ -14,6 +14,7 @@ from typing import Any
 import casadi as ca
 import numpy as np
 
+from ribbonopt.accuracy.compared import alone
 from ribbonopt.accuracy.estimate import analyse
 from ribbonopt.accuracy.gaps import ROUNDING
 from ribbonopt.arrays import Array
@@ -175,12 +176,12 @@ def _measured(
 
 def _estimate(solution: Solution, profile: Profile) -> float | None:
     """Own estimate of the error of n(0), m(0) alone; None where it is not known."""
-    if solution.problem.recovered:
+    if alone(solution):
         return None
     found, units = analyse(solution), solution.units
     if not found.known:
         return None
-    better = found.better.at_nodes
+    better = found.other.at_nodes
     n0, m0 = better["n"][0] * units.force, better["m"][0] * units.moment
     errors = errors_of(replace(profile, n0=n0, m0=m0), profile)
     return max(errors["error_n0"], errors["error_m0"], ROUNDING)

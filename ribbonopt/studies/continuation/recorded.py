@@ -9,6 +9,7 @@ from typing import Any
 
 import numpy as np
 
+from ribbonopt.accuracy.compared import alone
 from ribbonopt.accuracy.estimate import analyse, relative_error
 from ribbonopt.checks.zero_moment import lacks_linearisation, unknown_of
 from ribbonopt.errors import ModelError
@@ -177,9 +178,10 @@ def value_of(row: Mapping[str, Any]) -> float:
 def error_of(solution: Solution) -> float | None:
     """Relative error of the answer, a bound; None where it is not known.
 
-    So for minima, singular equations and those without slope, and on meshes that step over layers.
+    So for minima on one mesh, singular equations and those without slope, and on meshes that step
+    over layers.
     """
-    if solution.problem.recovered or lacks_linearisation(solution):
+    if alone(solution) or lacks_linearisation(solution):
         return None
     try:
         return relative_error(solution)[0] if analyse(solution).known else None

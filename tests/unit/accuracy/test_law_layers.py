@@ -120,3 +120,13 @@ def test_thin_layers_are_set_apart_where_they_show(solved: Solved) -> None:
 def test_a_law_without_a_layer_is_singular_nowhere(solved: Solved) -> None:
     found = solved("moebius_kirchhoff")
     assert len(layers(found.trajectory, 0)) == 0
+
+
+def test_a_jump_is_the_business_of_its_own_element() -> None:
+    jump = Layers(np.array([0.42 + 0j]), np.array([2.0]), jumps=np.array([True]))
+    missed = jump.overlooked(np.linspace(0, 1, 11), degree=6, order=12)
+    assert np.flatnonzero(missed).tolist() == [4]
+    # A tenth of the jump, times the width over which it is: what moving it by that would cost.
+    assert 0 < missed[4] <= 0.1 * 2.0 * 0.1
+    widths = jump.widths(np.array([0.0, 0.32, 0.42]), degree=6, order=12, target=1e-4)
+    np.testing.assert_allclose(widths, [0.42, 0.1, 1e-4 / (0.1 * 2.0)])

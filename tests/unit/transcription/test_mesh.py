@@ -32,3 +32,18 @@ def test_phases_share_the_elements_as_the_mesh_has_them(switches: list[float]) -
     for count, a, b in zip(found.elements, [0, *switches], [*switches, 1], strict=True):
         share = np.interp([a, b], nodes, np.arange(13) * 40 / 12)
         assert count == max(2, round(float(np.ptp(share))))
+
+
+def test_halved_elements_keep_all_nodes() -> None:
+    mesh = Mesh((np.array([0.1, 0.6, 0.3]), np.array([1.0])))
+    halved = mesh.halved()
+    assert halved.elements == (6, 2)
+    for whole, half in zip(mesh.phases, halved.phases, strict=True):
+        np.testing.assert_allclose(np.cumsum(half)[1::2], np.cumsum(whole), rtol=1e-15)
+
+
+def test_nodes_are_moved_to_places() -> None:
+    moved = Mesh.uniform(10).through(np.array([0.33, 0.76]))
+    nodes = np.append(0.0, np.cumsum(moved.widths))
+    expected = [0, 0.1, 0.2, 0.33, 0.4, 0.5, 0.6, 0.7, 0.76, 0.9, 1]
+    np.testing.assert_allclose(nodes, expected, atol=1e-15)
