@@ -19,11 +19,9 @@ from collections.abc import Mapping
 from dataclasses import dataclass, replace
 
 import numpy as np
-from numpy.typing import NDArray
 
 from ribbonopt.arrays import Array
 from ribbonopt.errors import ModelError
-from ribbonopt.mechanics.outputs import own_name
 from ribbonopt.scene import Ipopt
 from ribbonopt.solution.potential import dead_force_of
 from ribbonopt.solution.solution import Solution
@@ -35,6 +33,7 @@ from .compared import compared
 from .gaps import LEAST, RESOLVED, gaps_at_nodes, gaps_between, sizes_of
 from .layers import Layers, clear_of, layers, overlooked
 from .spin import spins
+from .witness import columns_of_rod, more_of, witness
 
 UNIT = 3e-16  # local error by rounding alone
 SAFETY = 4.0  # bar over estimate: what the next better scheme itself may miss
@@ -45,7 +44,6 @@ BARRIER = 30.0
 SMALL = 1e-4  # unless they are smaller than this all the same
 BLURRED = 1e-14  # of the length: by how much rounding moves a layer, over that by which it may
 USUAL = 1e-8  # tolerance of scenes that have none
-QUIET = 1e-12  # local errors that are rounding
 
 
 @dataclass(frozen=True, eq=False)
@@ -169,20 +167,20 @@ def _analysed(solution: Solution, near: Factors | None, keep: bool) -> Analysis:
     near_by = tuple(layers(trajectory, i) for i in range(len(trajectory.problem.phases)))
     clear = clear_of(trajectory, near_by, BLURRED / tolerance)
     errors, sizes = gaps_at_nodes(trajectory, better, split, clear), sizes_of(trajectory)
-    witnessed = np.maximum(_witness(better, split), overlooked(trajectory, near_by))
-    local, doubt = _more(local, witnessed)
+    witnessed = np.maximum(witness(better, split), overlooked(trajectory, near_by))
+    local, doubt = more_of(local, witnessed)
     # Rounding of one element counts as its local error does.
     more = doubt * (1 + len(local) * UNIT / (float(local.sum()) or UNIT))
     errors = {name: error * more for name, error in errors.items()}
     # Between the nodes the output starts from the node before, with the error of that element.
     more_inside, inside = gaps_between(trajectory, better, near_by, growth, clear)
     errors |= {name: max(errors[name], gap) for name, gap in more_inside.items()}
-    rod = _of_rod(trajectory)
+    rod = columns_of_rod(trajectory)
     if len(rod) < len(size):
         # Errors in states of the law's own show in the rod where they matter to it.
         of_rod = np.abs(residuals.nodes / size)[:, rod].max(axis=1).reshape(-1, split).sum(axis=1)
-        local_of_rod, _ = _more(of_rod, witnessed)
-        errors["states"] = max(errors["states"], float(local_of_rod.max()))
+        localcolumns_of_rod, _ = more_of(of_rod, witnessed)
+        errors["states"] = max(errors["states"], float(localcolumns_of_rod.max()))
     else:
         errors["states"] = max(errors["states"], float(local.max()))
     kept = factors if keep else None
@@ -203,7 +201,7 @@ def _of_minimum(solution: Solution) -> Analysis:
     least = scene.solver.tolerance if isinstance(scene.solver, Ipopt) else Ipopt().tolerance
     open_in = least / (scene.tolerance or USUAL)
     errors, local, inside = compared(coarse, fine, near_by, sizes, open_in)
-    local, more = _more(local, overlooked(coarse, near_by))
+    local, more = more_of(local, overlooked(coarse, near_by))
     rounding = least * len(fine.nodes)  # costates take up what each element leaves
     jumps = any(near.jump.any() for near in near_by)
     barrier = BARRIER * least ** (2 / 3) if jumps else 0.0
@@ -224,29 +222,3 @@ def _of_minimum(solution: Solution) -> Analysis:
     known = jumps or more <= DOUBTFUL or _worst(errors, sizes)[0] <= SMALL
     parts = coarse, coarse, local, inside, errors, sizes, more, known, near_by
     return Analysis(*parts, least=SAFETY * left["n0"])
-
-
-def _of_rod(trajectory: Trajectory) -> NDArray[np.intp]:
-    """Columns of the states that are none of the law's own."""
-    problem = trajectory.problem
-    names = problem.state_names
-    return np.flatnonzero([own_name(name) not in problem.phases[0].outputs for name in names])
-
-
-def _more(local: Array, witnessed: Array) -> tuple[Array, float]:
-    """Local errors with what was overlooked, and by how much that makes errors larger."""
-    more = np.where(witnessed > QUIET, np.maximum(local, witnessed), local)
-    doubt = float(more.sum() / local.sum()) if more.max() > local.max() else 1.0
-    return more, doubt
-
-
-def _witness(better: Trajectory, split: int) -> Array:
-    """Local errors (N,) that what is conserved betrays: the better scheme keeps it better."""
-    nodes, found = better.at_nodes, np.zeros(1)
-    force, moment, strain = (float(np.abs(nodes[name]).max()) for name in "nmu")
-    # By how much states change H = W_Leg + n3: strain times that of the moment, and the force.
-    scale = max(1.0, force + strain * (force + moment))
-    for name in better.problem.conserved:
-        steps = np.abs(np.diff(nodes[name])) / scale
-        found = np.maximum(found, steps.reshape(-1, split).sum(axis=1))
-    return found
