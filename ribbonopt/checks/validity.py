@@ -22,6 +22,7 @@ from ribbonopt.scene.laws import OfWidth
 from ribbonopt.solution.solution import Solution
 
 from .convexity import leap_problems
+from .law_sizes import law_problems
 from .shape import contact_problems, planar_problems
 from .zero_moment import zero_moment_problems
 
@@ -45,6 +46,7 @@ def warnings_of(solution: Solution) -> list[str]:
         result += _taper(s, width)
         doubtful = converged and not isinstance(solution.scene.law, OfWidth)
         result += _generatrices(solution, s, width) if doubtful else []
+    result += law_problems(solution)
     if converged:
         result += zero_moment_problems(solution)
         result += leap_problems(solution)
