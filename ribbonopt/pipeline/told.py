@@ -43,8 +43,9 @@ def of_starts(first: Solution | None, found: Solution) -> Solution:
 
 def regularized(best: Solution, smooth: Sequence[Solution], prepare: Prepare) -> Solution | None:
     """Return an equilibrium of the smooth law, labelled: none was found of the exact one."""
-    if capabilities(best.scene).linear_at_zero:
-        return None  # as those of a rod its equilibria may be far from any of the smooth law
+    law = capabilities(best.scene)
+    if law.linear_at_zero or law.states:
+        return None  # equilibria of rods, or of wide ribbons, may be far from any of the smooth law
     for one in smooth:
         scene = replace(best.scene, law=one.scene.law, switching="off", guess="auto", starts=1)
         found = prepare(scene).solve(guess=one, fallback=False)

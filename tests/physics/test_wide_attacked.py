@@ -50,5 +50,17 @@ def test_a_law_that_is_linear_at_small_moments_has_no_smooth_law_instead() -> No
         raise AssertionError(f"prepared {scene.law}")
 
     assert regularized(found, [smooth], never) is None  # type: ignore[arg-type]
+    wide = solve(loads_scene(HELD.format(law="{type: wunderlich, width: 0.1}", end=CLAMP)))
+    assert regularized(wide, [smooth], never) is None  # type: ignore[arg-type]
     exact = solve(loads_scene(HELD.format(law="{type: sadowsky}", end=CLAMP)))
     assert regularized(exact, [smooth], prepare) is not None
+
+
+@pytest.mark.parametrize(("stiffness", "count"), [(1.0, 1), (1e5, 0)])
+def test_more_stretch_than_a_linear_law_is_for_is_told(stiffness: float, count: int) -> None:
+    text = HELD.format(law="{type: sadowsky}", end=CLAMP)
+    found = solve(loads_scene(f"{text}membrane: {{stretching: {stiffness:g}}}\n"))
+    assert found.verified
+    largest = float(np.abs(found.outputs(np.linspace(0, 1, 101))["extension"]).max())
+    assert (largest > 0.1) is bool(count)
+    assert len([words for words in warnings_of(found) if "stretches" in words]) == count
