@@ -17,6 +17,8 @@ from ribbonopt.scene.model import Scene
 from ribbonopt.scene.schema.annotations import key_of
 from ribbonopt.scene.units import Units, units_of
 
+from .sized import check_narrow
+
 _OURS = __name__.partition(".checks")[0]
 _NEVER_ZERO = (
     "ribbon",
@@ -153,6 +155,7 @@ def in_units(scene: Scene, values: Mapping[KeyPath, float]) -> Iterator[Problem]
         yield from _ratios(scene.law)
     if isinstance(scene.law, Sano):
         yield from _moduli(scene.law)
+    yield from check_narrow(scene, units)
     for path, kind in _KINDS.items():
         unit = kind.unit_of(units)
         for place, value in _at(scene, path):

@@ -72,3 +72,22 @@ def test_stiffnesses_are_not_too_unlike_that_of_the_plate(number: str) -> None:
     law = f"{{type: sano, {number}, zeta: 0.1}}"
     with pytest.raises(SceneError, match=r"law\.B.*in units of Dw; expected from 1e-12 to 1e\+12"):
         loads_scene(SCENE.format(law=law, end=CLAMPED))
+
+
+@pytest.mark.parametrize(
+    ("law", "more", "path"),
+    [
+        ("{type: wunderlich, width: 1e-9}", "", "law.width"),
+        (
+            "wunderlich",
+            "ribbon: {length: 1, width: 9e-6, thickness: 1e-9, youngs_modulus: 1, "
+            "poisson_ratio: 0.3}\n",
+            "ribbon.width",
+        ),
+    ],
+)
+def test_ribbons_too_narrow_for_their_layers(law: str, more: str, path: str) -> None:
+    with pytest.raises(SceneError, match=rf"{path}.*at least 1e-05 L.*write law: sadowsky"):
+        loads_scene(SCENE.format(law=law, end=CLAMPED) + more)
+    wide = law.replace("1e-9", "1e-4")
+    loads_scene(SCENE.format(law=wide, end=CLAMPED) + more.replace("9e-6", "2e-5"))
