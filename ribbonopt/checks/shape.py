@@ -18,6 +18,7 @@ from .topology import closure
 FLAT = 1e-9  # of the largest strain, or the tolerance where that is larger: it counts as zero
 DRAWN = 1 / 10  # width of the ribbon, of the length drawn, where the scene does not say it
 APART = 3.0  # widths along the ribbon between places that may be near one another
+BEYOND = 3  # pieces of the centre line, the same for ribbons narrower than those
 POINTS, PER_ELEMENT = 200, 4  # of the centre line, at least: many coils have many elements
 
 
@@ -55,7 +56,8 @@ def contact_problems(solution: Solution) -> list[str]:
     if own is not None:
         along = widths(solution.scene, np.linspace(start, end, points + 1))
         width = own * float(along.max())
-    found = nearest_approach(r / length, width / length, APART * width / length, closed)
+    apart = max(APART * width / length, BEYOND / len(r))  # pieces of the line always touch the next
+    found = nearest_approach(r / length, width / length, apart, closed)
     if found is None:
         return []
     distance, *places = found

@@ -19,9 +19,11 @@ from ribbonopt.mechanics.outputs import sheet_slopes
 from ribbonopt.mechanics.widths import widths
 from ribbonopt.scene import RibbonSizes
 from ribbonopt.scene.laws import OfWidth
+from ribbonopt.scene.limits import STRETCH
 from ribbonopt.solution.solution import Solution
 
 from .convexity import leap_problems
+from .law_sizes import law_problems
 from .shape import contact_problems, planar_problems
 from .zero_moment import zero_moment_problems
 
@@ -45,7 +47,9 @@ def warnings_of(solution: Solution) -> list[str]:
         result += _taper(s, width)
         doubtful = converged and not isinstance(solution.scene.law, OfWidth)
         result += _generatrices(solution, s, width) if doubtful else []
+    result += law_problems(solution)
     if converged:
+        result += _stretch(solution)
         result += zero_moment_problems(solution)
         result += leap_problems(solution)
         result += spin_problems(solution)
@@ -79,6 +83,17 @@ def _taper(s: Array, width: Array) -> list[str]:
     return [
         f"the width changes by {slopes[row]:.3g} per length at s = {s[row]:.4g}; the model is for "
         "widths that hardly change over the width itself (|w'| << 1)"
+    ]
+
+
+def _stretch(solution: Solution) -> list[str]:
+    """Say where the centre line stretches by more than a linear law is for."""
+    stretch = np.abs(solution.at_stages["extension"])
+    if float(stretch.max()) <= STRETCH:
+        return []
+    return [
+        f"the centre line stretches or shrinks by up to {stretch.max():.3g} of its length; the law "
+        f"of stretch is linear, for up to {STRETCH:g}: raise membrane.stretching"
     ]
 
 

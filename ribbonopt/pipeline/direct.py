@@ -72,7 +72,7 @@ class Direct:
     def guesses(self, others: Callable[..., Iterable[Guess]]) -> Callable[..., Iterator[Guess]]:
         """Return what gives minima near the solutions that others give, and the rest as it is.
 
-        Each again on a finer mesh, if it led nowhere.
+        Each again on a finer mesh, if it led nowhere, and at last the solution itself.
         """
 
         def found(**shape: Any) -> Iterator[Guess]:
@@ -86,6 +86,7 @@ class Direct:
                     near = self._minimum(self.finer, self.fine, near)
                 if near is not None:
                     yield near
+                yield guess  # least energy knows no loads without a potential
 
         return found
 

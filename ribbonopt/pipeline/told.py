@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
 
+from ribbonopt.mechanics.laws.catalogue import capabilities
 from ribbonopt.solution.solution import Solution
 from ribbonopt.solvers import Status
 
@@ -42,6 +43,9 @@ def of_starts(first: Solution | None, found: Solution) -> Solution:
 
 def regularized(best: Solution, smooth: Sequence[Solution], prepare: Prepare) -> Solution | None:
     """Return an equilibrium of the smooth law, labelled: none was found of the exact one."""
+    law = capabilities(best.scene)
+    if law.linear_at_zero or law.states:
+        return None  # equilibria of rods, or of wide ribbons, may be far from any of the smooth law
     for one in smooth:
         scene = replace(best.scene, law=one.scene.law, switching="off", guess="auto", starts=1)
         found = prepare(scene).solve(guess=one, fallback=False)

@@ -21,6 +21,8 @@ STRAIN = MOMENT = REACH
 FORCE, FORCE_PER_LENGTH = REACH**2, REACH**3
 #: widths along the ribbon, in units of its own: none is a million times another
 WIDTH, NARROW = 1e3, 1e-6
+#: width in units L = 1 of a law with layers as wide: it is Sadowsky's but for its square
+NARROWEST = 1e-5
 #: radians in all; a frame keeps ten digits. 1e5 is 16,000 turns
 ANGLE = 1e5
 #: stretch of a ribbon whose ends are held apart: its stretch is linear, and small

@@ -227,7 +227,14 @@ def _further(data: object, problems: Sequence[Problem]) -> list[Problem]:
         faulty |= {"boundary", "guess", "width"}  # their formulas would seem to use unknown names
     if "interval" in faulty:
         faulty |= {"ribbon", "width"}  # which would seem not to be as long as the default
-    parts = {"interval", "parameters", "boundary", "guess", "ribbon", "width"} - faulty
+    parts = {"interval", "parameters", "boundary", "guess", "ribbon", "width", "law"} - faulty
     sound = {key: value for key, value in data.items() if key in parts}
     blank = {"name": "scene", "law": Sadowsky(), "boundary": Boundary()}
-    return check(validate(Scene, blank | sound))
+    found = check(validate(Scene, blank | sound))
+    # Of a law that is not known here, or whose ribbon is not, nothing is said.
+    return [
+        problem
+        for problem in found
+        if not ("law" in faulty and problem.path[-1:] == ("edge",))
+        and not ("ribbon" in faulty and problem.path[:1] == ("law",))
+    ]

@@ -122,6 +122,21 @@ def test_a_scene_without_a_continuation_is_refused(run: Run, snaps: Path, tmp_pa
     assert not (tmp_path / "out").exists()
 
 
+def test_a_scene_without_a_continuation_spoils_only_its_own_rows(
+    run: Run, snaps: Path, tmp_path: Path
+) -> None:
+    text = SNAP.replace("to: 40", "to: 2")
+    (tmp_path / "snap.yaml").write_text(text)
+    (tmp_path / "plain.yaml").write_text(text.split("continuation:")[0])
+    study = "name: two\nscene: [snap.yaml, plain.yaml]\ncontinue: true\n"
+    snaps.write_text(study + "sweep: {list: [{law.B3: 1.5}]}\n")
+    status, _, err = run("batch", snaps, "--out", tmp_path / "out", "--jobs", "1")
+    assert status == 3
+    assert "number 2: bad_input: continuation: the scene has none; add for example" in err
+    first, second = table(tmp_path / "out" / "table.csv")
+    assert (first["status"], second["status"]) == ("converged", "bad_input")
+
+
 def test_columns_of_branches_can_be_drawn(run: Run, snaps: Path, tmp_path: Path) -> None:
     status, _, err = run("batch", snaps, "--plot", "law.B3:energy2", "--out", tmp_path / "out")
     assert status == 2

@@ -24,6 +24,9 @@ def check_edges(scene: Scene) -> Iterator[Problem]:
             if end.edge is not None:
                 message = "a loop tells what its ends do to their edges; remove it"
                 yield Problem(path, message, repr(end.edge))
+        elif end.edge is not None and end.support == "flip":
+            message = "an axis of symmetry tells what is done to the edge there; remove it"
+            yield Problem(path, message, repr(end.edge))
         elif edge_of(end) is None:
             yield Problem(
                 path,

@@ -12,10 +12,12 @@ from typing import Any, NamedTuple
 
 from ribbonopt.scene import limits
 from ribbonopt.scene.faults import KeyPath, Problem, dotted
-from ribbonopt.scene.laws import Stiff
+from ribbonopt.scene.laws import Sano, Stiff
 from ribbonopt.scene.model import Scene
 from ribbonopt.scene.schema.annotations import key_of
 from ribbonopt.scene.units import Units, units_of
+
+from .sized import check_narrow
 
 _OURS = __name__.partition(".checks")[0]
 _NEVER_ZERO = (
@@ -151,6 +153,9 @@ def in_units(scene: Scene, values: Mapping[KeyPath, float]) -> Iterator[Problem]
     yield from _length(end - start, units)
     if isinstance(scene.law, Stiff):
         yield from _ratios(scene.law)
+    if isinstance(scene.law, Sano):
+        yield from _moduli(scene.law)
+    yield from check_narrow(scene, units)
     for path, kind in _KINDS.items():
         unit = kind.unit_of(units)
         for place, value in _at(scene, path):
@@ -168,6 +173,14 @@ def _ratios(law: Stiff) -> Iterator[Problem]:
             message = f"which is {ratio:g} times {dotted(('law', *first))}; expected a ratio from "
             message += f"{1 / limits.RATIO:g} to {limits.RATIO:g}"
             yield Problem(("law", *path), message, f"{value:g}")
+
+
+def _moduli(law: Sano) -> Iterator[Problem]:
+    """Yield stiffnesses too unlike Dw, the unit of the term that they stand beside."""
+    for name, value in (("B2", law.B2), ("B3", law.B3)):
+        if value is not None and not 1 / limits.RATIO <= value <= limits.RATIO:
+            message = f"in units of Dw; expected from {1 / limits.RATIO:g} to {limits.RATIO:g}"
+            yield Problem(("law", name), message, f"{value:g}")
 
 
 def _length(length: float, units: Units) -> Iterator[Problem]:

@@ -5,8 +5,10 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from ribbonopt.scene.faults import Problem
-from ribbonopt.scene.laws import Sano, Sized, missing_of
+from ribbonopt.scene.laws import OfWidth, Sano, Sized, missing_of
+from ribbonopt.scene.limits import NARROWEST
 from ribbonopt.scene.model import Scene
+from ribbonopt.scene.units import Units
 
 
 def check_sized(law: Sized, scene: Scene) -> Iterator[Problem]:
@@ -22,3 +24,16 @@ def check_sized(law: Sized, scene: Scene) -> Iterator[Problem]:
         message = f"missing; expected {what}{units}, such as {example.get(name, '0.05')}, or a "
         message += "`ribbon` with its width, thickness and Poisson's ratio"
         yield Problem(("law", name), message)
+
+
+def check_narrow(scene: Scene, units: Units) -> Iterator[Problem]:
+    """Yield a width so small that layers of it are lost, of a law that resolves them."""
+    if not isinstance(scene.law, OfWidth):
+        return
+    width, path = scene.law.width, ("law", "width")
+    if width is None and scene.ribbon is not None:
+        width, path = scene.ribbon.width, ("ribbon", "width")
+    if width is not None and 0 < width < NARROWEST * units.length:
+        message = f"expected at least {NARROWEST:g} L for law {scene.law.type}: narrower ribbons "
+        message += "are Sadowsky's to all digits; write law: sadowsky"
+        yield Problem(path, message, f"{width:g}")

@@ -120,8 +120,8 @@ def check_whole_position(
 def _contradicting(name: EndName, support: Support, end: End, path: KeyPath) -> Iterator[Problem]:
     for key in given(end):
         known_as = "directors" if key in _DIRECTORS else key
-        if key == "support" or known_as in support.keys:
-            continue
+        if key in ("support", "edge") or known_as in support.keys:
+            continue  # what beside a support may be said of the edge, `edges` knows
         message = f"contradicts support: {support.name}, which takes only {listed(support.keys)}"
         if key in ("force", "moment"):
             message += " (this load is a reaction there, or zero)"

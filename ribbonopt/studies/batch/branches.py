@@ -19,10 +19,9 @@ from ribbonopt.pipeline.prepared import Prepared
 from ribbonopt.plain import SPECIALS, Row, finite
 from ribbonopt.scene import Scene
 from ribbonopt.scene.lens import with_value
-from ribbonopt.scene.stages import stages_of
 from ribbonopt.solution.solution import Solution
 from ribbonopt.solvers import Status
-from ribbonopt.studies.continuation.continuation import Continuation
+from ribbonopt.studies.continuation.continuation import Continuation, asked_of
 from ribbonopt.studies.continuation.files import FILE, TABLE, BranchFolder
 from ribbonopt.studies.continuation.walk.points import POINT, Point
 from ribbonopt.studies.continuation.walk.steps import JUMPED, NOT_RESOLVED
@@ -54,7 +53,7 @@ def follow(
     wait
         Seconds to wait for another process that writes there.
     """
-    stage = next(iter(stages_of(scene)))
+    stage = asked_of(scene)[0]
     assert stage.from_ is not None
     first = replace(with_value(scene, stage.parameter, stage.from_), continuation=None)
     continuation = Continuation(scene, prepared(first))

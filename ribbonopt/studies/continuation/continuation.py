@@ -16,6 +16,7 @@ from ribbonopt.errors import ModelError
 from ribbonopt.pipeline.prepared import Prepared, prepare
 from ribbonopt.problem.wellposed.reach import refuse_far_goals
 from ribbonopt.scene import Scene
+from ribbonopt.scene.continuation import ContinuationStage
 from ribbonopt.scene.lens import value_at
 from ribbonopt.scene.stages import ends_of, stages_of
 from ribbonopt.scene.units import units_of
@@ -52,12 +53,7 @@ class Continuation:
         ModelError
             If the scene has no `continuation`, or cannot be continued.
         """
-        self.scene, self.stages = scene, stages_of(scene)
-        if not self.stages:
-            raise ModelError(
-                "continuation: the scene has none; add for example "
-                "'continuation: {parameter: law.epsilon, to: 1e-4, scale: log}'"
-            )
+        self.scene, self.stages = scene, asked_of(scene)
         refuse_far_goals(scene)
         first, before = Curve(scene, self.stages[0]), scene
         self.prepared = prepared or prepare(first.scene_at(first.begin))
@@ -118,3 +114,13 @@ class Continuation:
         curve = self.curve(number, self.scene if solution is None else solution.scene)
         near = self.near if number == 0 else None
         return RibbonStage(self.prepared, curve, self.recorder, solution, near)
+
+
+def asked_of(scene: Scene) -> tuple[ContinuationStage, ...]:
+    """Return the stages of a scene, one at least; refuse a scene that has none."""
+    if stages := stages_of(scene):
+        return stages
+    raise ModelError(
+        "continuation: the scene has none; add for example "
+        "'continuation: {parameter: law.epsilon, to: 1e-4, scale: log}'"
+    )
