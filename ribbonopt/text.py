@@ -22,7 +22,7 @@ RESERVED_NAMES = frozenset(
         *("outcomes.png", "scatter.png", "rows.jsonl", "table.csv", "study.json", "branch.jsonl"),
         *("branch.csv", "comparison.csv", "comparison.json", "comparison.png"),
         *("benchmark.csv", "benchmark.json", "benchmark.png"),
-        *("laws.csv", "laws.json", "laws.png"),
+        *("laws.csv", "laws.json", "laws.png", "special.csv", "special.png"),
     )
 )
 _EXECUTED = frozenset("=+-@")

@@ -86,7 +86,8 @@ def test_names_of_accepted_texts_lead_nowhere_else(tmp_path: Path) -> None:
 def test_what_our_folders_hold_is_reserved() -> None:
     ours = {*OWN_FILES, MANIFEST, *BATCH_PICTURES, *BRANCH_PICTURES, "solutions"}
     ours |= {"rows.jsonl", "table.csv", "study.json", "branch.jsonl", "branch.csv"}
-    ours |= {*files_of("comparison"), *files_of("benchmark")}
+    ours |= {*files_of("comparison"), *files_of("benchmark"), "special.csv"}
+    ours |= {"laws.csv", "laws.json", "laws.png"}
     assert ours == RESERVED_NAMES
     assert all(name_fault(name.upper()) for name in ours)
 
