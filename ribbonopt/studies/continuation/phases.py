@@ -59,7 +59,9 @@ def margins(solution: Solution) -> dict[Change, float]:
     kinds, found = solution.sheets, {}
     last, lengths = len(kinds) - 1, np.diff(solution.trajectory.ends)
     stations = stations_among(kinds, len(solution.posed.stations))
-    mixes = not capabilities(solution.scene).fades  # strains that fade away are those of no two sides
+    mixes = not capabilities(
+        solution.scene
+    ).fades  # strains that fade away are those of no two sides
     for i, kind in enumerate(kinds):
         # What is gone beside a station is born behind it: a trial in these phases fails there, and
         # the search for others begins anew.

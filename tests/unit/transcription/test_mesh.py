@@ -32,3 +32,11 @@ def test_phases_share_the_elements_as_the_mesh_has_them(switches: list[float]) -
     for count, a, b in zip(found.elements, [0, *switches], [*switches, 1], strict=True):
         share = np.interp([a, b], nodes, np.arange(13) * 40 / 12)
         assert count == max(2, round(float(np.ptp(share))))
+
+
+def test_elements_gather_only_where_they_are_told() -> None:
+    mesh = Mesh.uniform(4, 4, 4)
+    one, two, three = mesh.gathered(2, 0.1, [False, True]).phases
+    assert one == pytest.approx(np.full(4, 0.25))
+    assert two == pytest.approx([0.25, 0.25, 0.25, 0.225, 0.0225, 0.0025])
+    assert three == pytest.approx(two[::-1])
