@@ -51,3 +51,13 @@ TRUTH: dict[Key, Thresholds] = {
     ("extensible", BOTH, WIDTHS[1]): Thresholds(0.24989723, 0.34955344),
     ("extensible", BOTH, WIDTHS[2]): Thresholds(0.23270002, 0.32201524, kink=True),
 }
+
+#: Wunderlich's ribbon by w / L, with u1 = 0: both thresholds and the unit to which each is known.
+#: The first by the determinant of the equations with costates (two meshes); the second, which is
+#: of first order in the elements at the middle, from three meshes. The energy form's count of
+#: negative directions changes within 2e-6 of the first and 2e-5 of the second (w / L = 1 / 6).
+WIDE: dict[float, tuple[tuple[float, float], tuple[float, float]]] = {
+    WIDTHS[0]: ((0.25386468, 1e-8), (0.28114854, 2e-8)),
+    WIDTHS[1]: ((0.19827227, 1e-8), (0.24538881, 2e-8)),
+    WIDTHS[2]: ((0.14400900, 1e-8), (0.20653531, 2e-8)),
+}

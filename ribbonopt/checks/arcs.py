@@ -115,6 +115,17 @@ def leaps(solution: Solution) -> bool:
     return bool((solution.at_stages["leap"] > NEGLIGIBLE * _scale(solution)).any())
 
 
+def leaps_at_ends(solution: Solution) -> list[bool]:
+    """Whether the law's strains change at once at each place where phases meet.
+
+    Not where the ribbon is its own image by inversion: there its law is smooth, and in the small
+    elements that others need rounding would be all there is.
+    """
+    leap = solution.at_nodes["leap"]
+    starts = [part.start for part in solution.dense.blocks.layout.phase_slices[1:]]
+    return [bool(value > FAINT * leap.max()) for value in leap[starts]]
+
+
 def with_mixtures(sharp: Solution, blunt: Solution) -> Iterator[Arcs]:
     """Yield arcs of a smooth law with mixtures among them, the likeliest first; none without.
 

@@ -21,6 +21,7 @@ from ribbonopt.checks.arcs import (
     cut_at,
     given_arcs,
     is_mixture,
+    leaps_at_ends,
     sign_changes,
     with_mixtures,
     without_empty,
@@ -86,7 +87,7 @@ class Search(Tried):
             return True
         if done and self.structure.ribbon.law.fades:
             # A start on small elements leads nowhere before it is known where phases meet.
-            gathered = found.mesh.gathered(LEVELS, RATIO)
+            gathered = found.mesh.gathered(LEVELS, RATIO, leaps_at_ends(found))
             finer = structure.attempt(
                 self.posed, self.ledger, gathered, found.trajectory.ends[1:-1]
             )

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from itertools import pairwise
 
@@ -69,18 +70,18 @@ class Mesh:
         nodes[1 + np.abs(nodes[1:-1] - places[:, None]).argmin(axis=1)] = places
         return Mesh((np.diff(np.sort(nodes)),))
 
-    def gathered(self, levels: int, ratio: float) -> Mesh:
+    def gathered(self, levels: int, ratio: float, where: Sequence[bool]) -> Mesh:
         """Return a mesh with more elements where phases meet: the last of each in `levels` more.
 
-        Each is `ratio` times as wide as the one before.
+        Each is `ratio` times as wide as the one before. `where` says at which of these places.
         """
-        last = len(self.phases) - 1
         split = ratio ** np.arange(levels + 1)
         split[:-1] *= 1 - ratio
+        sides = zip((False, *where), (*where, False), self.phases, strict=True)
         phases = []
-        for i, widths in enumerate(self.phases):
-            parts = [widths[0] * split[::-1] if i else widths[:1], widths[1:-1]]
-            parts.append(widths[-1] * split if i < last else widths[-1:])
+        for before, behind, widths in sides:
+            parts = [widths[0] * split[::-1] if before else widths[:1], widths[1:-1]]
+            parts.append(widths[-1] * split if behind else widths[-1:])
             phases.append(np.concatenate(parts if len(widths) > 1 else [widths]))
         return Mesh(tuple(widths / widths.sum() for widths in phases))
 

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 from ribbonopt.arrays import Array
 from ribbonopt.checks.arcs import NEGLIGIBLE
 from ribbonopt.checks.phase_words import phase_words, switch_of
+from ribbonopt.mechanics.laws.catalogue import capabilities
 from ribbonopt.mechanics.outputs import SLOPE, sheet_slopes
 from ribbonopt.problem.pieces import stations_among
 from ribbonopt.solution.solution import Solution
@@ -58,6 +59,9 @@ def margins(solution: Solution) -> dict[Change, float]:
     kinds, found = solution.sheets, {}
     last, lengths = len(kinds) - 1, np.diff(solution.trajectory.ends)
     stations = stations_among(kinds, len(solution.posed.stations))
+    mixes = not capabilities(
+        solution.scene
+    ).fades  # strains that fade away are those of no two sides
     for i, kind in enumerate(kinds):
         # What is gone beside a station is born behind it: a trial in these phases fails there, and
         # the search for others begins anew.
@@ -75,7 +79,7 @@ def margins(solution: Solution) -> dict[Change, float]:
         lowest = [value for _, value in minima(solution, i, sigma, value)]
         if lowest:
             found[Change(What.BORN_INSIDE, i)] = min(lowest)
-        if i < last and kinds[i + 1] and i + 1 not in stations:
+        if mixes and i < last and kinds[i + 1] and i + 1 not in stations:
             found[Change(What.BORN_BETWEEN, i)] = kinds[i + 1] * _slope_at_end(solution, i)
     return found
 

@@ -47,3 +47,11 @@ def test_nodes_are_moved_to_places() -> None:
     nodes = np.append(0.0, np.cumsum(moved.widths))
     expected = [0, 0.1, 0.2, 0.33, 0.4, 0.5, 0.6, 0.7, 0.76, 0.9, 1]
     np.testing.assert_allclose(nodes, expected, atol=1e-15)
+
+
+def test_elements_gather_only_where_they_are_told() -> None:
+    mesh = Mesh.uniform(4, 4, 4)
+    one, two, three = mesh.gathered(2, 0.1, [False, True]).phases
+    assert one == pytest.approx(np.full(4, 0.25))
+    assert two == pytest.approx([0.25, 0.25, 0.25, 0.225, 0.0225, 0.0025])
+    assert three == pytest.approx(two[::-1])
