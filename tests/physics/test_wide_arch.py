@@ -21,6 +21,12 @@ SHEAR = Path(__file__).parents[2] / "configs" / "shear"
 SHEARED = "parameters.shear"
 BEGIN = 0.16  # from nothing the symmetric arch is found up to there, whatever its width
 UNITS = 1.25  # of w / L, in those of the length
+WIDEST = max(WIDTHS)  # the others take half a minute each
+
+of_widths = pytest.mark.parametrize(
+    "width",
+    [pytest.param(w, marks=pytest.mark.slow if w == WIDEST else pytest.mark.sweep) for w in WIDTHS],
+)
 
 
 def scene_of(name: str, width: float, **stage: object) -> Scene:
@@ -41,16 +47,14 @@ def assert_threshold(points: list[Point[Solution]], value: float, unit: float) -
     assert abs(sides[True] - sides[False]) == 1
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("width", WIDTHS)
+@of_widths
 def test_both_forms_tell_where_the_arch_loses_its_symmetry(width: float) -> None:
     (first, unit), _ = WIDE[width]
     scene = scene_of("arch", width, from_=min(first - 0.03, BEGIN), to=first + 0.02)
     assert_threshold(list(Continuation(scene)), first, unit)
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("width", WIDTHS)
+@of_widths
 def test_both_forms_tell_where_the_level_state_does(width: float) -> None:
     _, (second, unit) = WIDE[width]
     near = replace(scene_of("level", width, from_=0.0, to=second + 0.004), law=Sadowsky())
