@@ -91,8 +91,10 @@ def test_bars_hold_and_the_tolerance_is_met(case: str) -> None:
     assert ours.energy == pytest.approx(theirs.energy, rel=tolerance)
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("seed", SAME)
+@pytest.mark.parametrize(
+    "seed",
+    [pytest.param(s, marks=pytest.mark.slow if s in SAME[:3] else pytest.mark.sweep) for s in SAME],
+)
 def test_random_wide_clamps_by_both_forms(seed: int) -> None:
     ours, theirs = by_both(replace(clamps(seed), law=WIDE), 1e-2)
     assert max(shares(ours, theirs).values()) <= 1
