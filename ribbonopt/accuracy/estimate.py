@@ -41,6 +41,7 @@ DOUBTFUL = 3.0  # times the difference of the schemes, from which on errors are 
 #: times solver tolerance^(2/3): of a minimum with a jump. The barrier of its inequality costs
 #: strains min(tol / d^2, sqrt(tol / d)) at the distance d, where elements are as wide
 BARRIER = 30.0
+ACCIDENT = 0.01  # of the relative error of the loads of a minimum: least of its energy
 SMALL = 1e-4  # unless they are smaller than this all the same
 BLURRED = 1e-14  # of the length: by how much rounding moves a layer, over that by which it may
 USUAL = 1e-8  # tolerance of scenes that have none
@@ -210,6 +211,9 @@ def _of_minimum(solution: Solution) -> Analysis:
     # Strains are controls of their elements: what other elements overlook moves them as the loads.
     strains = dict.fromkeys(("u0", "u", RESOLVED), sizes["u0"])
     moved = max(errors["n0"], errors["m0"]) / max(sizes["n0"], LEAST)
+    # The energy of two meshes may agree by accident: it is not that much better than the loads.
+    for name in ("energy", "potential"):
+        errors[name] = max(errors[name], ACCIDENT * moved * sizes["energy"])
     errors = {
         name: error + (more - 1) * min(error, moved * strains.get(name, np.inf))
         for name, error in errors.items()
