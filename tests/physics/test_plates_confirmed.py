@@ -7,9 +7,6 @@ from independent.confirm import confirm
 from ribbonopt import solve
 from ribbonopt.scene import Boundary, End, Extensible, Quaternion, RotationVector, Sano, Scene
 
-pytest.importorskip("ribbonopt.mechanics.laws.extensible")
-pytest.importorskip("ribbonopt.mechanics.laws.sano")
-
 START = End("clamped", (0.0, 0.0, 0.0), "identity")
 BENT = Boundary(START, End("clamped", (0.68, 0.15, 0.31), RotationVector((0.0, 2.4, 0.6))))
 #: between these clamps u2 changes its sign two and three times
@@ -33,8 +30,13 @@ def test_the_bent_clamp() -> None:
     assert confirm(found) < TOLERANCE / 10
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("thickness", [1 / 400, 1 / 4000])
+@pytest.mark.parametrize(
+    "thickness",
+    [
+        pytest.param(1 / 400, marks=pytest.mark.slow),
+        pytest.param(1 / 4000, marks=pytest.mark.sweep),
+    ],
+)
 @pytest.mark.parametrize(("place", "q"), TWISTED)
 def test_twisted_clamps(place: tuple[float, ...], q: tuple[float, ...], thickness: float) -> None:
     """Thin ribbons leap where u2 changes its sign."""

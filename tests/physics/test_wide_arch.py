@@ -54,7 +54,8 @@ def test_both_forms_tell_where_the_arch_loses_its_symmetry(width: float) -> None
     assert_threshold(list(Continuation(scene)), first, unit)
 
 
-@of_widths
+@pytest.mark.sweep
+@pytest.mark.parametrize("width", WIDTHS)
 def test_both_forms_tell_where_the_level_state_does(width: float) -> None:
     _, (second, unit) = WIDE[width]
     near = replace(scene_of("level", width, from_=0.0, to=second + 0.004), law=Sadowsky())
