@@ -3,7 +3,6 @@
 import pytest
 from independent.confirm import confirm
 
-import ribbonopt.scene
 from ribbonopt import solve
 from ribbonopt.scene import (
     Boundary,
@@ -11,14 +10,12 @@ from ribbonopt.scene import (
     Kirchhoff,
     Law,
     Loads,
+    Membrane,
     RotationVector,
     Sadowsky,
     Scene,
     Variational,
 )
-
-Membrane = getattr(ribbonopt.scene, "Membrane", None)
-pytestmark = pytest.mark.skipif(Membrane is None, reason="scenes cannot say it")
 
 BENT = Boundary(
     End("clamped", (0.0, 0.0, 0.0), "identity"),
