@@ -138,7 +138,6 @@ def test_a_wide_ribbon_beside_sadowskys_on_the_generic_clamp() -> None:
 @pytest.mark.slow
 def test_five_laws_on_the_generic_clamp() -> None:
     """The extensible ribbon of L / w = w / h = 20 by shooting and by the collocated energy."""
-    pytest.importorskip("ribbonopt.mechanics.laws.extensible")
     found = rows(compare_laws(loads_scene(CLAMP_C), ["all"], SIZES_C))
     assert list(found) == ["sadowsky", "kirchhoff", "wunderlich", "extensible", "sano"]
     assert all(row["verified"] for row in found.values())
