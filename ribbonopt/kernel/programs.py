@@ -19,7 +19,7 @@ def program_of(function: ca.Function) -> Program | None:
     That is: without the kernel, for functions that are no SX expressions, and for instructions that
     the kernel does not know.
     """
-    if COMPILED is None or not function.is_a("SXFunction"):
+    if COMPILED is None or not function.is_a("SXFunction") or not _dense(function):
         return None
     code = np.zeros((function.n_instructions(), 5))
     known = operations()
@@ -46,6 +46,14 @@ def program_of(function: ca.Function) -> Program | None:
         return program
     except ValueError:  # more inputs or outputs than the kernel takes
         return None
+
+
+def _dense(function: ca.Function) -> bool:
+    """Whether all numbers of inputs and outputs have a place: instructions count those only."""
+    inputs = (function.nnz_in(i) == function.numel_in(i) for i in range(function.n_in()))
+    return all(inputs) and all(
+        function.nnz_out(i) == function.numel_out(i) for i in range(function.n_out())
+    )
 
 
 def operations() -> dict[int, str]:

@@ -130,7 +130,8 @@ static int take_programs(ChainObject *self, PyObject *programs)
             return -1;
     }
     int at[3] = {(s->phases + 1) * s->nx, s->nc, s->nt + s->nk * (s->phases + 1)};
-    int found[2] = {s->nb, s->nb * chain_last(s)};
+    double derivatives = (double)s->nb * chain_last(s);
+    int found[2] = {s->nb, derivatives > MOST ? -1 : (int)derivatives}; /* -1: none have as many */
     s->conditions = program_of(PyTuple_GET_ITEM(programs, last), 3, at, 1, found);
     if (!s->conditions)
         return -1;
@@ -145,7 +146,7 @@ static int take_order(Chain *s, PyObject *q, PyObject *r)
     if (!(s->q = integers(q, &nq, "q")) || !(s->r = integers(r, &s->nr, "r")))
         return -1;
     s->held = nq - s->nz;
-    for (int v = 0; v < s->nv; v++) {
+    for (int v = 0; v < s->nv && nq + s->nr == s->nv; v++) {
         int found = 0;
         for (int i = 0; i < nq; i++)
             found += s->q[i] == v && (i < s->held) == (v < s->nx);
@@ -153,7 +154,7 @@ static int take_order(Chain *s, PyObject *q, PyObject *r)
             found += s->r[i] == v && v < s->nx;
         seen += found == 1;
     }
-    if (seen == s->nv && nq + s->nr == s->nv)
+    if (seen == s->nv)
         return 0;
     PyErr_SetString(PyExc_ValueError, "q, r: expected every unknown of a stage once");
     return -1;
@@ -170,7 +171,7 @@ static int take_sizes(Chain *s, PyObject *ends, PyObject *tableau)
         fits = s->ends[i] < s->ends[i + 1];
     fits = fits && s->nx <= MOST_STATES && s->nz <= MOST_STATES && s->nc <= MOST_STATES &&
            s->K <= MOST_STATES && s->nk <= MOST_STATES && s->phases < MOST_STATES &&
-           s->nt >= 0 && s->nk >= 0 && s->nz >= 0 && s->nc >= 0 && s->ends[s->phases] <= MOST / 10;
+           s->nt >= 0 && s->nt <= MOST && s->nk >= 0 && s->nz >= 0 && s->nc >= 0 && s->ends[s->phases] <= MOST / 10;
     if (!fits || s->nb != s->nx + s->nc) {
         PyErr_SetString(PyExc_ValueError, "a chain of these sizes cannot be, or is not square");
         return -1;

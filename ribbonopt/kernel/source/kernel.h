@@ -9,8 +9,13 @@
 
 #include <stddef.h>
 
-#if defined(__GNUC__)
-#define INDEPENDENT _Pragma("GCC ivdep") /* of each other: the rounds of the loop that follows */
+/* Sizes that are checked at the door have products of 64 bits; elsewhere numpy does it. */
+_Static_assert(sizeof(size_t) >= 8 && sizeof(int) >= 4, "the kernel is for 64 bits");
+
+#if defined(__clang__) /* of each other: the rounds of the loop that follows */
+#define INDEPENDENT _Pragma("clang loop vectorize(assume_safety)")
+#elif defined(__GNUC__)
+#define INDEPENDENT _Pragma("GCC ivdep")
 #else
 #define INDEPENDENT
 #endif

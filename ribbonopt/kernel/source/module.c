@@ -27,7 +27,8 @@ double *held_numbers(Held *held, PyObject *object, size_t expected, int writable
                      view->len / view->itemsize);
         return NULL;
     }
-    return view->buf;
+    static double none; /* where an empty array has no place */
+    return view->buf ? view->buf : &none;
 }
 
 void held_release(Held *held)
@@ -38,15 +39,15 @@ void held_release(Held *held)
 
 int *integers(PyObject *sequence, int *count, const char *name)
 {
-    PyObject *items = PySequence_Fast(sequence, name);
+    PyObject *items = PySequence_Tuple(sequence); /* a list may change while it is read */
     if (!items)
         return NULL;
-    Py_ssize_t n = PySequence_Fast_GET_SIZE(items);
+    Py_ssize_t n = PyTuple_GET_SIZE(items);
     int *result = n > MOST ? NULL : allocate(n, sizeof(int));
     if (!result)
         PyErr_NoMemory();
     for (Py_ssize_t i = 0; result && i < n; i++) {
-        long value = PyLong_AsLong(PySequence_Fast_GET_ITEM(items, i));
+        long value = PyLong_AsLong(PyTuple_GET_ITEM(items, i));
         if (PyErr_Occurred() || value < 0 || value > MOST) {
             if (!PyErr_Occurred())
                 PyErr_Format(PyExc_ValueError, "%s: found %ld, expected 0 to %d", name, value,
@@ -88,7 +89,7 @@ static int program_fill(Program *p, const double *code)
 {
     for (int k = 0; k < p->count; k++, code += 5) {
         for (int j = 0; j < 4; j++)
-            if (!(code[j] >= 0 && code[j] <= MOST))
+            if (!(code[j] >= 0 && code[j] <= MOST && code[j] == (int)code[j]))
                 return -1;
         Instruction i = {(int)code[0], (int)code[1], (int)code[2], (int)code[3], code[4]};
         if (!within(p, &i))
@@ -146,8 +147,8 @@ static PyObject *program_map(PyObject *self, PyObject *const *args, Py_ssize_t g
     long shared = PyLong_AsLong(args[1]);
     if (PyErr_Occurred())
         return NULL;
-    if (count < 0) {
-        PyErr_SetString(PyExc_ValueError, "count: found a negative number");
+    if (count < 0 || count > MOST) {
+        PyErr_Format(PyExc_ValueError, "count: found %zd, expected 0 to %d", count, MOST);
         return NULL;
     }
     Held held = {0};

@@ -1,5 +1,8 @@
 /* Newton's method, damped by the natural monotonicity test, factors kept while they contract: the
  * same steps as ribbonopt.solvers.newton takes, which says why. */
+#if defined(__unix__) || defined(__APPLE__)
+#define _POSIX_C_SOURCE 200809L /* for a clock that is never set back */
+#endif
 #include "kernel.h"
 
 #include <math.h>
@@ -18,7 +21,11 @@ typedef struct {
 static double now(void)
 {
     struct timespec t;
+#if defined(CLOCK_MONOTONIC)
+    clock_gettime(CLOCK_MONOTONIC, &t);
+#else
     timespec_get(&t, TIME_UTC);
+#endif
     return (double)t.tv_sec + 1e-9 * (double)t.tv_nsec;
 }
 

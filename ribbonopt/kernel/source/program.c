@@ -80,8 +80,9 @@ static ALWAYS_INLINE void run(const Program *program, const int width, int lanes
             DO(REMAINDER, remainder(x[l], y[l]))
             DO(SIGN, x[l] < 0.0 ? -1.0 : x[l] > 0.0 ? 1.0 : x[l])
             DO(COPYSIGN, copysign(x[l], y[l]))
-            DO(FMIN, fmin(x[l], y[l]))
-            DO(FMAX, fmax(x[l], y[l]))
+            /* C's own leave open which zero they return, and do return now one, now the other. */
+            DO(FMIN, x[l] <= y[l] || isnan(y[l]) ? x[l] : y[l])
+            DO(FMAX, x[l] >= y[l] || isnan(y[l]) ? x[l] : y[l])
             DO(ERF, erf(x[l]))
             DO(LOG1P, log1p(x[l]))
             DO(EXPM1, expm1(x[l]))
