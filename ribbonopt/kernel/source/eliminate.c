@@ -13,38 +13,45 @@ static int equation_of(const Chain *s, int b)
     return b < s->held ? s->q[b] : s->nx + b - s->held;
 }
 
-/* The matrix of q (K nq, K nq), from h J (K, ne, nv). */
-static void fill_matrix(const Chain *s, const double *J, double *matrix)
+/* y += factor * x */
+static void add(double *y, const double *x, double factor, int n)
 {
-    int K = s->K, nq = s->nv - s->nr;
-    memset(matrix, 0, (size_t)K * nq * K * nq * sizeof(double));
+    INDEPENDENT for (int i = 0; i < n; i++) y[i] += factor * x[i];
+}
+
+/* The matrix of q (K nq, K nq), from h J (K, ne, nv); `through` (K, nr, K nq) and `rows` (K nq, K
+ * nq) are scratch. */
+static void fill_matrix(const Chain *s, const double *J, double *matrix, double *through,
+                        double *rows)
+{
+    int K = s->K, nq = s->nv - s->nr, n = K * nq;
+    for (int l = 0; l < K; l++) /* r of stage l by all q: a_lj J_rq,j */
+        for (int k = 0; k < s->nr; k++)
+            for (int j = 0; j < K; j++)
+                for (int b = 0; b < nq; b++)
+                    through[(l * s->nr + k) * n + j * nq + b] =
+                        s->a[l * K + j] * J[((size_t)j * s->ne + s->r[k]) * s->nv + s->q[b]];
+    for (int l = 0; l < K; l++) /* F and g of stage l by all q */
+        for (int a = 0; a < nq; a++) {
+            const double *own = J + ((size_t)l * s->ne + equation_of(s, a)) * s->nv;
+            double *row = rows + (size_t)(l * nq + a) * n;
+            memset(row, 0, n * sizeof(double));
+            for (int b = 0; b < nq; b++)
+                row[l * nq + b] = own[s->q[b]];
+            for (int k = 0; k < s->nr; k++)
+                if (own[s->r[k]] != 0.0)
+                    add(row, through + (l * s->nr + k) * n, own[s->r[k]], n);
+        }
+    memset(matrix, 0, (size_t)n * n * sizeof(double));
     for (int i = 0; i < K; i++)
         for (int a = 0; a < nq; a++) {
-            int row = equation_of(s, a), state = a < s->held;
-            double *target = matrix + (size_t)(i * nq + a) * K * nq;
-            if (state)
-                target[i * nq + a] = 1.0;
-            for (int j = 0; j < K; j++) {
-                const double *Jj = J + (size_t)j * s->ne * s->nv;
-                for (int b = 0; b < nq; b++)
-                    if (state)
-                        target[j * nq + b] -= s->a[i * K + j] * Jj[row * s->nv + s->q[b]];
-                    else if (i == j)
-                        target[j * nq + b] += Jj[row * s->nv + s->q[b]];
-                for (int k = 0; k < s->nr; k++) {
-                    double through = 0.0;
-                    if (state)
-                        for (int l = 0; l < K; l++)
-                            through -= s->a[i * K + l] * s->a[l * K + j] *
-                                       J[((size_t)l * s->ne + row) * s->nv + s->r[k]];
-                    else
-                        through = s->a[i * K + j] *
-                                  J[((size_t)i * s->ne + row) * s->nv + s->r[k]];
-                    if (through != 0.0)
-                        for (int b = 0; b < nq; b++)
-                            target[j * nq + b] += through * Jj[s->r[k] * s->nv + s->q[b]];
-                }
+            double *target = matrix + (size_t)(i * nq + a) * n;
+            if (a >= s->held) {
+                memcpy(target, rows + (size_t)(i * nq + a) * n, n * sizeof(double));
+                continue;
             }
+            target[i * nq + a] = 1.0;
+            add_rows(target, rows + (size_t)a * n, (size_t)nq * n, s->a + i * K, 1, K, -1.0, n);
         }
 }
 
@@ -63,13 +70,13 @@ static void add_others(const Chain *s, const double *J, const double *fixed, con
                 double factor = J[((size_t)j * s->ne + row) * s->nv + s->r[k]];
                 const double *x = fixed + (size_t)(j * s->nr + k) * columns;
                 if (factor != 0.0)
-                    INDEPENDENT for (int c = 0; c < columns; c++) sum[c] += factor * x[c];
+                    add(sum, x, factor, columns);
             }
             for (int i = 0; i < K; i++) {
                 double factor = a < s->held ? s->a[i * K + j] : i == j ? -1.0 : 0.0;
                 double *target = right + (size_t)(i * nq + a) * columns;
                 if (factor != 0.0)
-                    INDEPENDENT for (int c = 0; c < columns; c++) target[c] += factor * sum[c];
+                    add(target, sum, factor, columns);
             }
         }
 }
@@ -95,11 +102,11 @@ static void fill_stages(const Chain *s, const double *J, const double *q, const 
                 double factor = J[((size_t)j * s->ne + s->r[k]) * s->nv + s->q[b]];
                 const double *x = q + (j * nq + b) * row;
                 if (factor != 0.0)
-                    INDEPENDENT for (int c = 0; c < columns; c++) sum[c] += factor * x[c];
+                    add(sum, x, factor, columns);
             }
             for (int i = 0; i < K; i++) {
                 double factor = s->a[i * K + j], *target = stages + (i * s->nv + s->r[k]) * row;
-                INDEPENDENT for (int c = 0; c < columns; c++) target[c] += factor * sum[c];
+                add(target, sum, factor, columns);
             }
         }
 }
@@ -115,15 +122,14 @@ static void add_steps(const Chain *s, const double *J, const double *stages, int
                 const double *x = stages + (size_t)(j * s->nv + v) * columns;
                 double *target = steps + (size_t)k * columns;
                 if (factor != 0.0)
-                    INDEPENDENT for (int c = 0; c < columns; c++) target[c] += factor * x[c];
+                    add(target, x, factor, columns);
             }
 }
 
 size_t element_scratch(const Chain *s)
 {
-    size_t columns = s->nx + s->nc, K = s->K;
-    return K * (s->ne * columns + s->nv * columns + s->nr * columns) + (2 + s->nx) * columns +
-           2 * K * s->nv;
+    size_t columns = s->nx + s->nc, K = s->K, n = K * (s->nv - s->nr);
+    return K * (s->ne + s->nv + s->nr) * columns + columns + K * s->nr * n + n * n + 2 * K * s->nv;
 }
 
 int element_factor(const Chain *s, const double *jacobians, double h, double *J, double *lu,
@@ -143,7 +149,8 @@ int element_factor(const Chain *s, const double *jacobians, double h, double *J,
             for (int c = 0; c < s->nc; c++)
                 direct[row * columns + s->nx + c] = scale * source[(size_t)(s->nv + c) * s->ne];
         }
-    fill_matrix(s, J, lu);
+    double *through = sum + columns;
+    fill_matrix(s, J, lu, through, through + (size_t)K * s->nr * K * nq);
     if (lu_factor(lu, pivots, K * nq))
         return -1;
     for (int i = 0; i < K; i++) {

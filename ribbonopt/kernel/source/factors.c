@@ -83,7 +83,6 @@ static int merge(Factors *f, const Chain *s, int e, const double *relation, doub
         memcpy(constants + k * s->nc, row + 3 * nx, s->nc * sizeof(double));
         count_pivot(f, matrix[(size_t)k * columns + k]);
     }
-    f->sign = nx % 2 ? -f->sign : f->sign;
     return 0;
 }
 
@@ -233,12 +232,7 @@ int factors_solve(const Factors *f, const Chain *s, const double *residuals, dou
         const double *by = f->by_ends + e * stages * (nx + s->nc);
         double *first = step + (size_t)e * s->element_unknowns, *stage = first + nx;
         for (size_t k = 0; k < stages; k++, by += nx + s->nc) {
-            double sum = stage[k];
-            for (int j = 0; j < nx; j++)
-                sum += by[j] * first[j];
-            for (int j = 0; j < s->nc; j++)
-                sum += by[nx + j] * constants[j];
-            stage[k] = sum;
+            stage[k] += dot(by, first, nx) + dot(by + nx, constants, s->nc);
         }
     }
     release(eliminated);

@@ -47,6 +47,10 @@ typedef struct {
 void program_run(const Program *program, int lanes, const double *const *in, double *const *out,
                  double *work);
 
+/* y (n) += sum_k sign * factors[k * step] * x[k * stride + .], count terms, in that order. */
+void add_rows(double *y, const double *x, size_t stride, const double *factors, size_t step,
+              int count, double sign, int n);
+double dot(const double *x, const double *y, int n);
 /* LU factors with partial pivoting, in place; -1 where a pivot is rounding beside its column. */
 int lu_factor(double *matrix, int *pivots, int n);
 void lu_solve(const double *lu, const int *pivots, int n, double *right, int columns);
