@@ -169,7 +169,7 @@ class ConditionFunctions:
 
 def nonzeros_of(matrix: ca.SX) -> ca.SX:
     """Return the nonzeros of a sparse matrix as a dense column."""
-    column: ca.SX = matrix.nz[:]
+    column: ca.SX = ca.vec(matrix.nz[:])  # those of a dense row are a row
     return column
 
 
