@@ -2,14 +2,13 @@
 
 import copy
 import pickle
-from collections.abc import Callable
 from types import ModuleType
-from typing import Any
 
 import casadi as ca
 import numpy as np
 import pytest
 from chains import Kind, case_of
+from unfit import ERRORS, UNFIT, locked
 
 from ribbonopt.arrays import Array
 from ribbonopt.kernel.programs import program_of
@@ -18,40 +17,8 @@ pytestmark = pytest.mark.usefixtures("kernel")
 X = ca.SX.sym("x", 3)
 FUNCTION = ca.Function("f", [X, ca.SX.sym("y")], [ca.sin(X[:2]), X[0] * X[2]])
 COUNT = 5
-Change = Callable[[Array], Any]
 
 
-def locked(array: Array) -> Array:
-    """Return an array that must not be written to."""
-    array.setflags(write=False)
-    return array
-
-
-def apart(array: Array) -> Array:
-    """Return the same numbers with gaps between them."""
-    return np.repeat(array, 2)[::2]
-
-
-UNFIT: dict[str, Change] = {
-    "one less": lambda a: a[:-1].copy(),
-    "one more": lambda a: np.append(a, 0.0),
-    "none": lambda a: a[:0].copy(),
-    "single precision": lambda a: a.astype(np.float32),
-    "single precision, as many bytes": lambda a: np.zeros(2 * a.size, np.float32),
-    "whole": lambda a: a.astype(np.int64),
-    "complex": lambda a: a.astype(complex),
-    "other byte order": lambda a: a.astype(">f8"),
-    "extended": lambda a: a.astype(np.longdouble),
-    "objects": lambda a: a.astype(object),
-    "gaps": apart,
-    "backwards": lambda a: a.copy()[::-1],
-    "list": lambda a: a.tolist(),
-    "bytes": lambda a: a.tobytes(),
-    "nothing": lambda a: None,
-    "number": lambda a: 1.0,
-    "text": lambda a: "numbers",
-}
-ERRORS = TypeError, ValueError, BufferError
 each_unfit = pytest.mark.parametrize("name", UNFIT)
 
 
@@ -119,15 +86,11 @@ SIZES = [1, 2], [3]
 
 @pytest.mark.parametrize("row", range(4))
 @pytest.mark.parametrize("column", range(4))
-@pytest.mark.parametrize("value", [-1, 0.5, 3, 1e9, 1e300, np.nan, np.inf, -np.inf, 2.0**32])
-def test_code_beyond_what_there_is(
-    kernel: ModuleType, row: int, column: int, value: float
-) -> None:
+@pytest.mark.parametrize("value", [-101, 0.5, 3, 1e9, 1e300, np.nan, np.inf, -np.inf, 2.0**32])
+def test_code_beyond_what_there_is(kernel: ModuleType, row: int, column: int, value: float) -> None:
     code = code_of(kernel)
     kernel.Program(code, 4, 2, *SIZES)
-    code[row, column] = value + 100 * (column == 0 and value == 3)
-    unread = row == 3 and column == 1 and value == 3
-    assert not unread or SIZES[1] == [3]
+    code[row, column] = value + 100 * (column == 0)
     with pytest.raises(ValueError, match="beyond"):
         kernel.Program(code, 4, 2, *SIZES)
 
@@ -210,116 +173,20 @@ def test_kernel_objects_are_made_in_one_way_only(kernel: ModuleType) -> None:
             value.own = 1
 
 
-SETTINGS = 1e-13, 0.1, 0.3, 1e-4, 1e-13, 20
-CALLS = ("residuals", "linearize", "factor", "factor only", "newton", "solve")
-
-
-def call_of(name: str) -> tuple[Callable[..., object], list[Any]]:
-    """Return a method of a chain or of its factors, and arguments that fit; of None none is one."""
-    case = case_of(Kind(nz=1, nk=1, apart=1, elements=(2, 3)))
-    twin, lay = case.chain.twin, case.blocks.layout
-    residuals, derivatives = case.linearize()
-    stages = np.ascontiguousarray(derivatives.stages.swapaxes(2, 3)).ravel()
-    conditions = np.ascontiguousarray(derivatives.conditions.T).ravel()
-    widths, r = lay.widths(case.p).copy(), residuals.vector().copy()
-    if name == "residuals":
-        return twin.residuals, [case.w, case.p, r]
-    if name == "linearize":
-        return twin.linearize, [case.w, case.p, r, stages, conditions]
-    if name == "factor":
-        return lambda *a: twin.factor(*a, None), [stages, conditions, widths]
-    if name == "factor only":
-        return twin.factor, [stages, conditions, widths, r]
-    factors = twin.factor(stages, conditions, widths, None)
-    assert factors is not None
-    if name == "solve":
-        return factors.solve, [r, case.w]
-    relaxed = np.zeros(lay.conditions)
-    return lambda w, p, b, r: twin.newton(w, p, b, factors, r, SETTINGS), [case.w, case.p, relaxed, r]
-
-
-WRITTEN = {
-    "residuals": (2,),
-    "linearize": (2, 3, 4),
-    "factor": (),
-    "factor only": (),
-    "newton": (0, 3),
-    "solve": (1,),
-}
-
-
-@pytest.mark.parametrize("name", CALLS)
-@pytest.mark.parametrize("unfit", UNFIT)
-def test_chains_refuse_arrays_that_do_not_fit(name: str, unfit: str) -> None:
-    call, arrays = call_of(name)
-    call(*arrays)
-    for at, array in enumerate(arrays):
-        if unfit == "nothing" and (name, at) in (("newton", 2), ("factor only", 3)):
-            continue  # may be left out
-        with pytest.raises(ERRORS):
-            call(*arrays[:at], UNFIT[unfit](array), *arrays[at + 1 :])
-
-
-@pytest.mark.parametrize("name", CALLS)
-def test_chains_write_to_no_locked_array(name: str) -> None:
-    for at in range(5):
-        call, arrays = call_of(name)
-        if at < len(arrays):
-            locked(arrays[at])
-            if at in WRITTEN[name]:
-                with pytest.raises(ERRORS):
-                    call(*arrays)
-            else:
-                call(*arrays)
-
-
-def test_newton_refuses_what_is_not_its_factors(kernel: ModuleType) -> None:
-    kind = Kind(nx=2, nc=1, elements=(2, 3))
-    case = case_of(kind)
-    residuals, derivatives = case.linearize()
-    p, r = case.p, np.zeros(case.nlp.unknowns)
-    others = [
-        Kind(nx=2, nc=1, elements=(3, 2)),
-        Kind(nx=2, nc=1, elements=(5,)),
-        Kind(nx=2, nc=1, elements=(2, 3), degree=4),
-        Kind(nx=2, nc=1, elements=(2, 3), scheme="radau"),
-        Kind(nx=2, nc=1, elements=(2, 3), apart=1),
-        Kind(nx=2, nc=2, elements=(2, 3)),
-        Kind(nx=1, nz=1, nc=1, elements=(2, 3)),
-        Kind(nx=3, nc=1, elements=(2, 3)),
-    ]
-    for other in map(case_of, others):
-        foreign = other.chain.factor(other.linearize()[1], other.p).factors
-        with pytest.raises(ValueError, match="as large"):
-            case.chain.twin.newton(case.w.copy(), p, None, foreign, r, SETTINGS)
-    only = case.chain.factor(derivatives, p, residuals).factors
-    for unfit in (only, 1, "factors", case.chain, case.chain.twin, kernel, object()):
-        with pytest.raises(ValueError, match="as large"):
-            case.chain.twin.newton(case.w.copy(), p, None, unfit, r, SETTINGS)
-    same = case_of(kind)
-    theirs = same.chain.factor(derivatives, p).factors
-    case.chain.twin.newton(case.w.copy(), p, None, theirs, r, SETTINGS)
-
-
-@pytest.mark.parametrize(
-    "settings",
-    [(), SETTINGS[:5], (*SETTINGS, 1), None, 1, ("a", *SETTINGS[1:]), (*SETTINGS[:5], 1e3)],
-)
-def test_newton_refuses_other_settings(settings: Any) -> None:
-    case = case_of(Kind())
-    r = np.zeros(case.nlp.unknowns)
-    with pytest.raises(TypeError):
-        case.chain.twin.newton(case.w, case.p, None, None, r, settings)
-
-
-def test_arrays_are_let_go_after_errors_too() -> None:
-    """An array that something holds cannot be resized."""
-    held = bytearray(8 * 7)
+@each_unfit
+def test_writhe_refuses_arrays_that_do_not_fit(kernel: ModuleType, name: str) -> None:
+    points = np.random.default_rng(0).normal(size=12)
+    assert kernel.writhe(4, points) == kernel.writhe(4, points.reshape(4, 3)) != 0
     with pytest.raises(ERRORS):
-        program_of(FUNCTION).map(COUNT, 0, held, *map_arrays()[1:])
-    held += b"more"
-    call, arrays = call_of("solve")
-    arrays[0] = arrays[0].copy()
-    with pytest.raises(ERRORS):
-        call(arrays[0], arrays[1][:-1])
-    arrays[0].resize(3, refcheck=True)
+        kernel.writhe(4, UNFIT[name](points))
+
+
+def test_writhe_of_few_points_and_of_other_counts(kernel: ModuleType) -> None:
+    assert [kernel.writhe(n, np.ones(3 * n)) for n in range(4)] == [0.0] * 4
+    assert np.isnan(kernel.writhe(5, np.append(np.nan, np.arange(14.0) ** 2)))
+    for count in (-1, 3, 5, 2**31, 2**62):
+        with pytest.raises(ValueError):
+            kernel.writhe(count, np.zeros(12))
+    for arguments in ((), (4,), (4, np.zeros(12), 1), (4.0, np.zeros(12)), (2**64, np.zeros(12))):
+        with pytest.raises((TypeError, ValueError, OverflowError)):
+            kernel.writhe(*arguments)
