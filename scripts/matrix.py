@@ -101,7 +101,8 @@ def tested(python: Path, pins: str, tests: Sequence[str]) -> tuple[int, str]:
         uv("venv", new, "--python", python)
         inside = new / ("Scripts" if os.name == "nt" else "bin") / "python"
         uv("pip", "install", "--python", inside, "--only-binary", ":all:", "-r", listed)
-        uv("pip", "install", "--python", inside, "--no-deps", ".")
+        # Editable: tests run on the sources, and there the kernel is built.
+        uv("pip", "install", "--python", inside, "--no-deps", "--editable", ".")
         command = [inside, "-m", "pytest", "-p", "no:cacheprovider", *tests]
         with subprocess.Popen(command, cwd=ROOT, stdout=subprocess.PIPE, text=True) as process:
             assert process.stdout is not None

@@ -8,7 +8,7 @@ from ribbonopt.errors import SceneError
 from ribbonopt.studies.continuation.columns import COLUMNS, HINT
 from ribbonopt.version import VERSION
 
-from .terminal import Parser
+from .terminal import Parser, say
 
 
 def parser() -> argparse.ArgumentParser:
@@ -34,6 +34,12 @@ def parser() -> argparse.ArgumentParser:
         "check", help="validate a scene and count unknowns and conditions", formatter_class=_help
     )
     _scene(check)
+    check.add_argument(
+        "--versions",
+        action=_Versions,
+        nargs=0,
+        help="print instead what answers depend on, the compiled kernel included, and exit",
+    )
 
     compare = verbs.add_parser(
         "compare",
@@ -107,6 +113,18 @@ def parser() -> argparse.ArgumentParser:
     _columns(plot, "columns of a branch or a batch to draw, such as u2:energy")
     plot.add_argument("--out", metavar="DIR", help="folder for the pictures (default: RESULT)")
     return result
+
+
+class _Versions(argparse.Action):
+    """Prints versions and ends the command, which needs no scene then."""
+
+    def __call__(self, parser: argparse.ArgumentParser, *_: object) -> None:
+        """Print one line for each."""
+        from ribbonopt.output.summary import versions
+
+        width = max(map(len, versions()))
+        say("\n".join(f"{name:{width}}  {found}" for name, found in versions().items()))
+        parser.exit()
 
 
 def _columns(verb: argparse.ArgumentParser, words: str) -> None:

@@ -10,14 +10,20 @@ import os
 from importlib import import_module
 from types import ModuleType
 
+#: of what calls the compiled module and what it offers: the same in `source/kernel.h`
+INTERFACE = 1
+
 
 def _loaded() -> tuple[ModuleType | None, str]:
     if os.environ.get("RIBBONOPT_KERNEL", "on").strip().lower() in ("off", "0", "no", "false"):
         return None, "off (RIBBONOPT_KERNEL)"
     try:
-        return import_module("ribbonopt.kernel._compiled"), "compiled"
+        module = import_module("ribbonopt.kernel._compiled")
     except ImportError:
         return None, "not built"
+    if getattr(module, "INTERFACE", 0) != INTERFACE:  # in a checkout that has gone on since
+        return None, "not built (of other sources: install again)"
+    return module, "compiled"
 
 
 #: the compiled module, or None; and which of these it is, in words

@@ -7,6 +7,8 @@ from collections.abc import Sequence
 
 from ribbonopt.arrays import Array
 
+#: what `ribbonopt.kernel` must have been written for
+INTERFACE: int
 #: numbers of the operations that programs know, by CasADi's names
 OPERATIONS: dict[str, int]
 

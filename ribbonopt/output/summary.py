@@ -17,6 +17,7 @@ from ribbonopt.checks.phase_words import switch_of
 from ribbonopt.checks.topology import count_half_twists
 from ribbonopt.checks.validity import warnings_of
 from ribbonopt.checks.zero_moment import lacks_linearisation
+from ribbonopt.kernel import STATE
 from ribbonopt.plain import finite
 from ribbonopt.problem import formulation_name
 from ribbonopt.scene import Scene
@@ -184,10 +185,11 @@ def _unknown(solution: Solution) -> bool:
 
 
 def versions() -> dict[str, str]:
-    """Versions of what the numbers depend on."""
+    """Versions of what the numbers depend on, and whether the compiled kernel is used."""
     return {
         "ribbonopt": VERSION,
         "casadi": ca.CasadiMeta.version(),
         "numpy": np.__version__,
         "python": platform.python_version(),
+        "kernel": STATE,
     }

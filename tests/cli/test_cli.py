@@ -12,6 +12,7 @@ import pytest
 from references import HALF_MOEBIUS
 
 from ribbonopt.output.results import load_solution
+from ribbonopt.output.summary import versions
 from ribbonopt.scene import json_schema
 from ribbonopt.version import VERSION
 
@@ -51,6 +52,18 @@ def test_solve_json_is_one_object(run: Run, half: Path) -> None:
 
 def test_solve_quiet_prints_nothing(run: Run, half: Path) -> None:
     assert run("solve", half, "--quiet") == (0, "", "")
+
+
+def test_check_prints_versions_and_needs_no_scene(
+    run: Run, capsys: pytest.CaptureFixture[str]
+) -> None:
+    with pytest.raises(SystemExit) as ended:
+        run("check", "--versions")
+    out, err = capsys.readouterr()
+    assert (ended.value.code, err) == (0, "")
+    told = dict(line.split(maxsplit=1) for line in out.splitlines())
+    assert told == versions()
+    assert {"ribbonopt", "casadi", "numpy", "python", "kernel"} == told.keys()
 
 
 def test_overrides_change_the_scene(run: Run, configs: Path) -> None:

@@ -20,6 +20,7 @@ _Static_assert(sizeof(size_t) >= 8 && sizeof(int) >= 4, "the kernel is for 64 bi
 #define INDEPENDENT
 #endif
 
+#define INTERFACE 1 /* to be raised with that of ribbonopt/kernel/__init__.py */
 #define LANES 16 /* points that an instruction serves at once */
 #define OPS(X)                                                                                     \
     X(INPUT) X(OUTPUT) X(CONST) X(ASSIGN) X(ADD) X(SUB) X(MUL) X(DIV) X(NEG) X(EXP) X(LOG) X(POW)  \

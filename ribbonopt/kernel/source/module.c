@@ -308,7 +308,8 @@ PyMODINIT_FUNC PyInit__compiled(void)
         Py_DECREF(number);
     }
     if (PyType_Ready(&ProgramType) || PyType_Ready(&ChainType) || PyType_Ready(&FactorsType) ||
-        PyModule_AddObject(module, "OPERATIONS", operations))
+        PyModule_AddObject(module, "OPERATIONS", operations) ||
+        PyModule_AddIntConstant(module, "INTERFACE", INTERFACE))
         return NULL;
     Py_INCREF(&ProgramType);
     Py_INCREF(&ChainType);
