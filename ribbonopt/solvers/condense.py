@@ -13,6 +13,7 @@ The factors are kept: a new right-hand side costs matrix-vector products only.
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import cached_property
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
@@ -99,8 +100,10 @@ class CondensedSystem:
         # Nodes that remain in each phase; neighbouring phases share one.
         self._ends = np.cumsum([0, *(len(a) for a, _, _ in rest)])
         A, B, C = (np.concatenate(part) for part in zip(*rest, strict=True))
-        final = self._final(A, B, C, derivatives.conditions)
-        self._final_inverse = _across_neutral(final) if neutral else np.linalg.inv(final)
+        self._final = self._final_of(A, B, C, derivatives.conditions)
+        self._neutral, self._unused = neutral, only is not None and not neutral
+        if not self._unused:
+            _ = self._final_inverse  # tells what is singular now
 
     def solve(self, residuals: Residuals) -> Array:
         """Newton step (nw,): minus the inverse of the Jacobian times the residuals."""
@@ -110,7 +113,7 @@ class CondensedSystem:
             chain.reduce(d[s]) for chain, s in zip(self._chains, lay.phase_slices, strict=True)
         ]
         right = np.concatenate([*(rest.ravel() for _, rest in reduced), -residuals.conditions])
-        unknowns = self._final_inverse @ right
+        unknowns = self._solve_final(right)
         remaining = unknowns[: len(unknowns) - lay.nc].reshape(-1, lay.nx)
         c = unknowns[len(unknowns) - lay.nc :]
         parts = [
@@ -129,10 +132,10 @@ class CondensedSystem:
         That is the determinant of the conditions by the first node and the constants, as single
         shooting has it: the same number on every mesh, to the accuracy of the mesh.
         """
-        sign, log = np.linalg.slogdet(self._final_inverse)
+        sign, log = np.linalg.slogdet(self._final)
         # The first node's columns go behind those of the nodes that are left; each that is not has
         # gone to the front already, past an odd number of rows and columns of blocks.
-        parts = [(float(sign), -float(log)), ((-1.0) ** (self._layout.nx * self._ends[-1]), 0.0)]
+        parts = [(float(sign), float(log)), ((-1.0) ** (self._layout.nx * self._ends[-1]), 0.0)]
         for chain in self._chains:
             for level in chain.levels:
                 triangles = np.diagonal(level.R_inverse, axis1=1, axis2=2)
@@ -140,7 +143,19 @@ class CondensedSystem:
                 parts.append((float(sign), -float(np.log(np.abs(triangles)).sum())))
         return float(np.prod([sign for sign, _ in parts])), sum(log for _, log in parts)
 
-    def _final(self, A: Array, B: Array, C: Array, conditions: Array) -> Array:
+    @cached_property
+    def _final_inverse(self) -> Array:
+        inverse = _across_neutral if self._neutral else np.linalg.inv
+        return np.asarray(inverse(self._final), dtype=float)
+
+    def _solve_final(self, right: Array) -> Array:
+        """Remaining nodes and constants; for one right-hand side an inverse is too much."""
+        if self._unused:
+            self._unused = False
+            return np.asarray(np.linalg.solve(self._final, right), dtype=float)
+        return self._final_inverse @ right
+
+    def _final_of(self, A: Array, B: Array, C: Array, conditions: Array) -> Array:
         """Dense matrix of the remaining nodes and the constants."""
         lay, count = self._layout, len(A)
         nx, width = lay.nx, (count + 1) * lay.nx

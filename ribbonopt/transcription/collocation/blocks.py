@@ -21,6 +21,7 @@ from ribbonopt.transcription.tableaus import Tableau, next_tableau
 
 from .elimination import StageElimination
 from .phase_equations import rates_of
+from .splitting import Splitting
 
 if TYPE_CHECKING:
     from ribbonopt.transcription.structure import Output
@@ -113,8 +114,7 @@ class ElementBlocks:
         self, derivatives: Derivatives, p: Array, only: Residuals | None = None
     ) -> StageElimination:
         """Solve every element's stage equations for its stages, maybe for some residuals only."""
-        widths = self.widths(p)
-        return StageElimination(self.layout, self.tableau, derivatives.stages, widths, only)
+        return StageElimination(self._splitting, derivatives.stages, self.widths(p), only)
 
     def growth(self, derivatives: Derivatives, p: Array) -> Array:
         """Exponents (N,) by which neighbouring solutions part in each element, or meet."""
@@ -166,6 +166,11 @@ class ElementBlocks:
     def _coefficients(self) -> Array:
         """Butcher matrix, and the weights below it."""
         return np.vstack([self.tableau.matrix, self.tableau.weights])
+
+    @cached_property
+    def _splitting(self) -> Splitting:
+        contains = np.any([f.contains for f in self.phases], axis=0)
+        return Splitting(self.layout, self.tableau, contains)
 
     @cached_property
     def _depends_on_position(self) -> bool:
