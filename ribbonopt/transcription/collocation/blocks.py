@@ -153,7 +153,7 @@ class ElementBlocks:
         nodes, stages, _ = parts
         values = values.reshape(lay.element_count, lay.stages, lay.stage_equations)
         rates = self.widths(p)[:, None, None] * values[:, :, : lay.nx]
-        integrals = self._coefficients @ rates
+        integrals = self.tableau.coefficients @ rates
         integrals += nodes[:-1, None]
         ends = nodes[1:] - integrals[:, -1]
         if lay.nx == lay.stage_equations:
@@ -161,11 +161,6 @@ class ElementBlocks:
         result = values.copy()
         result[:, :, : lay.nx] = stages[:, :, : lay.nx] - integrals[:, :-1]
         return Residuals(result, ends, b)
-
-    @cached_property
-    def _coefficients(self) -> Array:
-        """Butcher matrix, and the weights below it."""
-        return np.vstack([self.tableau.matrix, self.tableau.weights])
 
     @cached_property
     def _splitting(self) -> Splitting:

@@ -31,7 +31,7 @@ class StageElimination:
     ) -> None:
         self._split, self._only = splitting, only
         lay, R, Q = splitting.layout, splitting.integrated, splitting.rest
-        (nr, nq, nd), coefficients = splitting.counts, splitting.coefficients
+        (nr, nq, nd), coefficients = splitting.counts, splitting.tableau.coefficients
         N, K, nx, nc = lay.element_count, lay.stages, lay.nx, lay.nc
         J = J * splitting.scaled(widths)
         of_R, of_Q = J[:, :, R], J[:, :, Q]
@@ -93,7 +93,7 @@ class StageElimination:
             return self._end - residuals.nodes, (self._share, of_R)
         count, states = len(of_R), split.counts[2]
         rates = self._coupling @ of_R[..., None]
-        sums = split.coefficients @ rates[:, :, :states, 0]
+        sums = split.tableau.coefficients @ rates[:, :, :states, 0]
         sides = self._own(residuals.stages)
         sides[:, :, :states] += sums[:, :-1]
         if len(split.own) > states:

@@ -65,14 +65,9 @@ class Splitting:
         return found, self.layout.nv - found, self.layout.nx - found
 
     @cached_property
-    def coefficients(self) -> Array:
-        """Butcher matrix, and the weights below it: (K + 1, K)."""
-        return np.vstack([self.tableau.matrix, self.tableau.weights])
-
-    @cached_property
     def repeated(self) -> Array:
-        """The same for each unknown of the rest: (K + 1, 1, K nq)."""
-        return np.repeat(self.coefficients, self.counts[1], axis=1)[:, None]
+        """Coefficients of the scheme, for each unknown of the rest: (K + 1, 1, K nq)."""
+        return np.repeat(self.tableau.coefficients, self.counts[1], axis=1)[:, None]
 
     @cached_property
     def identities(self) -> Array:
