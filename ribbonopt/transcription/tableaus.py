@@ -211,7 +211,7 @@ def _legendre(x: Array, degree: int) -> Array:
         P[1] = x
     for k in range(1, degree):
         P[k + 1] = ((2 * k + 1) * x * P[k] - k * P[k - 1]) / (k + 1)
-    return P.T
+    return np.asarray(P.T)
 
 
 def _shifted_legendre(t: Array, degree: int) -> Array:
