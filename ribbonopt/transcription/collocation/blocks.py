@@ -174,8 +174,7 @@ class ElementBlocks:
 
     @cached_property
     def _splitting(self) -> Splitting:
-        contains = np.any([f.contains for f in self.phases], axis=0)
-        return Splitting(self.layout, self.tableau, contains)
+        return Splitting(self.layout, self.tableau, self.phases)
 
     @cached_property
     def _depends_on_position(self) -> bool:

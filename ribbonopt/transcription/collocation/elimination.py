@@ -35,48 +35,45 @@ class StageElimination:
         N, K, nx, nc = lay.element_count, lay.stages, lay.nx, lay.nc
         J = J * splitting.scaled(widths)
         of_R, of_Q = J[:, :, R], J[:, :, Q]
-        inner, self._coupling = of_Q[..., Q], of_Q[..., R]
-        # Columns everywhere: unknowns of the rest at all stages, constants, first node, residuals.
+        # Columns everywhere: unknowns of the rest at all stages, constants, first node.
         first, last = K * nq, K * nq + nc
-        E = np.empty((N, K + 1, nr, last))
+        E = np.empty((N, K + 1, nr, last + nx))
         by_stage = of_R[..., Q].swapaxes(1, 2).reshape(N, 1, nr, first)
-        np.multiply(splitting.repeated, by_stage, out=E[..., :first])
+        np.multiply(splitting.repeated(nq), by_stage, out=E[..., :first])
         by_constants = of_R[..., lay.nv :].reshape(N, K, nr * nc)
-        E[..., first:] = (coefficients @ by_constants).reshape(N, K + 1, nr, nc)
-        columns = last + nx + (only is not None)
-        rates = np.zeros((N, K, nq, columns))
-        np.matmul(self._coupling, E[:, :K], out=rates[..., :last])
+        E[..., first:last] = (coefficients @ by_constants).reshape(N, K + 1, nr, nc)
+        E[..., last:] = splitting.starts[R]
+        inner, coupling = of_Q[..., Q], of_Q[..., R]
+        rates = coupling @ E[:, :K]
         own = np.einsum("eiqip->eiqp", rates[..., :first].reshape(N, K, nq, K, nq))
         own += inner
         rates[..., first:last] += of_Q[..., lay.nv :]
-        rates[..., last : last + nx][..., R] = self._coupling
-        if only is not None:
-            rates[..., -1:] = self._coupling @ -only.stages[:, :, R, None]
-        sums = coefficients @ rates[:, :, :nd].reshape(N, K, nd * columns)
-        sums = sums.reshape(N, K + 1, nd, columns)
+        sums = coefficients @ rates[:, :, :nd].reshape(N, K, nd * (last + nx))
+        sums = sums.reshape(N, K + 1, nd, last + nx)
+        sums[..., last:] += splitting.starts[splitting.rest_states]
         rows = sums[:, :K] if nq == nd else np.concatenate([sums[:, :K], rates[:, :, nd:]], axis=2)
         matrix = -rows[..., :first].reshape(N, first, first)
         matrix.reshape(N, first**2)[:, :: first + 1] += splitting.diagonal
-        sides = rows[..., first:]
-        sides[..., nc : nc + nx] += splitting.start
-        if only is not None:
-            sides[..., -1] += self._own(only.stages)
-        sides = sides.reshape(N, first, columns - first)
+        sides = rows[..., first:].reshape(N, first, nc + nx)
+        step = np.empty((N, nx, last + nx))
+        step[:, R], step[:, splitting.rest_states] = E[:, K], sums[:, K]
+        by_rest, relation = step[..., :first], step[..., first:]
+        self._by_integrated = self._of_integrated(coupling)
         if only is None:
-            self._inverse: Array = np.asarray(np.linalg.inv(matrix), dtype=float)
-            solved = self._inverse @ sides
+            inverse = np.asarray(np.linalg.inv(matrix), dtype=float)
+            self._to = inverse @ sides
+            #: of right-hand sides: the rest, and below what the step makes of it
+            self._solution = np.concatenate([inverse, by_rest @ inverse], axis=1)
         else:
             # Less work, if no other residuals come.
+            own_sides, end = self._sides(only.stages)
+            sides = np.concatenate([sides, own_sides[..., None]], axis=2)
             solved = np.asarray(np.linalg.solve(matrix, sides), dtype=float)
-        step = np.zeros((N, nx, columns))
-        step[:, R, :last], step[:, splitting.rest_states] = E[:, K], sums[:, K]
-        self._step = step[..., :first]
-        relation = step[..., first:] + self._step @ solved
-        self._to, self._share = solved[..., : nc + nx], solved[..., -1]
-        self._from_rest = E[:, :K].reshape(N, K * nr, last)
-        ones = splitting.identities
-        self._relations = -ones - relation[..., nc : nc + nx], ones, -relation[..., :nc]
-        self._end = relation[..., -1]
+            self._to, self._share = solved[..., :-1], solved[..., -1]
+            self._end = end + times(by_rest, self._share)
+        relation += by_rest @ self._to
+        self._from_rest = E[:, :K].reshape(N, K * nr, last + nx)
+        self._relations = -relation[..., nc:], splitting.identities, -relation[..., :nc]
 
     @property
     def relations(self) -> tuple[Array, Array, Array]:
@@ -84,46 +81,55 @@ class StageElimination:
         return self._relations
 
     def reduce(self, residuals: Residuals) -> tuple[Array, Share]:
-        """Right-hand sides d (N, nx), and shares of the rest (N, K nq) and of R (N, K, nr)."""
-        split = self._split
-        of_R = -residuals.stages[:, :, split.integrated]
+        """Right-hand sides d (N, nx), and shares: of the rest (N, K nq), residuals of R."""
+        of_R = residuals.stages[:, :, self._split.integrated]
         if self._only is not None:
             if residuals.stages is not self._only.stages:
                 raise ValueError("these factors are for other residuals of the stages")
             return self._end - residuals.nodes, (self._share, of_R)
-        count, states = len(of_R), split.counts[2]
-        rates = self._coupling @ of_R[..., None]
-        sums = split.tableau.coefficients @ rates[:, :, :states, 0]
-        sides = self._own(residuals.stages)
-        sides[:, :, :states] += sums[:, :-1]
-        if len(split.own) > states:
-            sides[:, :, states:] += rates[:, :, states:, 0]
-        V = times(self._inverse, sides.reshape(count, len(split.diagonal)))
-        d = times(self._step, V)
-        d[:, split.rest_states] += sums[:, -1]
-        d -= residuals.nodes
-        return d, (V, of_R)
+        sides, end = self._sides(residuals.stages)
+        solved = times(self._solution, sides)
+        first = sides.shape[1]
+        end += solved[:, first:]
+        end -= residuals.nodes
+        return end, (solved[:, :first], of_R)
 
     def expand(self, nodes: Array, constants: Array, share: Share) -> Array:
         """Newton steps of the stages (N, K nv)."""
         split, lay = self._split, self._split.layout
         V, of_R = share
         N, first = V.shape
-        found = np.empty((N, first + lay.nc))
-        found[:, first:] = constants
-        known = np.empty((N, lay.nc + lay.nx))
-        known[:, : lay.nc], known[:, lay.nc :] = constants, nodes[:-1]
-        np.add(V, times(self._to, known), out=found[:, :first])
+        found = np.empty((N, first + lay.nc + lay.nx))
+        found[:, first : first + lay.nc], found[:, first + lay.nc :] = constants, nodes[:-1]
+        np.add(V, times(self._to, found[:, first:]), out=found[:, :first])
         stages = np.empty((N, lay.stages, lay.nv))
         stages[:, :, split.rest] = found[:, :first].reshape(N, lay.stages, split.counts[1])
         integrals = times(self._from_rest, found).reshape(of_R.shape)
-        integrals += of_R
-        stages[:, :, split.integrated] = integrals + nodes[:-1, None, split.integrated]
+        stages[:, :, split.integrated] = integrals - of_R
         return stages.reshape(N, lay.stages * lay.nv)
 
-    def _own(self, stages: Array) -> Array:
-        """Right-hand sides (N, K, nq) of the rest of the equations by residuals of their own."""
-        return np.asarray(stages[:, :, self._split.rest] * self._split.signs)
+    def _sides(self, stages: Array) -> tuple[Array, Array]:
+        """Right-hand sides by residuals: (N, K nq) of the rest, (N, nx) of the step but for V."""
+        split, N, first = self._split, len(stages), len(self._split.diagonal)
+        of_R = stages[:, :, split.integrated].reshape(N, -1)
+        whole = times(self._by_integrated, of_R)
+        whole[:, :first] += (split.signs * stages[:, :, split.rest]).reshape(N, first)
+        return whole[:, :first], whole[:, first:]
+
+    def _of_integrated(self, coupling: Array) -> Array:
+        """Right-hand sides (N, K nq + nx, K nr) by residuals of R: of the rest, of the step."""
+        split = self._split
+        (nr, nq, nd), (N, K) = split.counts, coupling.shape[:2]
+        whole = np.zeros((N, K * nq + split.layout.nx, K * nr))
+        rows = whole[:, : K * nq].reshape(N, K, nq, K * nr)
+        of_states = coupling[:, :, :nd].swapaxes(1, 2).reshape(N, 1, nd, K * nr)
+        factors = -split.repeated(nr)
+        np.multiply(factors[:-1], of_states, out=rows[:, :, :nd])
+        whole[:, K * nq :][:, split.rest_states] = factors[-1] * of_states[:, 0]
+        if nq > nd:
+            held = np.einsum("eizir->eizr", rows[:, :, nd:].reshape(N, K, nq - nd, K, nr))
+            held -= coupling[:, :, nd:]
+        return whole
 
 
 @dataclass(frozen=True, eq=False)

@@ -10,6 +10,7 @@ so that only the unknowns Q of the rest are solved for in an element.
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import cached_property
 
@@ -17,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ribbonopt.arrays import Array
+from ribbonopt.transcription.functions import StageFunctions
 from ribbonopt.transcription.layout import Layout
 from ribbonopt.transcription.tableaus import Tableau
 
@@ -25,19 +27,15 @@ Places = slice | NDArray[np.intp]
 
 @dataclass(frozen=True, eq=False)
 class Splitting:
-    """Unknowns of a stage in two parts, and what the elimination needs of a scheme for them.
-
-    `contains` (ne, nv + nc) says which equation of a stage contains which of its unknowns.
-    """
+    """Unknowns of a stage in two parts, and what the elimination needs of a scheme for them."""
 
     layout: Layout
     tableau: Tableau
-    contains: NDArray[np.bool_]
+    phases: Sequence[StageFunctions]
 
     @cached_property
     def _integrated(self) -> NDArray[np.intp]:
-        nx = self.layout.nx
-        return independent(self.contains[:nx, :nx])
+        return integrated_states(self.phases, self.layout.nx)
 
     @cached_property
     def _others(self) -> NDArray[np.intp]:
@@ -64,10 +62,9 @@ class Splitting:
         found = len(self._integrated)
         return found, self.layout.nv - found, self.layout.nx - found
 
-    @cached_property
-    def repeated(self) -> Array:
-        """Coefficients of the scheme, for each unknown of the rest: (K + 1, 1, K nq)."""
-        return np.repeat(self.tableau.coefficients, self.counts[1], axis=1)[:, None]
+    def repeated(self, count: int) -> Array:
+        """Coefficients of the scheme, for each of `count` unknowns of a stage: (K + 1, 1, K n)."""
+        return np.repeat(self.tableau.coefficients, count, axis=1)[:, None]
 
     @cached_property
     def identities(self) -> Array:
@@ -76,14 +73,14 @@ class Splitting:
         return np.broadcast_to(np.eye(lay.nx), (lay.element_count, lay.nx, lay.nx))
 
     @cached_property
-    def own(self) -> Array:
-        """One where a row of a stage's rest is that of a state, zero where algebraic, (nq, 1)."""
-        return np.asarray(self._others < self.layout.nx, dtype=float)[:, None]
+    def starts(self) -> Array:
+        """Identity (nx, nx): what states have of those of the first node."""
+        return np.eye(self.layout.nx)
 
     @cached_property
     def signs(self) -> Array:
         """Signs (nq,) with which residuals of the rest are right-hand sides."""
-        return 1 - 2 * self.own[:, 0]
+        return np.where(self._others < self.layout.nx, -1.0, 1.0)
 
     def scaled(self, widths: Array) -> Array:
         """Return factors of derivatives (N, K, ne, nv + nc): the width where rows are rates."""
@@ -94,13 +91,13 @@ class Splitting:
 
     @cached_property
     def diagonal(self) -> Array:
-        """The same for all stages of an element: (K nq,)."""
-        return np.tile(self.own[:, 0], self.layout.stages)
+        """One where a row of an element's rest is that of a state, zero elsewhere: (K nq,)."""
+        return np.tile(np.asarray(self._others < self.layout.nx, dtype=float), self.layout.stages)
 
-    @cached_property
-    def start(self) -> Array:
-        """Where the first node's states stand in the rows of the rest, (nq, nx)."""
-        return np.asarray(self._others[:, None] == np.arange(self.layout.nx), dtype=float)
+
+def integrated_states(phases: Sequence[StageFunctions], nx: int) -> NDArray[np.intp]:
+    """States R: their derivatives contain none of them, in any phase."""
+    return independent(np.any([f.contains[:nx, :nx] for f in phases], axis=0))
 
 
 def independent(contains: NDArray[np.bool_]) -> NDArray[np.intp]:
