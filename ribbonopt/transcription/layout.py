@@ -98,9 +98,14 @@ class Layout:
         """Index of the node at the start, at each phase boundary and at the end."""
         return tuple(int(i) for i in np.concatenate([[0], np.cumsum(self.elements)]))
 
+    @cached_property
+    def points(self) -> Index:
+        """The same as an array (P + 1,)."""
+        return np.array(self.point_elements)
+
     def condition_columns(self) -> NDArray[np.int64]:
         """Place in w of every variable of the conditions: the states at all points, c."""
-        nodes = np.array(self.point_elements)[:, None] * self.element_unknowns + np.arange(self.nx)
+        nodes = self.points[:, None] * self.element_unknowns + np.arange(self.nx)
         return np.concatenate([nodes.ravel(), self.constants_at + np.arange(self.nc)])
 
     @cached_property

@@ -173,6 +173,11 @@ class ElementBlocks:
         return Residuals(result, ends, b)
 
     @cached_property
+    def _nowhere(self) -> Array:
+        """Positions (N, K) of stages where none are read."""
+        return np.zeros((self.layout.element_count, self.layout.stages))
+
+    @cached_property
     def _splitting(self) -> Splitting:
         return Splitting(self.layout, self.tableau, self.phases)
 
@@ -185,10 +190,7 @@ class ElementBlocks:
         lay = self.layout
         _, stages, c = parts
         theta = lay.theta(p)
-        if self._depends_on_position:
-            positions = self.stage_positions(p)
-        else:
-            positions = np.zeros((lay.element_count, lay.stages))
+        positions = self.stage_positions(p) if self._depends_on_position else self._nowhere
         places = lay.with_known(positions, p)
         if len(calls) == 1:
             return calls[0](stages, c, theta, places)
