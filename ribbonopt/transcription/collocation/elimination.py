@@ -58,15 +58,16 @@ class StageElimination:
         step = np.empty((N, nx, last + nx))
         step[:, R], step[:, splitting.rest_states] = E[:, K], sums[:, K]
         by_rest, relation = step[..., :first], step[..., first:]
-        self._by_integrated = self._of_integrated(coupling)
+        by_residuals = self._of_residuals(coupling)
         if only is None:
+            self._by_residuals = by_residuals
             inverse = np.asarray(np.linalg.inv(matrix), dtype=float)
             self._to = inverse @ sides
             #: of right-hand sides: the rest, and below what the step makes of it
             self._solution = np.concatenate([inverse, by_rest @ inverse], axis=1)
         else:
             # Less work, if no other residuals come.
-            own_sides, end = self._sides(only.stages)
+            own_sides, end = _sides(by_residuals, only.stages, first)
             sides = np.concatenate([sides, own_sides[..., None]], axis=2)
             solved = np.asarray(np.linalg.solve(matrix, sides), dtype=float)
             self._to, self._share = solved[..., :-1], solved[..., -1]
@@ -87,9 +88,9 @@ class StageElimination:
             if residuals.stages is not self._only.stages:
                 raise ValueError("these factors are for other residuals of the stages")
             return self._end - residuals.nodes, (self._share, of_R)
-        sides, end = self._sides(residuals.stages)
+        first = len(self._split.diagonal)
+        sides, end = _sides(self._by_residuals, residuals.stages, first)
         solved = times(self._solution, sides)
-        first = sides.shape[1]
         end += solved[:, first:]
         end -= residuals.nodes
         return end, (solved[:, :first], of_R)
@@ -108,28 +109,28 @@ class StageElimination:
         stages[:, :, split.integrated] = integrals - of_R
         return stages.reshape(N, lay.stages * lay.nv)
 
-    def _sides(self, stages: Array) -> tuple[Array, Array]:
-        """Right-hand sides by residuals: (N, K nq) of the rest, (N, nx) of the step but for V."""
-        split, N, first = self._split, len(stages), len(self._split.diagonal)
-        of_R = stages[:, :, split.integrated].reshape(N, -1)
-        whole = times(self._by_integrated, of_R)
-        whole[:, :first] += (split.signs * stages[:, :, split.rest]).reshape(N, first)
-        return whole[:, :first], whole[:, first:]
+    def _of_residuals(self, coupling: Array) -> Array:
+        """Right-hand sides (N, K nq + nx, K ne) by residuals: of the rest, and of the step."""
+        split, R = self._split, self._split.integrated
+        (_, nq, nd), (N, K), nv = split.counts, coupling.shape[:2], split.layout.nv
+        whole = np.zeros((N, K * nq + split.layout.nx, K, nv))
+        rows, step = whole[:, : K * nq].reshape(N, K, nq, K, nv), whole[:, K * nq :]
+        of_states = coupling[:, :, :nd].swapaxes(1, 2)
+        factors = -split.tableau.coefficients[:, None, :, None]
+        rows[:, :, :nd, :, R] = factors[:-1] * of_states[:, None]
+        ends = np.zeros((N, nd, K, nv))
+        ends[..., R] = factors[-1] * of_states
+        step[:, split.rest_states] = ends
+        held = np.einsum("eiqiv->eiqv", rows)
+        held[:, :, nd:, R] -= coupling[:, :, nd:]
+        held[..., split.rest] += np.diag(split.signs)
+        return whole.reshape(N, K * nq + split.layout.nx, K * nv)
 
-    def _of_integrated(self, coupling: Array) -> Array:
-        """Right-hand sides (N, K nq + nx, K nr) by residuals of R: of the rest, of the step."""
-        split = self._split
-        (nr, nq, nd), (N, K) = split.counts, coupling.shape[:2]
-        whole = np.zeros((N, K * nq + split.layout.nx, K * nr))
-        rows = whole[:, : K * nq].reshape(N, K, nq, K * nr)
-        of_states = coupling[:, :, :nd].swapaxes(1, 2).reshape(N, 1, nd, K * nr)
-        factors = -split.repeated(nr)
-        np.multiply(factors[:-1], of_states, out=rows[:, :, :nd])
-        whole[:, K * nq :][:, split.rest_states] = factors[-1] * of_states[:, 0]
-        if nq > nd:
-            held = np.einsum("eizir->eizr", rows[:, :, nd:].reshape(N, K, nq - nd, K, nr))
-            held -= coupling[:, :, nd:]
-        return whole
+
+def _sides(by_residuals: Array, stages: Array, first: int) -> tuple[Array, Array]:
+    """Right-hand sides by residuals: (N, K nq) of the rest, (N, nx) of the step but for V."""
+    whole = times(by_residuals, stages.reshape(len(stages), -1))
+    return whole[:, :first], whole[:, first:]
 
 
 @dataclass(frozen=True, eq=False)
