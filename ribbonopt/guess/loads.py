@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from bisect import bisect_left
 from dataclasses import dataclass
 
 import casadi as ca
@@ -15,7 +16,7 @@ from ribbonopt.problem import BoundaryValueProblem, Posed, Ribbon
 from ribbonopt.scene import LoadGuess
 from ribbonopt.transcription.buffered import Buffered, Mapped
 
-STEPS = 32  # of one call
+STEPS = (8, 16, 24, 32)  # of one call
 POINTS = 33  # at which natural strains are looked at
 CURVATURES = ("natural.curvature", "natural.twist", "natural.across")
 
@@ -65,23 +66,26 @@ class IntegratedLoads:
         model, (position, frame) = self.ribbon.model, self.posed.start
         n, m = np.array(self.loads.force), np.array(self.loads.moment)
         start = RodFields(position[None], frame[None], n[None], m[None])
-        states, c = model.pack(start, position)
-        states = np.hstack([states, np.zeros((1, len(self.ribbon.law.states)))])
-        length, s = self.posed.length, np.array(self.posed.scene.interval[:1])
-        widths = np.diff(fraction) * (-length if self.backwards else length)
+        (state,), c = model.pack(start, position)
+        length = self.posed.length
+        widths = (fraction[1:] - fraction[:-1]) * (-length if self.backwards else length)
         # Steps short against the strains, which the loads bound.
-        substeps = int(np.clip(np.ceil(np.abs(widths).max() * self._most_strain), 1, 100))
-        theta = self.posed.values
-        widths = np.repeat(widths / substeps, substeps)
-        steps, shared = self.ribbon.kept(_steps), (np.tile(c, STEPS), np.tile(theta, STEPS))
+        wanted = np.ceil(np.abs(widths).max() * self._most_strain)
+        substeps = int(min(max(wanted, 1), 100))
+        if substeps > 1:
+            widths = np.repeat(widths / substeps, substeps)
+        size, steps = self.ribbon.kept(_Steps).of(len(widths))
+        shared = c[None].repeat(size, axis=0), self.posed.values[None].repeat(size, axis=0)
         count = len(widths)
-        widths = np.append(widths, np.zeros(-count % STEPS))  # steps of no width go nowhere
-        parts = [states]
-        at = s[0] + np.cumsum(widths) - widths + (length if self.backwards else 0.0)
-        for part, here in zip(widths.reshape(-1, STEPS), at.reshape(-1, STEPS), strict=True):
-            (after,) = steps(parts[-1][-1], *shared, part, here)
-            parts.append(after.reshape(STEPS, -1))
-        return np.vstack(parts)[: count + 1 : substeps], c
+        h = np.zeros(-(-count // size) * size)  # steps of no width go nowhere
+        h[:count] = widths
+        at = self.posed.scene.interval[0] + (length if self.backwards else 0.0) + np.cumsum(h) - h
+        states = np.zeros((len(h) + 1, len(self.ribbon.states)))
+        states[0, : len(state)] = state
+        for i in range(0, len(h), size):
+            (after,) = steps(states[i], *shared, h[i : i + size], at[i : i + size])
+            states[i + 1 : i + 1 + size] = after.reshape(size, -1)
+        return states[: count + 1 : substeps], c
 
 
 def _bounded_strain(posed: Posed, loads: LoadGuess) -> float:
@@ -106,9 +110,23 @@ def _sections(ribbon: Ribbon) -> Mapped:
     return Mapped(ribbon.section_function)
 
 
-def _steps(ribbon: Ribbon) -> Buffered:
-    """States after each of `STEPS` steps, from the first state and all c, theta, h and s."""
-    return Buffered(_step(ribbon).mapaccum("steps", STEPS))
+class _Steps:
+    """States after each of many steps, from the first state and all c, theta, h and s.
+
+    Of few numbers of steps in one call, so that few functions are built.
+    """
+
+    def __init__(self, ribbon: Ribbon) -> None:
+        self._step = _step(ribbon)
+        self._built: dict[int, Buffered] = {}
+
+    def of(self, count: int) -> tuple[int, Buffered]:
+        """Return the number of steps in one call, and the function: little more than `count`."""
+        calls = -(-count // STEPS[-1])
+        size = STEPS[bisect_left(STEPS, -(-count // calls))]
+        if size not in self._built:
+            self._built[size] = Buffered(self._step.mapaccum("steps", size))
+        return size, self._built[size]
 
 
 def _step(ribbon: Ribbon) -> ca.Function:

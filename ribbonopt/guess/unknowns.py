@@ -60,12 +60,13 @@ def initial_unknowns(
 
 def places_of(blocks: Blocks, p: Array, ends: Array) -> Array:
     """Fractions (k,) of the length of all nodes and stages, in order; phases meet at `ends`."""
-    widths, local, parts = blocks.widths(p), blocks.stage_positions(p), []
-    for i, s in enumerate(blocks.layout.phase_slices):
-        nodes = np.concatenate([[0.0], np.cumsum(widths[s])])[:-1]
-        positions = np.hstack([nodes[:, None], local[s]])
-        parts.append(ends[i] + (ends[i + 1] - ends[i]) * positions)
-    fractions = np.append(np.concatenate(parts).ravel(), 1.0)
+    layout = blocks.layout
+    fractions = np.ones(layout.element_count * (layout.stages + 1) + 1)
+    positions = fractions[:-1].reshape(layout.element_count, -1)
+    positions[:, 0], positions[:, 1:] = layout.starts(p), blocks.stage_positions(p)
+    for i, s in enumerate(layout.phase_slices):
+        positions[s] *= ends[i + 1] - ends[i]
+        positions[s] += ends[i]
     return np.asarray(np.minimum(fractions, 1.0))
 
 
@@ -73,7 +74,7 @@ def laid_out(blocks: Blocks, v: Array, constants: Array) -> Array:
     """Unknowns w (nw,) with the values v (k, nv) at the places of `places_of`, and constants."""
     layout = blocks.layout
     body = v[:-1].reshape(layout.element_count, layout.stages + 1, -1)
-    nodes = np.vstack([body[:, 0, : layout.nx], v[-1:, : layout.nx]])
+    nodes = np.concatenate([body[:, 0, : layout.nx], v[-1:, : layout.nx]])
     return layout.pack(nodes, body[:, 1:], constants)
 
 

@@ -88,7 +88,7 @@ class ConstantForce(Balance):
 
     def pack(self, fields: RodFields, reference: Array) -> tuple[Array, Array]:
         n = fields.n[0]
-        moment = fields.m[0] - np.cross(n, fields.r[0] - reference)
+        moment = fields.m[0] - cross_matrix(n) @ (fields.r[0] - reference)
         return np.empty((len(fields.r), 0)), np.concatenate([n, moment])
 
     def moved(self, x: Array, c: Array) -> tuple[Array, Array]:

@@ -6,6 +6,7 @@ the directors; column i of its matrix is d_i in the lab frame.
 
 from __future__ import annotations
 
+from functools import cache
 from typing import Any
 
 import casadi as ca
@@ -77,18 +78,30 @@ def quaternions_from(frames: Array) -> Array:
     """
     R = np.asarray(frames, dtype=float)
     # Of the four columns of the matrix 4 q q^T, the one of largest diagonal is safe to divide by.
-    trace = np.trace(R, axis1=1, axis2=2)
-    K = np.empty((len(R), 4, 4))
-    K[:, 0, 0] = 1 + trace
-    for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
-        K[:, i + 1, i + 1] = 1 - trace + 2 * R[:, i, i]
-        K[:, 0, i + 1] = K[:, i + 1, 0] = R[:, k, j] - R[:, j, k]
-        K[:, i + 1, j + 1] = K[:, j + 1, i + 1] = R[:, i, j] + R[:, j, i]
+    K = (R.reshape(-1, 9) @ _products() + np.eye(4).ravel()).reshape(-1, 4, 4)
     best = np.argmax(np.einsum("nii->ni", K), axis=1)
     q = K[np.arange(len(R)), best]
-    q /= np.linalg.norm(q, axis=1, keepdims=True)
+    q /= np.sqrt((q * q).sum(axis=1, keepdims=True))
     if q[0, 0] < 0:
         q[0] = -q[0]
+    if len(q) == 1:
+        return np.asarray(q)
     flips = np.where(np.einsum("ni,ni->n", q[1:], q[:-1]) < 0, -1.0, 1.0)
     q[1:] *= np.cumprod(flips)[:, None]
     return np.asarray(q)
+
+
+@cache
+def _products() -> Array:
+    """Coefficients (9, 16) of the entries of R in those of 4 q q^T less the identity."""
+    R = np.eye(9).reshape(9, 3, 3)
+    trace = np.trace(R, axis1=1, axis2=2)
+    K = np.empty((9, 4, 4))
+    K[:, 0, 0] = trace
+    for i, j, k in ((0, 1, 2), (1, 2, 0), (2, 0, 1)):
+        K[:, i + 1, i + 1] = 2 * R[:, i, i] - trace
+        K[:, 0, i + 1] = K[:, i + 1, 0] = R[:, k, j] - R[:, j, k]
+        K[:, i + 1, j + 1] = K[:, j + 1, i + 1] = R[:, i, j] + R[:, j, i]
+    found = K.reshape(9, 16)
+    found.setflags(write=False)
+    return found

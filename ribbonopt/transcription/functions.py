@@ -12,6 +12,8 @@ from dataclasses import dataclass
 from functools import cached_property
 
 import casadi as ca
+import numpy as np
+from numpy.typing import NDArray
 
 from ribbonopt.problem.contract import BoundaryValueProblem, Phase
 
@@ -49,6 +51,11 @@ class StageFunctions:
     def jacobian(self) -> ca.SX:
         """Sparse Jacobian of the equations with respect to [v; c]."""
         return ca.jacobian(self.equations, self.differential)
+
+    @cached_property
+    def contains(self) -> NDArray[np.bool_]:
+        """Which equation contains which variable: the pattern (ne, nv + nc) of the Jacobian."""
+        return np.asarray(np.array(ca.DM(self.jacobian.sparsity(), 1.0)) != 0)
 
     @cached_property
     def values(self) -> ca.Function:

@@ -98,9 +98,14 @@ class Layout:
         """Index of the node at the start, at each phase boundary and at the end."""
         return tuple(int(i) for i in np.concatenate([[0], np.cumsum(self.elements)]))
 
+    @cached_property
+    def points(self) -> Index:
+        """The same as an array (P + 1,)."""
+        return np.array(self.point_elements)
+
     def condition_columns(self) -> NDArray[np.int64]:
         """Place in w of every variable of the conditions: the states at all points, c."""
-        nodes = np.array(self.point_elements)[:, None] * self.element_unknowns + np.arange(self.nx)
+        nodes = self.points[:, None] * self.element_unknowns + np.arange(self.nx)
         return np.concatenate([nodes.ravel(), self.constants_at + np.arange(self.nc)])
 
     @cached_property
@@ -162,20 +167,24 @@ class Layout:
     def starts(self, p: Array) -> Array:
         """Relative position (N,) of every element's first node in its phase."""
         widths = self.widths(p)
-        return np.concatenate([np.cumsum(widths[s]) - widths[s] for s in self.phase_slices])
+        starts = [widths[s].cumsum() - widths[s] for s in self.phase_slices]
+        return starts[0] if len(starts) == 1 else np.concatenate(starts)
 
     def phase_nodes(self, p: Array, phase: int) -> Array:
         """Relative positions (n + 1,) of the nodes of a phase."""
-        nodes = np.concatenate([[0.0], np.cumsum(self.widths(p)[self.phase_slices[phase]])])
+        widths = self.widths(p)[self.phase_slices[phase]]
+        nodes = np.zeros(len(widths) + 1)
+        widths.cumsum(out=nodes[1:])
         nodes[-1] = 1.0
         return nodes
 
     def locate(self, p: Array, phase: int, sigma: Array) -> tuple[Index, Array, Array]:
         """Element, position in it from 0 to 1, and width, of relative positions in a phase."""
         nodes = self.phase_nodes(p, phase)
-        local = np.clip(np.searchsorted(nodes, sigma, side="right") - 1, 0, len(nodes) - 2)
-        h = np.diff(nodes)[local]
-        t = np.clip((sigma - nodes[local]) / h, 0.0, 1.0)
+        local = nodes[1:-1].searchsorted(sigma, side="right")
+        start = nodes[local]
+        h = nodes[1:][local] - start
+        t = np.minimum(np.maximum((sigma - start) / h, 0.0), 1.0)
         return local + self.phase_slices[phase].start, t, h
 
     def pack(self, nodes: Array, stages: Array, constants: Array) -> Array:

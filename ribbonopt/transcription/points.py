@@ -39,4 +39,4 @@ class Conditions:
 
     def _at_points(self, parts: Parts, p: Array) -> Parts:
         nodes, _, c = parts
-        return nodes[list(self.layout.point_elements)], c, self.layout.at_points(p)
+        return nodes.take(self.layout.points, axis=0), c, self.layout.at_points(p)

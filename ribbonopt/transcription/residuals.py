@@ -8,6 +8,8 @@ import numpy as np
 
 from ribbonopt.arrays import Array
 
+Share = tuple[Array, ...]  # what a right-hand side is to the stages of elements
+
 
 @dataclass(frozen=True, eq=False)
 class Residuals:

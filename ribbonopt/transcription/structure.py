@@ -20,7 +20,7 @@ from ribbonopt.arrays import Array
 from .collocation.compiled import CompiledChain
 from .known import Known
 from .layout import Layout
-from .residuals import Derivatives, Residuals
+from .residuals import Derivatives, Residuals, Share
 
 
 class Elimination(Protocol):
@@ -30,10 +30,10 @@ class Elimination(Protocol):
     def relations(self) -> tuple[Array, Array, Array]:
         """A (N, nx, nx), B (N, nx, nx) and C (N, nx, nc)."""
 
-    def reduce(self, residuals: Residuals) -> tuple[Array, Array]:
-        """Right-hand sides d (N, nx), and the stages' share of them (N, K nv) for `expand`."""
+    def reduce(self, residuals: Residuals) -> tuple[Array, Share]:
+        """Right-hand sides d (N, nx), and the stages' share of them for `expand`."""
 
-    def expand(self, nodes: Array, constants: Array, share: Array) -> Array:
+    def expand(self, nodes: Array, constants: Array, share: Share) -> Array:
         """Newton steps of the stages (N, K nv) from those of nodes (N+1, nx) and constants."""
 
 

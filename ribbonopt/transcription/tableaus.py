@@ -27,6 +27,15 @@ MAX_DEGREE = 10
 
 
 @dataclass(frozen=True, eq=False)
+class Inside:
+    """Places t (n,) in any element, the Lagrange basis there and its integrals (n, K) from 0."""
+
+    t: Array
+    basis: Array
+    integrals: Array
+
+
+@dataclass(frozen=True, eq=False)
 class Tableau:
     """One collocation scheme on the unit step.
 
@@ -71,6 +80,25 @@ class Tableau:
     def integrals(self, t: Array) -> Array:
         """Integrals of the l_j from 0 to t; t has shape (n,), the result (n, K)."""
         return np.asarray(_legendre_integrals(t, self.degree - 1) @ self.legendre)
+
+    @cached_property
+    def between(self) -> Inside:
+        """K + 1 places apart from the nodes, where residuals are looked at."""
+        return self.inside((np.arange(self.degree + 1) + 0.5) / (self.degree + 1))
+
+    @cached_property
+    def at_better(self) -> Inside:
+        """Nodes of the scheme of one degree more in the family."""
+        return self.inside(self.family(self.degree + 1).nodes)
+
+    def inside(self, t: Array) -> Inside:
+        """Return the basis and its integrals at places t (n,)."""
+        return Inside(t, self.basis(t), self.integrals(t))
+
+    @cached_property
+    def coefficients(self) -> Array:
+        """Butcher matrix, and the weights below it: (K + 1, K)."""
+        return np.vstack([self.matrix, self.weights])
 
     @cached_property
     def legendre(self) -> Array:
@@ -178,12 +206,12 @@ def _scaled(nodes: Array, weights: Array) -> Array:
 
 def _legendre(x: Array, degree: int) -> Array:
     """Values P_0 ... P_degree at x (n,), an array (n, degree + 1), by the three-term recurrence."""
-    P = np.ones((len(x), degree + 1))
+    P = np.ones((degree + 1, len(x)))
     if degree > 0:
-        P[:, 1] = x
+        P[1] = x
     for k in range(1, degree):
-        P[:, k + 1] = ((2 * k + 1) * x * P[:, k] - k * P[:, k - 1]) / (k + 1)
-    return P
+        P[k + 1] = ((2 * k + 1) * x * P[k] - k * P[k - 1]) / (k + 1)
+    return np.asarray(P.T)
 
 
 def _shifted_legendre(t: Array, degree: int) -> Array:

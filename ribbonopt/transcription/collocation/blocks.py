@@ -22,6 +22,7 @@ from ribbonopt.transcription.tableaus import Tableau, next_tableau
 from .compiled import CompiledChain, compiled_chain
 from .elimination import StageElimination
 from .phase_equations import rates_of
+from .splitting import Splitting
 
 if TYPE_CHECKING:
     from ribbonopt.transcription.structure import Output
@@ -123,8 +124,7 @@ class ElementBlocks:
         self, derivatives: Derivatives, p: Array, only: Residuals | None = None
     ) -> StageElimination:
         """Solve every element's stage equations for its stages, maybe for some residuals only."""
-        widths = self.widths(p)
-        return StageElimination(self.layout, self.tableau, derivatives.stages, widths, only)
+        return StageElimination(self._splitting, derivatives.stages, self.widths(p), only)
 
     def growth(self, derivatives: Derivatives, p: Array) -> Array:
         """Exponents (N,) by which neighbouring solutions part in each element, or meet."""
@@ -163,7 +163,7 @@ class ElementBlocks:
         nodes, stages, _ = parts
         values = values.reshape(lay.element_count, lay.stages, lay.stage_equations)
         rates = self.widths(p)[:, None, None] * values[:, :, : lay.nx]
-        integrals = self._coefficients @ rates
+        integrals = self.tableau.coefficients @ rates
         integrals += nodes[:-1, None]
         ends = nodes[1:] - integrals[:, -1]
         if lay.nx == lay.stage_equations:
@@ -173,9 +173,13 @@ class ElementBlocks:
         return Residuals(result, ends, b)
 
     @cached_property
-    def _coefficients(self) -> Array:
-        """Butcher matrix, and the weights below it."""
-        return np.vstack([self.tableau.matrix, self.tableau.weights])
+    def _nowhere(self) -> Array:
+        """Positions (N, K) of stages where none are read."""
+        return np.zeros((self.layout.element_count, self.layout.stages))
+
+    @cached_property
+    def _splitting(self) -> Splitting:
+        return Splitting(self.layout, self.tableau, self.phases)
 
     @cached_property
     def _depends_on_position(self) -> bool:
@@ -186,10 +190,7 @@ class ElementBlocks:
         lay = self.layout
         _, stages, c = parts
         theta = lay.theta(p)
-        if self._depends_on_position:
-            positions = self.stage_positions(p)
-        else:
-            positions = np.zeros((lay.element_count, lay.stages))
+        positions = self.stage_positions(p) if self._depends_on_position else self._nowhere
         places = lay.with_known(positions, p)
         if len(calls) == 1:
             return calls[0](stages, c, theta, places)

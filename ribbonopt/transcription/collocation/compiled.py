@@ -10,7 +10,6 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
-import casadi as ca
 import numpy as np
 
 from ribbonopt.arrays import Array
@@ -21,6 +20,8 @@ from ribbonopt.transcription.layout import Layout
 from ribbonopt.transcription.points import Conditions
 from ribbonopt.transcription.residuals import Derivatives, Residuals
 from ribbonopt.transcription.tableaus import Tableau
+
+from .splitting import integrated_states
 
 if TYPE_CHECKING:
     from ribbonopt.kernel._compiled import Chain, Factors, Program
@@ -136,7 +137,7 @@ def compiled_chain(
         programs = [program for program in found if program is not None]
         if len(programs) < len(found):
             return None
-    apart = without_one_another(phases, lay.nx)
+    apart = integrated_states(phases, lay.nx).tolist()
     others = [i for i in range(lay.nv) if i not in apart]
     n_theta = phases[0].inputs[2].numel()
     sizes = lay.stages, lay.nx, lay.nz, lay.nc, lay.conditions, lay.known, n_theta
@@ -144,15 +145,3 @@ def compiled_chain(
     points = list(lay.point_elements)
     twin = COMPILED.Chain(points, sizes, numbers, others, apart, tuple(programs))
     return CompiledChain(layout, twin)
-
-
-def without_one_another(phases: Sequence[StageFunctions], nx: int) -> list[int]:
-    """Return states whose derivatives contain none of them, in any phase."""
-    found: list[int] = []
-    patterns = [np.array(ca.DM(f.jacobian.sparsity(), 1))[:nx, :nx] for f in phases]
-    depends = np.any(patterns, axis=0)
-    for i in range(nx):
-        among = [*found, i]
-        if not depends[np.ix_(among, among)].any():
-            found = among
-    return found

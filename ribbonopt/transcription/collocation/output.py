@@ -18,11 +18,12 @@ import numpy as np
 from ribbonopt.arrays import Array
 from ribbonopt.transcription.known import Known, at_places
 from ribbonopt.transcription.layout import Index
+from ribbonopt.transcription.tableaus import Inside
 
 from .blocks import ElementBlocks
 from .phase_equations import PhaseEquations
+from .substeps import after_substeps
 
-MOST_SWEEPS = 40  # of a substep's stages
 STIFF = 3.0  # exponent of an element, from which on neighbouring solutions part too fast
 
 
@@ -83,7 +84,7 @@ class DenseOutput:
     def approximate(self, phase: int, sigma: Array) -> Array:
         """Unknowns v (k, nv) at relative positions sigma (k,): the collocation polynomials."""
         element, t, h = self.blocks.layout.locate(self.p, phase, sigma)
-        return np.hstack([self._polynomial(element, t, h), self._interpolated(element, t)])
+        return self._with_algebraic(self._polynomial(element, t, h), element, t)
 
     def moved(self, step: Array) -> DenseOutput:
         """Return the output of the unknowns w + step."""
@@ -95,7 +96,7 @@ class DenseOutput:
         widths = np.repeat(self.blocks.widths(self.p) / split, split)
         p = blocks.layout.parameters(self.theta, widths, self.known)
         if split == 1:
-            stages = self._everywhere(blocks.tableau.nodes)
+            stages = self._everywhere(self.blocks.tableau.at_better)
             w = blocks.layout.pack(self.at_nodes, stages, self.constants)
         else:
             w = blocks.sampled(self, p)
@@ -103,30 +104,15 @@ class DenseOutput:
 
     def _substeps(self, phase: int, element: Index, t: Array, h: Array) -> Array:
         """States (k, nx) after steps of t h from the first nodes of elements."""
-        nodes, tableau, lay = self.at_nodes, self.blocks.tableau, self.blocks.layout
-        e, count, K = element, len(element), tableau.degree
+        tableau, lay = self.blocks.tableau, self.blocks.layout
         stage_t = t[:, None] * tableau.nodes
-        repeated = np.repeat(e, K)
-        X = self._polynomial(repeated, stage_t.ravel(), np.repeat(h, K)).reshape(count, K, -1)
-        positions = lay.starts(self.p)[e][:, None] + h[:, None] * stage_t
-        z = self._interpolated(repeated, stage_t.ravel())
+        positions = lay.starts(self.p)[element][:, None] + h[:, None] * stage_t
         places = self._places(phase, positions.ravel())
-        equations = self.blocks.phases[phase].mapped_values
-        step = (h * t)[:, None]
-        before = last = np.inf
-        for _ in range(MOST_SWEEPS):
-            x = X.reshape(count * K, -1)
-            z = self._solved(phase, x, z, places)
-            values = equations(np.hstack([x, z]), self.constants, self.theta, places)[0]
-            F = values.reshape(count, K, -1)[:, :, : lay.nx]
-            improved = nodes[e][:, None] + step[:, None] * (tableau.matrix @ F)
-            change = float(np.abs(improved - X).max())
-            # Rounding. A change passes from position to direction and back in two sweeps.
-            if change >= last and change >= before:
-                break
-            X, before, last = improved, last, change
-        after: Array = nodes[e] + step * (tableau.weights @ F)
-        return after
+        repeated, K = np.repeat(element, tableau.degree), tableau.degree
+        x = self._polynomial(repeated, stage_t.ravel(), np.repeat(h, K))
+        v = self._with_algebraic(x, repeated, stage_t.ravel())
+        equations, start = self._equations(phase), self.at_nodes[element]
+        return after_substeps(equations, tableau, start, (h * t)[:, None], v, places)
 
     @cached_property
     def growth(self) -> Array:
@@ -148,7 +134,8 @@ class DenseOutput:
         z = self._interpolated(element, t)
         if not z.size:
             return z
-        return self._solved(phase, self.states(phase, sigma), z, self._places(phase, sigma))
+        places = self._places(phase, sigma)
+        return self._equations(phase).algebraic(self.states(phase, sigma), z, places)
 
     def stages(self, phase: int) -> tuple[Array, Array, Array]:
         """Stage values v (k, nv), relative positions (k,) and quadrature weights (k,)."""
@@ -168,28 +155,23 @@ class DenseOutput:
         scale = np.maximum(np.abs(self._rates).max(axis=(0, 1)), np.finfo(float).tiny)
         return np.asarray((coefficients / scale).max(axis=2))
 
-    def residual_between_nodes(self, per_element: int | None = None) -> Array:
-        """Defects (N, k) of the differential equations between the stages of every element.
+    def residual_between_nodes(self) -> Array:
+        """Defects (N, K + 1) of the differential equations between the stages of every element.
 
         Largest entry of |x' - F(x)| over the largest entry of |F| in the solution, x being the
         collocation polynomial: independent of what the solver made zero.
         """
-        lay, tableau = self.blocks.layout, self.blocks.tableau
-        count = per_element or tableau.degree + 1
-        t = (np.arange(count) + 0.5) / count
-        found = tableau.basis(t) @ self._rates  # (N, k, nx)
-        everywhere = self._everywhere(t)
-        positions = lay.starts(self.p)[:, None] + lay.widths(self.p)[:, None] * t
+        lay, between = self.blocks.layout, self.blocks.tableau.between
+        count = len(between.t)
+        found = between.basis @ self._rates  # (N, k, nx)
+        everywhere = self._everywhere(between)
+        positions = lay.starts(self.p)[:, None] + lay.widths(self.p)[:, None] * between.t
         result = np.empty((lay.element_count, count))
         for phase, s in enumerate(lay.phase_slices):
             v = everywhere[s].reshape(-1, lay.nv)
             places = self._places(phase, positions[s].ravel())
-            x = v[:, : lay.nx]
-            v = np.hstack([x, self._solved(phase, x, v[:, lay.nx :], places)])
-            equations = self.blocks.phases[phase].mapped_values
-            values = equations(v, self.constants, self.theta, places)[0]
-            F = values.reshape(-1, count, values.size // len(v))[:, :, : lay.nx]
-            result[s] = np.abs(found[s] - F).max(axis=2)
+            F, _ = self._equations(phase).derivatives(v, places)
+            result[s] = np.abs(found[s] - F.reshape(-1, count, lay.nx)).max(axis=2)
         return np.asarray(result / np.abs(self._rates).max())
 
     @cached_property
@@ -202,17 +184,22 @@ class DenseOutput:
         """Derivatives (N, K, nx) at the stages, per relative position."""
         return self.blocks.rates(self.w, self.p)
 
-    def _everywhere(self, t: Array) -> Array:
-        """Polynomials v (N, k, nv) at the same places t (k,) of all elements."""
-        lay, tableau = self.blocks.layout, self.blocks.tableau
-        v = np.empty((lay.element_count, len(t), lay.nv))
-        increments = tableau.integrals(t) @ self._rates
-        v[:, :, : lay.nx] = self.at_nodes[:-1, None]
-        v[:, :, : lay.nx] += lay.widths(self.p)[:, None, None] * increments
-        v[:, t == 1, : lay.nx] = self.at_nodes[1:, None]
+    def _everywhere(self, inside: Inside) -> Array:
+        """Polynomials v (N, k, nv) at the same places of all elements."""
+        lay = self.blocks.layout
+        v = np.empty((lay.element_count, len(inside.t), lay.nv))
+        x = v[:, :, : lay.nx]
+        np.multiply(lay.widths(self.p)[:, None, None], inside.integrals @ self._rates, out=x)
+        x += self.at_nodes[:-1, None]
+        if inside.t[-1] == 1:
+            x[:, -1] = self.at_nodes[1:]
         if lay.nz:
-            v[:, :, lay.nx :] = tableau.basis(t) @ self._parts[1][:, :, lay.nx :]
+            v[:, :, lay.nx :] = inside.basis @ self._parts[1][:, :, lay.nx :]
         return v
+
+    def _with_algebraic(self, x: Array, element: Index, t: Array) -> Array:
+        """States x (k, nx) and the polynomials through the stages of z: unknowns v (k, nv)."""
+        return np.hstack([x, self._interpolated(element, t)]) if self.blocks.layout.nz else x
 
     def _interpolated(self, element: Index, t: Array) -> Array:
         """Polynomials (k, nz) through the stages of z."""
@@ -226,10 +213,6 @@ class DenseOutput:
     def _places(self, phase: int, sigma: Array) -> Array:
         """Positions sigma (k,) with the known fields there, as stage functions take them."""
         return at_places(self.known, phase, sigma, self.blocks.layout.known)
-
-    def _solved(self, phase: int, x: Array, z: Array, places: Array) -> Array:
-        """Algebraic variables (k, nz) that solve their equations at the states x, from z."""
-        return self._equations(phase).algebraic(x, z, places)
 
     def _equations(self, phase: int) -> PhaseEquations:
         blocks = self.blocks

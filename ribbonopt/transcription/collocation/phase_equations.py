@@ -30,6 +30,15 @@ class PhaseEquations:
             z = z - _solved(jacobian[:, rows, columns], values[:, rows, None])[:, :, 0]
         return z
 
+    def derivatives(self, v: Array, places: Array) -> tuple[Array, Array]:
+        """Return derivatives F (k, nx) at v (k, nv), algebraic variables solved for; and v so."""
+        lay = self.layout
+        if lay.nz:
+            x = v[:, : lay.nx]
+            v = np.hstack([x, self.algebraic(x, v[:, lay.nx :], places)])
+        values = self.functions.mapped_values(v, *self.numbers, places)[0]
+        return values.reshape(len(v), -1)[:, : lay.nx], v
+
     def rates(self, v: Array, places: Array) -> Array:
         """Rates (k,) at which neighbouring solutions part or meet at unknowns v (k, nv)."""
         return rates_of(self._linearized(v, places)[1], self.layout)
