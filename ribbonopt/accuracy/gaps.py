@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ribbonopt.arrays import Array
+from ribbonopt.solution.named import Named
 from ribbonopt.solution.trajectory import Trajectory
 
 from .layers import Layers, between
@@ -16,6 +17,10 @@ ROUNDING = 1e-15
 RESOLVED = "u, layers apart"  # strains but in layers so thin that rounding moves them
 MISSED = 1.5  # largest error inside an element over that at the places looked at
 CANCEL = 0.25  # of the errors of the parts of H: what must not cancel in a bound
+#: d1' = u3 d2 - u2 d3, d2' = u1 d3 - u3 d1, d3' = u2 d1 - u1 d2: the factors (9,) of u1, u2, u3
+TURNING = np.array(
+    [[0, 0, 0, 0, 0, 1, 0, -1, 0], [0, 0, -1, 0, 0, 0, 1, 0, 0], [0, 1, 0, -1, 0, 0, 0, 0, 0.0]]
+)
 LEAST = 1e-3  # size of an answer, Dw = L = 1, below which its error counts absolutely
 
 
@@ -29,38 +34,46 @@ def gaps_at_nodes(
 
     `better` has elements split in parts; `clear` says which fractions are in no thin layer.
     """
-    ours = trajectory.at_nodes
-    theirs = {name: values[::split] for name, values in better.at_nodes.items()}
-    errors = {f"{name}0": _gap(theirs[name][0], ours[name][0]) for name in ("n", "m", "u")}
+    ours, nodes, choice = trajectory.at_nodes, better.at_nodes, trajectory.at_nodes.choice
+    known = compared(ours)
+    theirs = compared(nodes)[::split]
+    gap, size = np.abs(theirs - known), np.abs(known)
+    first, start = choice.largest(gap[0]), choice.largest(size[0])
+    errors = {f"{name}0": _gap(first[name], start[name]) for name in ("n", "m", "u")}
     # H is a difference: its rounding is that of its parts, which may cancel by accident.
-    parts = errors["n0"] + float(np.abs(ours["u"][0]).max()) * errors["m0"]
-    gap = _gap(theirs["H"][0], ours["H"][0], float(np.abs(ours["n"][0]).max()))
-    errors["H0"] = max(gap, CANCEL * parts)
+    parts = errors["n0"] + start["u"] * errors["m0"]
+    gap_of_H = _gap(first["H"], start["H"], start["n"])
+    errors["H0"] = max(gap_of_H, CANCEL * parts)
     for name in ("energy", "potential"):
-        errors[name] = _gap(np.array(better.integral(name)), np.array(trajectory.integral(name)))
-    along = {name: ours[name] for name in ("r", "d1", "d2", "d3", "u")}
+        value = trajectory.integral(name)
+        errors[name] = _gap(abs(better.integral(name) - value), abs(value))
     if len(trajectory.ends) > 2:
         along = _shifted(trajectory, better.nodes[::split])
-    same, u = _same_side(ours, theirs), along.pop("u")
-    strains = resolved = _gap(theirs["u"][same], u[same])
+        gap, size = np.abs(theirs[:, : along.shape[1]] - along), np.abs(along)
+    most, largest = choice.largest(gap.max(axis=0)), choice.largest(size.max(axis=0))
+    states = slice(choice.before("u"))
+    errors["states"] = _gap(*(float(part[:, states].max()) for part in (gap, size)))
+    same = _same_side(ours, {name: nodes[name][::split] for name in ("switching", "leap")})
     apart = same & clear(trajectory.nodes)
-    if (apart != same).any():
-        resolved = _gap(theirs["u"][apart], u[apart])
-    better_states, states = (np.hstack([rows[k] for k in along]) for rows in (theirs, along))
-    errors["states"] = _gap(better_states, states)
-    return errors | {"u": strains, RESOLVED: resolved}
+    if apart.all():
+        errors["u"] = errors[RESOLVED] = _gap(most["u"], largest["u"])
+        return errors
+    u = choice.columns["u"]
+    for name, rows in (("u", same), (RESOLVED, apart)):
+        errors[name] = _gap(*(float(part[rows, u].max(initial=0.0)) for part in (gap, size)))
+    return errors
 
 
 def sizes_of(trajectory: Trajectory) -> dict[str, float]:
     """Return what the errors of the answers are relative to."""
-    start = trajectory.at_nodes
-    loads = max(float(np.abs(start[name][0]).max()) for name in ("n", "m"))
-    strains = float(np.abs(trajectory.at_stages["u"]).max())
+    nodes = trajectory.at_nodes
+    start = nodes.choice.largest(np.abs(compared(nodes)[0]))
+    loads, strains = max(start["n"], start["m"]), trajectory.at_stages.largest("u")
     return {
         "n0": loads,
         "m0": loads,
         "u0": strains,
-        "H0": max(loads, abs(float(start["H"][0]))),
+        "H0": max(loads, start["H"]),
         "energy": abs(trajectory.energy),
         "states": 1.0,
         RESOLVED: strains,
@@ -79,7 +92,7 @@ def gaps_between(
     fractions, elements = between(trajectory, near_by, growth)
     if not len(fractions):
         return {}, result
-    ours, theirs = (t.outputs(fractions) for t in (trajectory, better))
+    ours, theirs = (t.looked_at(fractions) for t in (trajectory, better))
     gaps = {k: np.abs(theirs[k] - ours[k]).max(axis=1) for k in ("r", "d1", "d2", "d3", "u")}
     strains = np.where(_same_side(ours, theirs), gaps.pop("u"), 0.0)
     states = np.max(list(gaps.values()), axis=0)
@@ -91,23 +104,32 @@ def gaps_between(
     return {name: MISSED * float(values.max()) for name, values in found.items()}, result
 
 
-def _shifted(trajectory: Trajectory, nodes: Array) -> dict[str, Array]:
-    """Positions, directors and strains at other fractions (N + 1,), near the nodes.
+def compared(nodes: Named) -> Array:
+    """Columns (k, c) of the outputs whose errors are told: those before the switch."""
+    choice = nodes.choice
+    return nodes.block(choice)[:, : choice.before("switching")]
+
+
+def _shifted(trajectory: Trajectory, nodes: Array) -> Array:
+    """Positions, directors and strains (N + 1, 15) at other fractions (N + 1,), near the nodes.
 
     Phases of two solutions are not as long; both are to be compared at the same arclength.
     """
     ours, length = trajectory.at_nodes, trajectory.length
+    found = compared(ours)[:, : ours.choice.before("n")].copy()
     shift = (length * (nodes - trajectory.nodes))[:, None]
-    darboux = np.einsum("ki,ikj->kj", ours["u"], np.stack([ours[f"d{i}"] for i in (1, 2, 3)]))
+    r, directors, u = found[:, :3], found[:, 3:12], found[:, 12:]
     tangent = (1 + ours["extension"])[:, None] * ours["d3"]
-    found = {"r": ours["r"] + shift * tangent}
-    found |= {d: ours[d] + shift * np.cross(darboux, ours[d]) for d in ("d1", "d2", "d3")}
-    slope = np.zeros_like(ours["u"])
-    slope[1:] = np.diff(ours["u"], axis=0) / (length * np.diff(trajectory.nodes))[:, None]
+    slope = np.zeros_like(u)
+    slope[1:] = np.diff(u, axis=0) / (length * np.diff(trajectory.nodes))[:, None]
     # Where phases meet strains may jump: there the next phase says how they change.
     meet = np.searchsorted(trajectory.nodes, trajectory.ends[1:-1])
     slope[meet] = slope[meet + 1]
-    return found | {"u": ours["u"] + shift * slope}
+    turning = (u @ TURNING).reshape(-1, 3, 3) @ directors.reshape(-1, 3, 3)
+    directors += shift * turning.reshape(-1, 9)
+    r += shift * tangent
+    u += shift * slope
+    return found
 
 
 def _same_side(ours: Mapping[str, Array], theirs: Mapping[str, Array]) -> NDArray[np.bool_]:
@@ -116,6 +138,6 @@ def _same_side(ours: Mapping[str, Array], theirs: Mapping[str, Array]) -> NDArra
     return same
 
 
-def _gap(a: Array, b: Array, size: float = 1.0) -> float:
-    difference, whole = (float(np.abs(x).max(initial=0.0)) for x in (a - b, b))
+def _gap(difference: float, whole: float, size: float = 1.0) -> float:
+    """Return a difference, no less than the rounding of what is as large."""
     return max(difference, ROUNDING * max(size, whole))

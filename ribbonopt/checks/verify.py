@@ -7,9 +7,11 @@ loop must close with the half twists that were asked.
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ribbonopt.accuracy.estimate import SAFETY, Analysis, analyse
 from ribbonopt.accuracy.gaps import LEAST
@@ -29,12 +31,13 @@ JUMP = 1e-6  # of the largest moment, on either side of a jump of the law
 
 def verify(solution: Solution, ribbon: Ribbon) -> Verification:
     """Check a solution against its scene."""
-    if not (np.diff(solution.trajectory.ends) > NO_LENGTH).all():
+    trajectory = solution.trajectory
+    if len(trajectory.ends) > 2 and not (np.diff(trajectory.ends) > NO_LENGTH).all():
         problem = f"a phase between two sign changes of {ribbon.law.switch_name} has no length"
         return replace(unverified(), problems=(problem,))
     worst_name, worst = _worst_condition(solution, ribbon)
     residual = float(solution.dense.residual_between_nodes().max())
-    nodes, drift = solution.at_nodes, _drifts(solution, ribbon.uniform)
+    nodes, drift = trajectory.at_nodes, _drifts(solution, ribbon.uniform)
     problems = []
     # Gauss keeps orthonormality to rounding, other schemes only to their own accuracy; natural
     # conditions of a minimum hold to the accuracy of the mesh.
@@ -73,11 +76,11 @@ def verify(solution: Solution, ribbon: Ribbon) -> Verification:
     if ribbon.law.bounds_eta and not solution.problem.recovered:
         eta = sheet_slopes(nodes)
         if 0 in solution.sheets:
-            phase = solution.trajectory.phase_of(solution.trajectory.nodes)
+            phase = trajectory.phase_of(trajectory.nodes)
             eta[np.array(solution.sheets)[phase] == 0] = 0
         # Of a section without a moment, a free end, rounding tells the strains.
         told = np.maximum(np.abs(nodes["switching"]), nodes["leap"])
-        eta[told <= ROUNDED * _size(nodes["m"])] = 0
+        eta[told <= ROUNDED * nodes.largest("m")] = 0
         if not eta.max() <= 1 + TOLERANCE + residual:
             s = solution.nodes[int(eta.argmax())]
             what = "the slope, |eta| but for natural strains," if SLOPE in nodes else "|eta|"
@@ -91,8 +94,8 @@ def verify(solution: Solution, ribbon: Ribbon) -> Verification:
         from .topology import loop_problems  # only where a scene has one
 
         problems += loop_problems(solution, loop, residual)
-    law = float(solution.at_stages["law_residual"].max())
-    law /= max(_size(nodes["u"]), LEAST)  # a straight ribbon has no strains
+    law = trajectory.at_stages.largest("law_residual")
+    law /= max(nodes.largest("u"), LEAST)  # a straight ribbon has no strains
     return Verification(tuple(problems), worst, residual, law, drift)
 
 
@@ -103,13 +106,14 @@ def _off_the_law(solution: Solution, ribbon: Ribbon) -> list[str]:
     phases and in the inverted form they are the law's own; minima of a relaxed energy have others.
     """
     nodes = solution.trajectory.at_nodes
-    off = nodes["law_residual"]
+    off, size = nodes["law_residual"], max(nodes.largest("u"), LEAST)
+    if nodes.largest("law_residual") <= TOLERANCE * size or solution.problem.recovered:
+        return []
     if not ribbon.law.smooth:
         # Where the law jumps rounding decides on which side it is.
-        off = np.where(np.abs(nodes["switching"]) > JUMP * _size(nodes["m"]), off, 0.0)
-    size = max(_size(nodes["u"]), LEAST)
+        off = np.where(np.abs(nodes["switching"]) > JUMP * nodes.largest("m"), off, 0.0)
     found = float(off.max()) / size
-    if found <= TOLERANCE or solution.problem.recovered:
+    if found <= TOLERANCE:
         return []
     try:
         errors = analyse(solution).errors
@@ -134,13 +138,13 @@ def _moment_error(solution: Solution) -> float:
         errors = analyse(solution).errors
     except np.linalg.LinAlgError:  # no estimate
         return np.inf
-    force = float(np.abs(solution.trajectory.at_nodes["n"]).max())
+    force = solution.trajectory.at_nodes.largest("n")
     return SAFETY * (errors["m0"] + force * errors["states"])
 
 
 def _worst_condition(solution: Solution, ribbon: Ribbon) -> tuple[str, float]:
     """Name and size of the condition that is furthest from what was asked."""
-    names, verdicts = ribbon.kept(_verdicts)
+    names, of_loads, verdicts = ribbon.kept(_verdicts)
     count, constants = len(ribbon.states), len(ribbon.constants)
     nodes = solution.dense.at_nodes
     # Without further states, and without the lengths of phases.
@@ -154,45 +158,40 @@ def _worst_condition(solution: Solution, ribbon: Ribbon) -> tuple[str, float]:
         known.append(solution.trajectory.states(places)[:, :count].ravel())
     (values,) = verdicts(*known)
     # Relative to the loads, absolute in lengths and directors (L = 1).
-    n0, m0 = solution.n0 / solution.units.force, solution.m0 / solution.units.moment
-    scale = 1 + max(np.linalg.norm(n0), np.linalg.norm(m0))
+    start = solution.trajectory.at_nodes
+    scale = 1 + max(math.hypot(*start[name][0].tolist()) for name in ("n", "m"))
     sizes = np.abs(values)
-    loads = np.array(["force" in n or "moment" in n or "also" in n for n in names])
-    sizes = np.where(np.isfinite(sizes), sizes / np.where(loads, scale, 1.0), np.inf)
+    sizes[of_loads] /= scale
+    sizes[~np.isfinite(sizes)] = np.inf
     index = int(sizes.argmax())
     return names[index], float(sizes[index])
 
 
-def _verdicts(ribbon: Ribbon) -> tuple[tuple[str, ...], Buffered]:
-    """Names of what to verify, and their values on numpy arrays."""
+def _verdicts(ribbon: Ribbon) -> tuple[tuple[str, ...], NDArray[np.bool_], Buffered]:
+    """Names of what to verify, which are loads, and their values on numpy arrays."""
     names, function = verdicts_function(ribbon)
-    return names, Buffered(function)
+    loads = np.array(["force" in n or "moment" in n or "also" in n for n in names], bool)
+    return names, loads, Buffered(function)
 
 
 def _drifts(solution: Solution, uniform: bool) -> dict[str, float]:
     """Drifts of what is conserved; H is not where the law depends on s."""
     nodes, unknown = solution.trajectory.at_nodes, float("nan")
+    drift = {"orthonormality": nodes.largest("orthonormality")}
     if solution.posed.stations:  # n steps there, and what follows from it
-        drift = {"orthonormality": float(nodes["orthonormality"].max())}
         return dict.fromkeys(("n", "n_dot_m", "H"), unknown) | drift
-    drift = {"orthonormality": float(nodes["orthonormality"].max())}
     if solution.posed.loads:
         from .conserved import conserved  # few scenes have loads
 
         found = {name: one.drift for name, one in conserved(solution, uniform).items()}
         return {"n": unknown, "n_dot_m": unknown, "H": unknown} | drift | found
-    scale = float(np.linalg.norm(nodes["n"][0])) * _size(nodes["m"])
+    scale = math.hypot(*nodes["n"][0].tolist()) * nodes.largest("m")
+    n, H = (_drift(nodes[name], nodes.largest(name)) for name in ("n", "H"))
     n_dot_m = _drift(nodes["n_dot_m"], scale)
-    changes = _drift(nodes["H"]) if uniform else unknown
-    return {"n": _drift(nodes["n"]), "n_dot_m": n_dot_m, "H": changes} | drift
+    return {"n": n, "n_dot_m": n_dot_m, "H": H if uniform else unknown} | drift
 
 
-def _drift(values: Array, scale: float | None = None) -> float:
+def _drift(values: Array, size: float) -> float:
     """Largest change along the ribbon, relative to the size of the quantity."""
-    size = _size(values) if scale is None else scale
-    change = np.abs(values - values[0]).max()
-    return float(change / size) if size > 0 else float(change)
-
-
-def _size(values: Array) -> float:
-    return float(np.abs(values).max())
+    change = float(np.abs(values - values[0]).max())
+    return change / size if size > 0 else change
