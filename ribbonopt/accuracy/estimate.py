@@ -45,10 +45,7 @@ ACCIDENT = 0.01  # of the relative error of the loads of a minimum: least of its
 SMALL = 1e-4  # unless they are smaller than this all the same
 BLURRED = 1e-14  # of the length: by how much rounding moves a layer, over that by which it may
 #: what each bar is of, where that has a unit
-QUANTITY = {"n0": "n", "m0": "m", "u0": "u", "u": "u", "H0": "H"} | {
-    "potential": "m",
-    "energy": "m",
-}
+QUANTITY = {"n0": "n", "m0": "m", "u0": "u", "u": "u", "H0": "H", "potential": "m", "energy": "m"}
 USUAL = 1e-8  # tolerance of scenes that have none
 
 

@@ -35,8 +35,7 @@ def gaps_at_nodes(
     `better` has elements split in parts; `clear` says which fractions are in no thin layer.
     """
     ours, nodes, choice = trajectory.at_nodes, better.at_nodes, trajectory.at_nodes.choice
-    known = compared(ours)
-    theirs = compared(nodes)[::split]
+    known, theirs = compared(ours), compared(nodes)[::split]
     gap, size = np.abs(theirs - known), np.abs(known)
     first, start = choice.largest(gap[0]), choice.largest(size[0])
     errors = {f"{name}0": _gap(first[name], start[name]) for name in ("n", "m", "u")}
@@ -107,7 +106,7 @@ def gaps_between(
 def compared(nodes: Named) -> Array:
     """Columns (k, c) of the outputs whose errors are told: those before the switch."""
     choice = nodes.choice
-    return nodes.block(choice)[:, : choice.before("switching")]
+    return np.asarray(nodes.block(choice)[:, : choice.before("switching")])
 
 
 def _shifted(trajectory: Trajectory, nodes: Array) -> Array:

@@ -168,8 +168,8 @@ class Solution:
 
     def integral(self, name: str) -> float:
         """Integral over s of a scalar named output, by the scheme's own quadrature."""
-        start, end = self.scene.interval
-        return float((end - start) * self.trajectory.stages[2] @ self.at_stages[name])
+        units = self.units
+        return self.trajectory.integral(name) * units.length * units.of(name)
 
     @cached_property
     def at_stages(self) -> Mapping[str, Array]:
@@ -248,5 +248,5 @@ class Solution:
     def _in_own_units(self, values: Mapping[str, Array]) -> Mapping[str, Array]:
         if self.posed.given is self.posed.scene:
             return values
-        units = self.units
-        return Each(values, lambda name, value: value * units.of(name))
+        unit_of = self.units.of
+        return Each(values, lambda name, value: value * unit_of(name))

@@ -24,16 +24,23 @@ NOISE = 1e-9 * (-1) ** np.arange(200)  # of the largest moment: what rounding le
 each_size = pytest.mark.parametrize("size", SIZES)
 
 
+class Outputs(dict[str, Array]):
+    """Outputs by name, as a trajectory has them."""
+
+    def largest(self, name: str) -> float:
+        return float(np.abs(self[name]).max())
+
+
 def ribbon(size: float, m2: Array, leap: Array, eta: Array | None = None) -> Solution:
     """Return what arcs are read from: m2 and leaps, over the largest moment, at all stages."""
     m = size * np.stack([np.ones_like(m2), m2, leap], axis=1)
     named = {"switching": size * m2, "leap": size * leap, "m": m}
     named["eta"] = np.zeros_like(m2) if eta is None else eta
     ends = {name: values[[0, -1]] for name, values in named.items()}
+    stages = None, STAGES, None, None
+    known = {"stages": stages, "at_stages": Outputs(named), "at_nodes": Outputs(ends), "found": {}}
     found: Any = SimpleNamespace(
-        at_stages=named,
-        at_nodes=ends,
-        trajectory=SimpleNamespace(stages=(None, STAGES, None, None)),
+        trajectory=SimpleNamespace(**known),
         posed=SimpleNamespace(scene=SimpleNamespace(tolerance=None)),
     )
     return found
