@@ -115,7 +115,7 @@ def _shifted(trajectory: Trajectory, nodes: Array) -> Array:
     Phases of two solutions are not as long; both are to be compared at the same arclength.
     """
     ours, length = trajectory.at_nodes, trajectory.length
-    found = compared(ours)[:, : ours.choice.before("n")].copy()
+    found: Array = compared(ours)[:, : ours.choice.before("n")].copy()
     shift = (length * (nodes - trajectory.nodes))[:, None]
     r, directors, u = found[:, :3], found[:, 3:12], found[:, 12:]
     tangent = (1 + ours["extension"])[:, None] * ours["d3"]

@@ -168,8 +168,7 @@ class Solution:
 
     def integral(self, name: str) -> float:
         """Integral over s of a scalar named output, by the scheme's own quadrature."""
-        units = self.units
-        return self.trajectory.integral(name) * units.length * units.of(name)
+        return self.trajectory.integral(name) * self.units.length * self.units.of(name)
 
     @cached_property
     def at_stages(self) -> Mapping[str, Array]:
@@ -246,7 +245,5 @@ class Solution:
         return self.integral("u3") / (2 * np.pi)
 
     def _in_own_units(self, values: Mapping[str, Array]) -> Mapping[str, Array]:
-        if self.posed.given is self.posed.scene:
-            return values
-        unit_of = self.units.of
-        return Each(values, lambda name, value: value * unit_of(name))
+        same, unit_of = self.posed.given is self.posed.scene, self.units.of
+        return values if same else Each(values, lambda name, value: value * unit_of(name))
