@@ -121,7 +121,7 @@ def layers(trajectory: Trajectory, phase: int) -> Layers:
     if len(trajectory.ends) > 2:
         a, b = trajectory.ends[phase : phase + 2]
         sigma = (sigma[phases == phase] - a) / (b - a)
-    nodes = trajectory.dense.nodes(phase)
+    nodes = trajectory.nodes_within[phase]
     values = rows[:, :, 0] + 1j * rows[:, :, 1]
     step, change = (sigma[1:] - sigma[:-1])[:, None], values[1:] - values[:-1]
     widths = nodes[1:] - nodes[:-1]
@@ -183,10 +183,11 @@ def between(
 
     In elements of large `growth` (N,), and next to layers and in them.
     """
-    dense, nodes, ends = trajectory.dense, trajectory.nodes, trajectory.ends
+    degree, nodes, ends = trajectory.dense.blocks.degree, trajectory.nodes, trajectory.ends
     chosen, extra = growth > WATCHED, [np.empty(0)]
     if any(map(len, found)):
-        chosen = chosen | np.concatenate([n.close(dense.nodes(i)) for i, n in enumerate(found)])
+        pairs = zip(found, trajectory.nodes_within, strict=True)
+        chosen = chosen | np.concatenate([near.close(within) for near, within in pairs])
         extra += [
             a + (b - a) * near.places.real
             for a, b, near in zip(ends[:-1], ends[1:], found, strict=True)
@@ -195,7 +196,7 @@ def between(
     if not len(elements):
         return np.empty(0), elements
     # The error of a collocation polynomial is largest at its stages.
-    inside = _inside(max(3, dense.blocks.degree))
+    inside = _inside(max(3, degree))
     regular = (nodes[elements, None] + np.diff(nodes)[elements, None] * inside).ravel()
     fractions = np.concatenate([regular, *extra])
     fractions = fractions[(fractions > 0) & (fractions < 1)]
@@ -214,11 +215,10 @@ def overlooked(trajectory: Trajectory, found: tuple[Layers, ...]) -> Array:
     if not any(map(len, found)):
         return np.zeros(1)
     lengths = np.diff(trajectory.ends) * trajectory.length
-    return np.concatenate(
-        [
-            length * near.overlooked(trajectory.dense.nodes(i), blocks.degree, blocks.order)
-            if len(near)
-            else np.zeros(blocks.layout.elements[i])
-            for i, (near, length) in enumerate(zip(found, lengths, strict=True))
-        ]
-    )
+    parts = [
+        length * near.overlooked(within, blocks.degree, blocks.order)
+        if len(near)
+        else np.zeros(len(within) - 1)
+        for near, length, within in zip(found, lengths, trajectory.nodes_within, strict=True)
+    ]
+    return np.concatenate(parts)

@@ -242,7 +242,8 @@ class Solution:
     @property
     def twist(self) -> float:
         """Twist of the directors about the centre line, in turns."""
-        return self.integral("u3") / (2 * np.pi)
+        found = self.trajectory
+        return float(found.length * found.stages[2] @ found.at_stages["u"][:, 2]) / (2 * np.pi)
 
     def _in_own_units(self, values: Mapping[str, Array]) -> Mapping[str, Array]:
         same, unit_of = self.posed.given is self.posed.scene, self.units.of

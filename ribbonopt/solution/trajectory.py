@@ -60,14 +60,17 @@ class Trajectory:
         return tuple(i for i in range(1, len(self.problem.phases)) if i not in stations)
 
     @cached_property
+    def nodes_within(self) -> tuple[Array, ...]:
+        """For each phase relative positions (n + 1,) of its nodes."""
+        return tuple(self.dense.nodes(i) for i in range(len(self.problem.phases)))
+
+    @cached_property
     def nodes(self) -> Array:
         """Fractions (N + 1,) of all nodes."""
         if len(self.problem.phases) == 1:
-            return self.dense.nodes(0)
-        parts = [
-            a + (b - a) * self.dense.nodes(i)
-            for i, (a, b) in enumerate(zip(self.ends[:-1], self.ends[1:], strict=True))
-        ]
+            return self.nodes_within[0]
+        pairs = zip(self.nodes_within, pairwise(self.ends.tolist()), strict=True)
+        parts = [a + (b - a) * within for within, (a, b) in pairs]
         return np.concatenate([*(part[:-1] for part in parts[:-1]), parts[-1]])
 
     def phase_of(self, fraction: Array) -> Phases:
@@ -90,9 +93,10 @@ class Trajectory:
         """Return those outputs that estimates compare between the nodes; see `outputs`."""
         return self._outputs(self._choices.places, self._unknowns(fraction), fraction)
 
-    def line(self, fraction: Array) -> Array:
-        """Positions r (k, 3) at fractions, on the collocation polynomials: quick, to look at."""
-        return self._outputs(self._choices.line, self.approximate(fraction), fraction)["r"]
+    def line(self, fraction: Array, *, quick: bool = False) -> Array:
+        """Positions r (k, 3) at fractions; `quick` for those on the polynomials of the mesh."""
+        v = self.approximate(fraction) if quick else self._unknowns(fraction)
+        return self._outputs(self._choices.line, v, fraction)["r"]
 
     def fields(self, fraction: Array) -> RodFields:
         """Fields at fractions (k,), own states of the law among them, if it has any."""
@@ -153,14 +157,27 @@ class Trajectory:
         """Length of the ribbon."""
         return float(self._extent[1:].sum())
 
-    @cached_property
+    @property
     def energy(self) -> float:
         """Strain energy, by the quadrature of the scheme."""
         return self.integral("energy")
 
     def integral(self, name: str) -> float:
         """Integral over s of a scalar named output, by the quadrature of the scheme."""
-        return float(self.length * self.stages[2] @ self.at_stages[name])
+        if name in self._choices.densities.columns:
+            return self._integrals[name]
+        return float(self._integrated(self.at_stages[name]))
+
+    @cached_property
+    def _integrals(self) -> dict[str, float]:
+        """Integrals of the densities, by name."""
+        choice = self._choices.densities
+        found = self._integrated(self.at_stages.block(choice)).tolist()
+        return dict(zip(choice.columns, found, strict=True))
+
+    def _integrated(self, values: Array) -> Array:
+        """Integrals over s of values (k,) or (k, w) at the stages."""
+        return np.asarray(self.length * self.stages[2] @ values)
 
     @cached_property
     def _extent(self) -> Array:
