@@ -43,9 +43,10 @@ def gaps_at_nodes(
     parts = errors["n0"] + start["u"] * errors["m0"]
     gap_of_H = _gap(first["H"], start["H"], start["n"])
     errors["H0"] = max(gap_of_H, CANCEL * parts)
-    for name in ("energy", "potential"):
-        value = trajectory.integral(name)
-        errors[name] = _gap(abs(better.integral(name) - value), abs(value))
+    energies = [each.energy for each in (better, trajectory)]
+    potentials = [each.integral("potential") for each in (better, trajectory)]
+    for name, (value, own) in (("energy", energies), ("potential", potentials)):
+        errors[name] = _gap(abs(value - own), abs(own))
     if len(trajectory.ends) > 2:
         along = _shifted(trajectory, better.nodes[::split])
         gap, size = np.abs(theirs[:, : along.shape[1]] - along), np.abs(along)

@@ -89,10 +89,12 @@ def sign_changes(solution: Solution, every: bool = False) -> Arcs:
 def _sign_changes(trajectory: Trajectory, faint: float, every: bool) -> Arcs:
     """Return the same; in tails as `faint` as that nothing can be told."""
     o, ends = trajectory.at_stages, trajectory.at_nodes
-    scale, inside, at_ends = o.largest("m"), o["switching"], ends["switching"][[0, -1]]
-    lowest, highest = min(inside.min(), at_ends.min()), max(inside.max(), at_ends.max())
-    if lowest * highest > 0 and max(-lowest, highest) > max(NEGLIGIBLE, faint) * scale:
-        return Arcs((1 if lowest > 0 else -1,), np.empty(0))
+    scale, inside, at_ends = o.largest("m"), o["switching"], ends["switching"]
+    lowest = min(float(inside.min()), float(at_ends[0]), float(at_ends[-1]))
+    highest = max(float(inside.max()), float(at_ends[0]), float(at_ends[-1]))
+    least = NEGLIGIBLE * scale
+    if max(-lowest, highest) > max(NEGLIGIBLE, faint) * scale and min(-lowest, highest) <= least:
+        return Arcs((1 if highest > -lowest else -1,), np.empty(0))  # one sign, but for rounding
     value, leap = (
         np.concatenate([ends[name][:1], o[name], ends[name][-1:]]) for name in ("switching", "leap")
     )
@@ -241,7 +243,7 @@ def _beyond(solution: Solution) -> list[tuple[float, float]]:
 def _faint(solution: Solution) -> float:
     """Return (m2, m3), over the largest |m|, of a tail that does not show in the answer."""
     tolerance = solution.posed.scene.tolerance
-    return NEGLIGIBLE if tolerance is None else float(np.clip(SEEN * tolerance, NEGLIGIBLE, FAINT))
+    return NEGLIGIBLE if tolerance is None else min(max(SEEN * tolerance, NEGLIGIBLE), FAINT)
 
 
 def _scale(solution: Solution) -> float:

@@ -210,6 +210,14 @@ class BoundaryValueProblem:
         columns = (ca.densify(ca.vertcat(*outputs)) for outputs in chosen)
         return tuple(ca.Function("outputs", self._along, [column]) for column in columns)
 
+    @property
+    def placed(self) -> bool:
+        """Whether outputs or singularities depend on the place by itself, or on known fields."""
+        every = [
+            ca.vertcat(*phase.outputs.values(), ca.vec(phase.singular)) for phase in self.phases
+        ]
+        return bool(ca.depends_on(ca.vertcat(*every), ca.vertcat(self.position, self.known)))
+
     @cached_property
     def singular_functions(self) -> tuple[ca.Function, ...]:
         """For each phase: function (v, c, theta, [s; k]) of its singularities, row after row."""

@@ -25,8 +25,8 @@ Rows = slice | NDArray[np.bool_]
 PLACES = ("r", "d1", "d2", "d3", "u", "switching", "leap")
 NODES = ("r", "d1", "d2", "d3", "u", "n", "m", "H", "switching", "leap")
 TOLD = ("extension", "n2", "m1", "m3", "n_dot_m", "law_residual", "orthonormality", "eta", SLOPE)
-STAGES = ("u", "n", "m", "m1", "m2", "m3", "switching", "leap", "law_residual")
 DENSITIES = ("energy", "potential")
+STAGES = (*DENSITIES, "u", "n", "m", "m1", "m2", "m3", "switching", "leap", "law_residual")
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,9 +80,13 @@ class Choice:
 
 
 class Choices:
-    """The choices that are made of the outputs of one problem."""
+    """The choices that are made of the outputs of one problem.
+
+    `placed` says whether any output, or where the law is singular, depends on the place by itself.
+    """
 
     def __init__(self, problem: BoundaryValueProblem) -> None:
+        self.placed = problem.placed
         self.every = Choice.of(problem, tuple(problem.output_sizes))
         self.places = Choice.of(problem, PLACES)
         self.line = Choice.of(problem, ("r",))
@@ -125,7 +129,8 @@ class Places:
 class Named(Mapping[str, Array]):
     """Outputs by name at places (k,): (k,) for scalars, (k, 3) for vectors.
 
-    A name is looked for in one choice after another, of which the last has all.
+    A name is looked for in what is evaluated already, then in one choice after another, the last of
+    which has all.
     """
 
     def __init__(self, places: Places, *choices: Choice) -> None:
@@ -170,9 +175,10 @@ class Named(Mapping[str, Array]):
         return self._largest[choice][name]
 
     def _of(self, name: str) -> Choice:
-        for choice in self._choices:
-            if name in choice.columns:
-                return choice
+        for choices in (self._found, self._choices):
+            for choice in choices:
+                if name in choice.columns:
+                    return choice
         raise KeyError(name)
 
 

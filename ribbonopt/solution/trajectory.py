@@ -129,18 +129,19 @@ class Trajectory:
     def at_stages(self) -> Named:
         """Named outputs at the stages, where the solver itself evaluated the equations."""
         v, fraction, _, phase = self.stages
-        rows = [phase == i for i in range(len(self.problem.phases))] if len(self.ends) > 2 else ALL
-        known = self._choices
-        return Named(self._at(v, fraction, rows), known.stages, known.densities, known.every)
+        count, known = len(self.problem.phases), self._choices
+        rows = [phase == i for i in range(count)] if count > 1 else ALL
+        return Named(self._at(v, fraction, rows), known.densities, known.stages, known.every)
 
     @cached_property
     def at_nodes(self) -> Named:
         """Named outputs at the nodes; where two phases meet, those of the later one."""
-        layout, fraction = self.dense.blocks.layout, self.nodes
-        v = self._unknowns(fraction) if layout.nz else self.dense.at_nodes
+        layout, known = self.dense.blocks.layout, self._choices
+        fraction = self.nodes if layout.nz or known.placed else None
+        v = self.dense.at_nodes if fraction is None or not layout.nz else self._unknowns(fraction)
         *slices, last = layout.phase_slices
         rows = [*slices, slice(last.start, None)]
-        return Named(self._at(v, fraction, rows), self._choices.nodes, self._choices.every)
+        return Named(self._at(v, fraction, rows), known.nodes, known.every)
 
     def singular_at_stages(self, phase: int) -> Array:
         """Rows (k, q, 4) of (a, b, size, fades) at the stages of a phase: see `Phase.singular`."""
@@ -157,27 +158,14 @@ class Trajectory:
         """Length of the ribbon."""
         return float(self._extent[1:].sum())
 
-    @property
+    @cached_property
     def energy(self) -> float:
         """Strain energy, by the quadrature of the scheme."""
         return self.integral("energy")
 
     def integral(self, name: str) -> float:
         """Integral over s of a scalar named output, by the quadrature of the scheme."""
-        if name in self._choices.densities.columns:
-            return self._integrals[name]
-        return float(self._integrated(self.at_stages[name]))
-
-    @cached_property
-    def _integrals(self) -> dict[str, float]:
-        """Integrals of the densities, by name."""
-        choice = self._choices.densities
-        found = self._integrated(self.at_stages.block(choice)).tolist()
-        return dict(zip(choice.columns, found, strict=True))
-
-    def _integrated(self, values: Array) -> Array:
-        """Integrals over s of values (k,) or (k, w) at the stages."""
-        return np.asarray(self.length * self.stages[2] @ values)
+        return float(self.length * (self.stages[2] @ self.at_stages[name]))
 
     @cached_property
     def _extent(self) -> Array:
@@ -218,18 +206,24 @@ class Trajectory:
         found = self._at(v, fraction, rows).columns(choice)
         return {name: found[:, at] for name, at in choice.columns.items()}
 
-    def _at(self, v: Array, fraction: Array, rows: Sequence[Rows]) -> Places:
-        """Return places at fractions (k,), each phase in turn, with the unknowns there."""
-        s, dense = self._extent[0] + self.length * fraction, self.dense
-        count, parts = dense.blocks.layout.known, []
+    def _at(self, v: Array, fraction: Array | None, rows: Sequence[Rows]) -> Places:
+        """Return places at fractions (k,), each phase in turn, with the unknowns there.
+
+        Fractions may be None where no output depends on the place by itself.
+        """
+        dense, numbers = self.dense, (self.dense.constants, self.dense.theta)
+        if fraction is None or not self._choices.placed:
+            nowhere = np.zeros(len(v))
+            return Places([Part(part, v[part], nowhere[part]) for part in rows], numbers)
+        s, parts = self._extent[0] + self.length * fraction, []
         for i, part in enumerate(rows):
             places = s[part]
-            if count and len(places):
+            if (count := dense.blocks.layout.known) and len(places):
                 a, b = self.ends[i : i + 2]
                 local = np.clip((fraction[part] - a) / (b - a), 0.0, 1.0)
                 places = np.column_stack([places, sampled(dense.known, i, local, count)])
             parts.append(Part(part, v[part], places))
-        return Places(parts, (dense.constants, dense.theta))
+        return Places(parts, numbers)
 
 
 def _extent(problem: BoundaryValueProblem) -> Buffered:
