@@ -8,7 +8,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ribbonopt.arrays import Array
-from ribbonopt.solution.named import Named
 from ribbonopt.solution.trajectory import Trajectory
 
 from .layers import Layers, between
@@ -17,6 +16,9 @@ ROUNDING = 1e-15
 RESOLVED = "u, layers apart"  # strains but in layers so thin that rounding moves them
 MISSED = 1.5  # largest error inside an element over that at the places looked at
 CANCEL = 0.25  # of the errors of the parts of H: what must not cancel in a bound
+#: first columns of states (r, d1, d2, d3), u, n, m, H and n . m; how many states and u have
+FIRSTS, ALONG = (0, 12, 15, 18, 21, 22), 15
+JUMPING = ("switching", "leap")
 #: d1' = u3 d2 - u2 d3, d2' = u1 d3 - u3 d1, d3' = u2 d1 - u1 d2: the factors (9,) of u1, u2, u3
 TURNING = np.array(
     [[0, 0, 0, 0, 0, 1, 0, -1, 0], [0, 0, -1, 0, 0, 0, 1, 0, 0], [0, 1, 0, -1, 0, 0, 0, 0, 0.0]]
@@ -34,14 +36,12 @@ def gaps_at_nodes(
 
     `better` has elements split in parts; `clear` says which fractions are in no thin layer.
     """
-    ours, nodes, choice = trajectory.at_nodes, better.at_nodes, trajectory.at_nodes.choice
-    known, theirs = compared(ours), compared(nodes)[::split]
-    gap, size = np.abs(theirs - known), np.abs(known)
-    first, start = choice.largest(gap[0]), choice.largest(size[0])
-    errors = {f"{name}0": _gap(first[name], start[name]) for name in ("n", "m", "u")}
+    known, theirs = compared(trajectory), compared(better)[::split]
+    gap, size = _parts(np.abs(theirs - known)), _parts(np.abs(known))
+    (_, u, n, m, H, _), (_, u0, n0, m0, H0, _) = gap[0].tolist(), size[0].tolist()
+    errors = {"n0": _gap(n, n0), "m0": _gap(m, m0), "u0": _gap(u, u0)}
     # H is a difference: its rounding is that of its parts, which may cancel by accident.
-    parts = errors["n0"] + start["u"] * errors["m0"]
-    gap_of_H = _gap(first["H"], start["H"], start["n"])
+    parts, gap_of_H = errors["n0"] + u0 * errors["m0"], _gap(H, H0, n0)
     errors["H0"] = max(gap_of_H, CANCEL * parts)
     energies = [each.energy for each in (better, trajectory)]
     potentials = [each.integral("potential") for each in (better, trajectory)]
@@ -49,31 +49,29 @@ def gaps_at_nodes(
         errors[name] = _gap(abs(value - own), abs(own))
     if len(trajectory.ends) > 2:
         along = _shifted(trajectory, better.nodes[::split])
-        gap, size = np.abs(theirs[:, : along.shape[1]] - along), np.abs(along)
-    most, largest = choice.largest(gap.max(axis=0)), choice.largest(size.max(axis=0))
-    states = slice(choice.before("u"))
-    errors["states"] = _gap(*(float(part[:, states].max()) for part in (gap, size)))
-    same = _same_side(ours, {name: nodes[name][::split] for name in ("switching", "leap")})
+        gap, size = _parts(np.abs(theirs[:, :ALONG] - along)), _parts(np.abs(along))
+    (states, u, *_), (most, strains, *_) = gap.max(axis=0).tolist(), size.max(axis=0).tolist()
+    errors["states"] = _gap(states, most)
+    nodes = better.at_nodes
+    same = _same_side(trajectory.at_nodes, {name: nodes[name][::split] for name in JUMPING})
     apart = same & clear(trajectory.nodes)
     if apart.all():
-        errors["u"] = errors[RESOLVED] = _gap(most["u"], largest["u"])
+        errors["u"] = errors[RESOLVED] = _gap(u, strains)
         return errors
-    u = choice.columns["u"]
     for name, rows in (("u", same), (RESOLVED, apart)):
-        errors[name] = _gap(*(float(part[rows, u].max(initial=0.0)) for part in (gap, size)))
+        errors[name] = _gap(*(float(part[rows, 1].max(initial=0.0)) for part in (gap, size)))
     return errors
 
 
 def sizes_of(trajectory: Trajectory) -> dict[str, float]:
     """Return what the errors of the answers are relative to."""
-    nodes = trajectory.at_nodes
-    start = nodes.choice.largest(np.abs(compared(nodes)[0]))
-    loads, strains = max(start["n"], start["m"]), trajectory.at_stages.largest("u")
+    nodes, strains = trajectory.at_nodes, trajectory.at_stages.largest("u")
+    loads = max(float(np.abs(nodes[name][0]).max()) for name in ("n", "m"))
     return {
         "n0": loads,
         "m0": loads,
         "u0": strains,
-        "H0": max(loads, start["H"]),
+        "H0": max(loads, abs(float(nodes["H"][0]))),
         "energy": abs(trajectory.energy),
         "states": 1.0,
         RESOLVED: strains,
@@ -104,10 +102,17 @@ def gaps_between(
     return {name: MISSED * float(values.max()) for name, values in found.items()}, result
 
 
-def compared(nodes: Named) -> Array:
-    """Columns (k, c) of the outputs whose errors are told: those before the switch."""
+def compared(trajectory: Trajectory) -> Array:
+    """Columns (N + 1, c) at the nodes of what is compared: states, strains, n, m and H first."""
+    nodes = trajectory.at_nodes
     choice = nodes.choice
     return np.asarray(nodes.block(choice)[:, : choice.before("switching")])
+
+
+def _parts(columns: Array) -> Array:
+    """Largest number (k, p) of each part in such columns (k, c)."""
+    firsts = FIRSTS if columns.shape[1] > ALONG else FIRSTS[:2]
+    return np.asarray(np.maximum.reduceat(columns, firsts, axis=1))
 
 
 def _shifted(trajectory: Trajectory, nodes: Array) -> Array:
@@ -116,7 +121,7 @@ def _shifted(trajectory: Trajectory, nodes: Array) -> Array:
     Phases of two solutions are not as long; both are to be compared at the same arclength.
     """
     ours, length = trajectory.at_nodes, trajectory.length
-    found: Array = compared(ours)[:, : ours.choice.before("n")].copy()
+    found: Array = compared(trajectory)[:, :ALONG].copy()
     shift = (length * (nodes - trajectory.nodes))[:, None]
     r, directors, u = found[:, :3], found[:, 3:12], found[:, 12:]
     tangent = (1 + ours["extension"])[:, None] * ours["d3"]

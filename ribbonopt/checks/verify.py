@@ -14,8 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ribbonopt.accuracy.estimate import SAFETY, Analysis, analyse
-from ribbonopt.accuracy.gaps import LEAST
-from ribbonopt.arrays import Array
+from ribbonopt.accuracy.gaps import LEAST, compared
 from ribbonopt.mechanics.outputs import SLOPE, sheet_slopes
 from ribbonopt.problem import Ribbon
 from ribbonopt.problem.imposed import verdicts_function
@@ -160,9 +159,9 @@ def _worst_condition(solution: Solution, ribbon: Ribbon) -> tuple[str, float]:
     # Relative to the loads, absolute in lengths and directors (L = 1).
     start = solution.trajectory.at_nodes
     scale = 1 + max(math.hypot(*start[name][0].tolist()) for name in ("n", "m"))
-    sizes = np.abs(values)
-    sizes[of_loads] /= scale
-    sizes[~np.isfinite(sizes)] = np.inf
+    sizes = np.abs(values) / np.where(of_loads, scale, 1.0)
+    if not math.isfinite(sizes.sum()):
+        sizes = np.where(np.isfinite(sizes), sizes, np.inf)
     index = int(sizes.argmax())
     return names[index], float(sizes[index])
 
@@ -185,13 +184,14 @@ def _drifts(solution: Solution, uniform: bool) -> dict[str, float]:
 
         found = {name: one.drift for name, one in conserved(solution, uniform).items()}
         return {"n": unknown, "n_dot_m": unknown, "H": unknown} | drift | found
+    rows = compared(solution.trajectory)
+    changes = nodes.choice.largest(np.abs(rows - rows[0]).max(axis=0))
     scale = math.hypot(*nodes["n"][0].tolist()) * nodes.largest("m")
-    n, H = (_drift(nodes[name], nodes.largest(name)) for name in ("n", "H"))
-    n_dot_m = _drift(nodes["n_dot_m"], scale)
+    n, H = (_drift(changes[name], nodes.largest(name)) for name in ("n", "H"))
+    n_dot_m = _drift(changes["n_dot_m"], scale)
     return {"n": n, "n_dot_m": n_dot_m, "H": H if uniform else unknown} | drift
 
 
-def _drift(values: Array, size: float) -> float:
-    """Largest change along the ribbon, relative to the size of the quantity."""
-    change = float(np.abs(values - values[0]).max())
+def _drift(change: float, size: float) -> float:
+    """Return a change along the ribbon, relative to the size of the quantity."""
     return change / size if size > 0 else change

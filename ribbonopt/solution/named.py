@@ -23,8 +23,8 @@ from ribbonopt.transcription.buffered import Mapped
 Rows = slice | NDArray[np.bool_]
 
 PLACES = ("r", "d1", "d2", "d3", "u", "switching", "leap")
-NODES = ("r", "d1", "d2", "d3", "u", "n", "m", "H", "switching", "leap")
-TOLD = ("extension", "n2", "m1", "m3", "n_dot_m", "law_residual", "orthonormality", "eta", SLOPE)
+NODES = ("r", "d1", "d2", "d3", "u", "n", "m", "H", "n_dot_m", "switching", "leap", "extension")
+TOLD = ("n2", "m1", "m3", "law_residual", "orthonormality", "eta", SLOPE)
 DENSITIES = ("energy", "potential")
 STAGES = (*DENSITIES, "u", "n", "m", "m1", "m2", "m3", "switching", "leap", "law_residual")
 
