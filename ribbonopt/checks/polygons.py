@@ -67,11 +67,13 @@ def _seen_areas(segments: list[Array]) -> Array:
     """Signed areas (pairs,) of pairs of segments."""
     a, b, c, d = segments
     ac, ad, bc, bd = c - a, d - a, c - b, d - b
-    normals = [_unit(_cross(u, v)) for u, v in ((ac, ad), (ad, bd), (bd, bc), (bc, ac))]
+    normals = [_cross(u, v) for u, v in ((ac, ad), (ad, bd), (bd, bc), (bc, ac))]
+    inverse = [_inverse_length(normal) for normal in normals]
     area = np.zeros(ac.shape[1])
     for k in range(4):
         sine = np.einsum("ij,ij->j", normals[k], normals[k - 1])
-        area += np.arcsin(np.clip(sine, -1.0, 1.0))
+        sine *= inverse[k] * inverse[k - 1]
+        area += np.arcsin(np.clip(sine, -1.0, 1.0, out=sine))
     side = np.einsum("ij,ij->j", _cross(d - c, b - a), ac)
     return np.asarray(np.sign(side) * area)
 
@@ -139,7 +141,7 @@ def _cross(u: Array, v: Array) -> Array:
     return found
 
 
-def _unit(v: Array) -> Array:
-    """Columns (3, k) divided by their lengths; zero stays zero."""
-    size = np.sqrt(np.einsum("ij,ij->j", v, v))
-    return np.asarray(v / np.where(size > 0, size, 1.0))
+def _inverse_length(v: Array) -> Array:
+    """One over the lengths (k,) of columns (3, k); zero of zero."""
+    square = np.einsum("ij,ij->j", v, v)
+    return np.divide(1.0, np.sqrt(square), out=np.zeros_like(square), where=square > 0)
