@@ -144,4 +144,4 @@ def _cross(u: Array, v: Array) -> Array:
 def _inverse_length(v: Array) -> Array:
     """One over the lengths (k,) of columns (3, k); zero of zero."""
     square = np.einsum("ij,ij->j", v, v)
-    return np.divide(1.0, np.sqrt(square), out=np.zeros_like(square), where=square > 0)
+    return np.asarray(1 / np.where(square > 0, np.sqrt(square), np.inf))
