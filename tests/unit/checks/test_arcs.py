@@ -12,9 +12,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from ribbonopt.checks.arcs import given_arcs, leaps, sign_changes, with_mixtures
+from ribbonopt.checks import arcs
+from ribbonopt.checks.arcs import Arcs, given_arcs, leaps, sign_changes, with_mixtures
+from ribbonopt.pipeline.prepared import solve
 from ribbonopt.scene import load_scene
 from ribbonopt.solution.solution import Solution
+from ribbonopt.solution.trajectory import Trajectory
 
 Array = np.ndarray
 SIZES = [1e-3, 1.0, 1e3]  # of moments, Dw = L = 1: a hundred lengths, one, a thousandth
@@ -149,3 +152,32 @@ def test_changes_without_a_leap_count_where_a_phase_would_end_on_the_other_side(
     np.testing.assert_allclose(apart.switches, [0.2, 0.4, 0.6], atol=1e-3)
     beside = sign_changes(ribbon(1.0, m2, leaping(0.4, 0.6)))
     assert beside.kinds == (-1, 1, -1)
+
+
+def test_signs_are_read_once_of_a_solution(configs: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: list[tuple[int, float, bool]] = []
+    read = arcs._sign_changes
+
+    def counted(trajectory: Trajectory, faint: float, every: bool) -> Arcs:
+        asked.append((id(trajectory), faint, every))
+        return read(trajectory, faint, every)
+
+    monkeypatch.setattr(arcs, "_sign_changes", counted)
+    found = solve(load_scene(configs / "moebius_half.yaml", ["tolerance=1e-9"]))
+    assert len(asked) == len(set(asked)) == 1
+    # What counts is part of the question.
+    assert sign_changes(found).kinds == sign_changes(found, every=True).kinds == (1,)
+    assert len(asked) == len(set(asked)) == 2
+
+
+@each_size
+def test_one_sign_is_told_at_once_as_all_signs_are(size: float) -> None:
+    """The short way says what the long one does, whichever side rounding is on."""
+    for m2 in (1.0 - 0.9 * STAGES, np.abs(NOISE) + STAGES**9, np.where(STAGES < 0.8, 1.0, NOISE)):
+        for sign in (1.0, -1.0):
+            shown = ribbon(size, sign * m2, np.full(200, 0.5))
+            assert sign_changes(shown).kinds == (sign,)
+            # A sign on the other side that counts takes the long way.
+            other = sign * np.where(np.arange(200) == 150, -1e-3, m2)
+            assert len(sign_changes(ribbon(size, other, np.full(200, 0.5))).kinds) == 3
+    assert sign_changes(ribbon(size, NOISE, np.full(200, 0.5))).kinds == (1,)
