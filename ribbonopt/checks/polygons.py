@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ribbonopt.arrays import Array
+from ribbonopt.kernel import COMPILED
 
 Index = NDArray[np.intp]
 
@@ -27,12 +27,15 @@ def half_twists(r: Array, twist: float) -> tuple[int, float]:
     twist
         Twist of the directors about it, in turns.
     """
-    return nearest_whole(2 * (twist + writhe(r)))
+    return nearest_half_twists(twist + writhe(r))
 
 
-def nearest_whole(value: float) -> tuple[int, float]:
-    """Nearest whole number, and the distance from it: infinite of what is no number."""
-    return (round(value), abs(value - round(value))) if math.isfinite(value) else (0, math.inf)
+def nearest_half_twists(link: float) -> tuple[int, float]:
+    """Nearest whole number to twice the sum of twist and writhe, and the distance from it."""
+    value = 2 * link
+    if not np.isfinite(value):
+        return 0, float("inf")
+    return round(value), abs(value - round(value))
 
 
 def writhe(r: Array) -> float:
@@ -41,6 +44,8 @@ def writhe(r: Array) -> float:
     Every pair of segments contributes the signed area on the sphere of the directions from which
     they are seen to cross (Levitt 1983; Klenin and Langowski 2000, method 1a).
     """
+    if COMPILED is not None:
+        return float(COMPILED.writhe(len(r), np.ascontiguousarray(r, dtype=float)))
     return sum(float(_seen_areas(pairs).sum()) for pairs in _pairs(r)) / (2 * np.pi)
 
 
@@ -67,15 +72,20 @@ def _seen_areas(segments: list[Array]) -> Array:
     """Signed areas (pairs,) of pairs of segments."""
     a, b, c, d = segments
     ac, ad, bc, bd = c - a, d - a, c - b, d - b
-    normals = [_cross(u, v) for u, v in ((ac, ad), (ad, bd), (bd, bc), (bc, ac))]
-    inverse = [_inverse_length(normal) for normal in normals]
-    area = np.zeros(ac.shape[1])
-    for k in range(4):
-        sine = np.einsum("ij,ij->j", normals[k], normals[k - 1])
-        sine *= inverse[k] * inverse[k - 1]
-        area += np.arcsin(np.clip(sine, -1.0, 1.0, out=sine))
+    area = _spherical_triangle(ac, ad, bd) + _spherical_triangle(ac, bd, bc)
     side = np.einsum("ij,ij->j", _cross(d - c, b - a), ac)
-    return np.asarray(np.sign(side) * area)
+    return np.asarray(np.sign(side) * np.abs(area))
+
+
+def _spherical_triangle(u: Array, v: Array, w: Array) -> Array:
+    """Signed areas (pairs,) that triangles of directions cover on the sphere.
+
+    Van Oosterom and Strackee 1983: of degenerate ones nothing has to be divided.
+    """
+    lu, lv, lw = (np.sqrt(np.einsum("ij,ij->j", x, x)) for x in (u, v, w))
+    volume = np.einsum("ij,ij->j", u, _cross(v, w))
+    uv, uw, vw = (np.einsum("ij,ij->j", x, y) for x, y in ((u, v), (u, w), (v, w)))
+    return np.asarray(2 * np.arctan2(volume, lu * lv * lw + uv * lw + uw * lv + vw * lu))
 
 
 def crosses_itself(r: Array) -> bool:
@@ -139,9 +149,3 @@ def _cross(u: Array, v: Array) -> Array:
     found[1] = z * a - x * c
     found[2] = x * b - y * a
     return found
-
-
-def _inverse_length(v: Array) -> Array:
-    """One over the lengths (k,) of columns (3, k); zero of zero."""
-    square = np.einsum("ij,ij->j", v, v)
-    return np.asarray(1 / np.where(square > 0, np.sqrt(square), np.inf))
