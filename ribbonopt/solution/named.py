@@ -22,11 +22,11 @@ from ribbonopt.transcription.buffered import Mapped
 
 Rows = slice | NDArray[np.bool_]
 
+MOMENTS = ("m1", "m2", "m3")
 PLACES = ("r", "d1", "d2", "d3", "u", "switching", "leap")
 NODES = ("r", "d1", "d2", "d3", "u", "n", "m", "H", "n_dot_m", "switching", "leap", "extension")
-TOLD = ("n2", "m1", "m3", "law_residual", "orthonormality", "eta", SLOPE)
-DENSITIES = ("energy", "potential")
-STAGES = (*DENSITIES, "u", "n", "m", "m1", "m2", "m3", "switching", "leap", "law_residual")
+TOLD = ("n2", *MOMENTS, "law_residual", "orthonormality", "eta", SLOPE)
+STAGES = ("energy", "potential", "u", "n", "m", *MOMENTS, "switching", "leap", "law_residual")
 
 
 @dataclass(frozen=True, eq=False)
@@ -92,7 +92,6 @@ class Choices:
         self.line = Choice.of(problem, ("r",))
         self.nodes = Choice.of(problem, (*NODES, *problem.conserved, *TOLD))
         self.stages = Choice.of(problem, STAGES)
-        self.densities = Choice.of(problem, DENSITIES)
 
 
 class Part(NamedTuple):
@@ -129,8 +128,7 @@ class Places:
 class Named(Mapping[str, Array]):
     """Outputs by name at places (k,): (k,) for scalars, (k, 3) for vectors.
 
-    A name is looked for in what is evaluated already, then in one choice after another, the last of
-    which has all.
+    A name is looked for in one choice after another, of which the last has all.
     """
 
     def __init__(self, places: Places, *choices: Choice) -> None:
@@ -175,10 +173,9 @@ class Named(Mapping[str, Array]):
         return self._largest[choice][name]
 
     def _of(self, name: str) -> Choice:
-        for choices in (self._found, self._choices):
-            for choice in choices:
-                if name in choice.columns:
-                    return choice
+        for choice in self._choices:
+            if name in choice.columns:
+                return choice
         raise KeyError(name)
 
 

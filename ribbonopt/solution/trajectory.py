@@ -131,7 +131,7 @@ class Trajectory:
         v, fraction, _, phase = self.stages
         count, known = len(self.problem.phases), self._choices
         rows = [phase == i for i in range(count)] if count > 1 else ALL
-        return Named(self._at(v, fraction, rows), known.densities, known.stages, known.every)
+        return Named(self._at(v, fraction, rows), known.stages, known.every)
 
     @cached_property
     def at_nodes(self) -> Named:
