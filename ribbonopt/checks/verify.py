@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -16,7 +17,7 @@ from numpy.typing import NDArray
 from ribbonopt.accuracy.estimate import SAFETY, Analysis, analyse
 from ribbonopt.accuracy.gaps import LEAST, compared
 from ribbonopt.mechanics.outputs import SLOPE, sheet_slopes
-from ribbonopt.problem import Ribbon
+from ribbonopt.problem import Posed, Ribbon
 from ribbonopt.problem.imposed import verdicts_function
 from ribbonopt.solution.solution import Solution
 from ribbonopt.solution.verification import NO_LENGTH, Verification, unverified
@@ -34,10 +35,8 @@ def verify(solution: Solution, ribbon: Ribbon) -> Verification:
     if len(trajectory.ends) > 2 and not (np.diff(trajectory.ends) > NO_LENGTH).all():
         problem = f"a phase between two sign changes of {ribbon.law.switch_name} has no length"
         return replace(unverified(), problems=(problem,))
-    worst_name, worst = _worst_condition(solution, ribbon)
-    residual = float(solution.dense.residual_between_nodes().max())
-    nodes, drift = trajectory.at_nodes, _drifts(solution, ribbon.uniform)
-    problems = []
+    found, nodes = _measured(solution, ribbon), trajectory.at_nodes
+    worst, residual, drift, problems = found.worst, found.residual, found.drift, list[str]()
     # Gauss keeps orthonormality to rounding, other schemes only to their own accuracy; natural
     # conditions of a minimum hold to the accuracy of the mesh.
     exact = solution.dense.blocks.symplectic and not solution.problem.recovered
@@ -45,7 +44,7 @@ def verify(solution: Solution, ribbon: Ribbon) -> Verification:
     if not worst <= allowed:
         same = solution.posed.given is solution.posed.scene
         units = "" if same else " (units Dw = L = 1)"
-        problems.append(f"{worst_name} is off by {worst:.2g}{units}")
+        problems.append(f"{found.name} is off by {worst:.2g}{units}")
     if not drift["orthonormality"] <= allowed:
         problems.append(
             f"the directors are not orthonormal (off by {drift['orthonormality']:.2g}); refine the "
@@ -87,15 +86,40 @@ def verify(solution: Solution, ribbon: Ribbon) -> Verification:
                 f"{what} = {eta.max():.4g} at s = {s:.4g}, beyond 1: eq. (4.1) forbids it; the "
                 "ribbon wants to switch sheets there (law: sadowsky, regularized or variational)"
             )
-    problems += _off_the_law(solution, ribbon)
-    loop = solution.scene.boundary.loop
-    if loop is not None:
-        from .topology import loop_problems  # only where a scene has one
-
-        problems += loop_problems(solution, loop, residual)
+    problems += (*_off_the_law(solution, ribbon), *found.of_loop)
     law = trajectory.at_stages.largest("law_residual")
     law /= max(nodes.largest("u"), LEAST)  # a straight ribbon has no strains
     return Verification(tuple(problems), worst, residual, law, drift)
+
+
+class _Measured(NamedTuple):
+    """What was measured of a solution of a posed scene; see `Verification`.
+
+    `name` is that of the worst condition, `of_loop` what a loop is not that was asked for.
+    """
+
+    posed: Posed
+    name: str
+    worst: float
+    residual: float
+    drift: dict[str, float]
+    of_loop: list[str]
+
+
+def _measured(solution: Solution, ribbon: Ribbon) -> _Measured:
+    """Measure once: a solution in phases is judged again when its error is known."""
+    kept, posed = solution.trajectory.found, solution.posed
+    known: _Measured | None = kept.get(_Measured)
+    if known is None or known.posed is not posed:
+        residual = float(solution.dense.residual_between_nodes().max())
+        of_loop, loop = list[str](), solution.scene.boundary.loop
+        if loop is not None:
+            from .topology import loop_problems  # only where a scene has one
+
+            of_loop = loop_problems(solution, loop, residual)
+        worst, drift = _worst_condition(solution, ribbon), _drifts(solution, ribbon.uniform)
+        known = kept[_Measured] = _Measured(posed, *worst, residual, drift, of_loop)
+    return known
 
 
 def _off_the_law(solution: Solution, ribbon: Ribbon) -> list[str]:
