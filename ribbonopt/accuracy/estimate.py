@@ -33,7 +33,7 @@ from .compared import compared
 from .gaps import LEAST, RESOLVED, gaps_at_nodes, gaps_between, sizes_of
 from .layers import Layers, clear_of, layers, overlooked
 from .spin import spins
-from .witness import columns_of_rod, more_of, witness
+from .witness import columns_of_rod, more_of, summed, witness
 
 UNIT = 3e-16  # local error by rounding alone
 SAFETY = 4.0  # bar over estimate: what the next better scheme itself may miss
@@ -44,6 +44,8 @@ BARRIER = 30.0
 ACCIDENT = 0.01  # of the relative error of the loads of a minimum: least of its energy
 SMALL = 1e-4  # unless they are smaller than this all the same
 BLURRED = 1e-14  # of the length: by how much rounding moves a layer, over that by which it may
+#: what each bar is of, where that has a unit
+QUANTITY = {"n0": "n", "m0": "m", "u0": "u", "u": "u", "H0": "H", "potential": "m", "energy": "m"}
 USUAL = 1e-8  # tolerance of scenes that have none
 
 
@@ -102,7 +104,7 @@ def analyse(solution: Solution, near: Factors | None = None, *, keep: bool = Fal
     if Analysis not in known:
         # Refinement, rows and summaries ask one after the other; none but the first for factors.
         found = _analysed(solution, near, keep)
-        known[Analysis] = replace(found, factors=None)
+        known[Analysis] = found if found.factors is None else replace(found, factors=None)
         return found
     analysis: Analysis = known[Analysis]
     return analysis
@@ -116,15 +118,17 @@ def estimate_error(solution: Solution) -> dict[str, float]:
     they jump. None of them is below rounding; nan where no bar can be given, because the mesh steps
     over a layer.
     """
-    units = solution.units
-    quantity = {"n0": "n", "m0": "m", "u0": "u", "u": "u", "H0": "H"}
-    quantity |= {"potential": "m", "energy": "m"}
-    found = analyse(solution)
+    found, posed = analyse(solution), solution.posed
     bar = SAFETY if found.known else math.nan
-    errors = {name: error for name, error in found.errors.items() if name != RESOLVED}
-    force = float(np.linalg.norm(dead_force_of(solution.posed)))
-    errors["potential"] += force * errors["states"]  # its work at an end
-    return {name: bar * units.of(quantity.get(name, "")) * e for name, e in errors.items()}
+    errors = {name: bar * error for name, error in found.errors.items() if name != RESOLVED}
+    force = dead_force_of(posed)
+    if force.any():
+        # Its work at an end.
+        errors["potential"] += float(np.linalg.norm(force)) * errors["states"]
+    if posed.given is posed.scene:
+        return errors
+    of = solution.units.of
+    return {name: of(QUANTITY.get(name, "")) * error for name, error in errors.items()}
 
 
 def relative_error(solution: Solution) -> tuple[float, str]:
@@ -143,7 +147,7 @@ def relative_error(solution: Solution) -> tuple[float, str]:
 def _worst(errors: Mapping[str, float], sizes: Mapping[str, float]) -> tuple[float, str]:
     """Largest error over the size of what it is of, and the name of that."""
     relative = {name: errors[name] / max(size, LEAST) for name, size in sizes.items()}
-    worst = max(relative, key=lambda name: relative[name])
+    worst = max(relative, key=relative.__getitem__)
     return relative[worst], worst
 
 
@@ -158,13 +162,14 @@ def _analysed(solution: Solution, near: Factors | None, keep: bool) -> Analysis:
         residuals, derivatives = blocks.linearize(w, p)
         only, neutral = None if keep else residuals, spins(solution)
         factors: Factors = factored(blocks, derivatives, p, only, neutral)
-        growth = blocks.growth(derivatives, p).reshape(-1, split).sum(axis=1)
+        growth = summed(blocks.growth(derivatives, p), split)
     else:
         residuals, factors, keep, growth = blocks.residuals(w, p), near, True, dense.growth
     step = factors.solve(residuals)
     better = Trajectory(trajectory.problem, finer.moved(step))
     size = np.maximum(np.abs(dense.at_nodes).max(axis=0), 1.0)
-    local = np.abs(residuals.nodes / size).max(axis=1).reshape(-1, split).sum(axis=1)
+    defects = np.abs(residuals.nodes / size)
+    local = summed(defects.max(axis=1), split)
     near_by = tuple(layers(trajectory, i) for i in range(len(trajectory.problem.phases)))
     clear = clear_of(trajectory, near_by, BLURRED / tolerance)
     errors, sizes = gaps_at_nodes(trajectory, better, split, clear), sizes_of(trajectory)
@@ -176,14 +181,11 @@ def _analysed(solution: Solution, near: Factors | None, keep: bool) -> Analysis:
     # Between the nodes the output starts from the node before, with the error of that element.
     more_inside, inside = gaps_between(trajectory, better, near_by, growth, clear)
     errors |= {name: max(errors[name], gap) for name, gap in more_inside.items()}
-    rod = columns_of_rod(trajectory)
+    of_rod, rod = local, trajectory.problem.kept(columns_of_rod)
     if len(rod) < len(size):
         # Errors in states of the law's own show in the rod where they matter to it.
-        of_rod = np.abs(residuals.nodes / size)[:, rod].max(axis=1).reshape(-1, split).sum(axis=1)
-        localcolumns_of_rod, _ = more_of(of_rod, witnessed)
-        errors["states"] = max(errors["states"], float(localcolumns_of_rod.max()))
-    else:
-        errors["states"] = max(errors["states"], float(local.max()))
+        of_rod, _ = more_of(summed(defects[:, rod].max(axis=1), split), witnessed)
+    errors["states"] = max(errors["states"], float(of_rod.max()))
     kept = factors if keep else None
     known = doubt <= DOUBTFUL or _worst(errors, sizes)[0] <= SMALL
     return Analysis(trajectory, better, local, inside, errors, sizes, more, known, near_by, kept)

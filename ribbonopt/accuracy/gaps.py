@@ -16,6 +16,13 @@ ROUNDING = 1e-15
 RESOLVED = "u, layers apart"  # strains but in layers so thin that rounding moves them
 MISSED = 1.5  # largest error inside an element over that at the places looked at
 CANCEL = 0.25  # of the errors of the parts of H: what must not cancel in a bound
+#: first columns of states (r, d1, d2, d3), u, n, m, H and n . m; how many states and u have
+FIRSTS, ALONG = (0, 12, 15, 18, 21, 22), 15
+JUMPING = ("switching", "leap")
+#: d1' = u3 d2 - u2 d3, d2' = u1 d3 - u3 d1, d3' = u2 d1 - u1 d2: the factors (9,) of u1, u2, u3
+TURNING = np.array(
+    [[0, 0, 0, 0, 0, 1, 0, -1, 0], [0, 0, -1, 0, 0, 0, 1, 0, 0], [0, 1, 0, -1, 0, 0, 0, 0, 0.0]]
+)
 LEAST = 1e-3  # size of an answer, Dw = L = 1, below which its error counts absolutely
 
 
@@ -29,38 +36,42 @@ def gaps_at_nodes(
 
     `better` has elements split in parts; `clear` says which fractions are in no thin layer.
     """
-    ours = trajectory.at_nodes
-    theirs = {name: values[::split] for name, values in better.at_nodes.items()}
-    errors = {f"{name}0": _gap(theirs[name][0], ours[name][0]) for name in ("n", "m", "u")}
+    known, theirs = compared(trajectory), compared(better)[::split]
+    gap, size = _parts(np.abs(theirs - known)), _parts(np.abs(known))
+    (_, u, n, m, H, _), (_, u0, n0, m0, H0, _) = gap[0].tolist(), size[0].tolist()
+    errors = {"n0": _gap(n, n0), "m0": _gap(m, m0), "u0": _gap(u, u0)}
     # H is a difference: its rounding is that of its parts, which may cancel by accident.
-    parts = errors["n0"] + float(np.abs(ours["u"][0]).max()) * errors["m0"]
-    gap = _gap(theirs["H"][0], ours["H"][0], float(np.abs(ours["n"][0]).max()))
-    errors["H0"] = max(gap, CANCEL * parts)
-    for name in ("energy", "potential"):
-        errors[name] = _gap(np.array(better.integral(name)), np.array(trajectory.integral(name)))
-    along = {name: ours[name] for name in ("r", "d1", "d2", "d3", "u")}
+    parts, gap_of_H = errors["n0"] + u0 * errors["m0"], _gap(H, H0, n0)
+    errors["H0"] = max(gap_of_H, CANCEL * parts)
+    energies = [each.energy for each in (better, trajectory)]
+    potentials = [each.integral("potential") for each in (better, trajectory)]
+    for name, (value, own) in (("energy", energies), ("potential", potentials)):
+        errors[name] = _gap(abs(value - own), abs(own))
     if len(trajectory.ends) > 2:
         along = _shifted(trajectory, better.nodes[::split])
-    same, u = _same_side(ours, theirs), along.pop("u")
-    strains = resolved = _gap(theirs["u"][same], u[same])
+        gap, size = _parts(np.abs(theirs[:, :ALONG] - along)), _parts(np.abs(along))
+    (states, u, *_), (most, strains, *_) = gap.max(axis=0).tolist(), size.max(axis=0).tolist()
+    errors["states"] = _gap(states, most)
+    nodes = better.at_nodes
+    same = _same_side(trajectory.at_nodes, {name: nodes[name][::split] for name in JUMPING})
     apart = same & clear(trajectory.nodes)
-    if (apart != same).any():
-        resolved = _gap(theirs["u"][apart], u[apart])
-    better_states, states = (np.hstack([rows[k] for k in along]) for rows in (theirs, along))
-    errors["states"] = _gap(better_states, states)
-    return errors | {"u": strains, RESOLVED: resolved}
+    if apart.all():
+        errors["u"] = errors[RESOLVED] = _gap(u, strains)
+        return errors
+    for name, rows in (("u", same), (RESOLVED, apart)):
+        errors[name] = _gap(*(float(part[rows, 1].max(initial=0.0)) for part in (gap, size)))
+    return errors
 
 
 def sizes_of(trajectory: Trajectory) -> dict[str, float]:
     """Return what the errors of the answers are relative to."""
-    start = trajectory.at_nodes
-    loads = max(float(np.abs(start[name][0]).max()) for name in ("n", "m"))
-    strains = float(np.abs(trajectory.at_stages["u"]).max())
+    nodes, strains = trajectory.at_nodes, trajectory.at_stages.largest("u")
+    loads = max(float(np.abs(nodes[name][0]).max()) for name in ("n", "m"))
     return {
         "n0": loads,
         "m0": loads,
         "u0": strains,
-        "H0": max(loads, abs(float(start["H"][0]))),
+        "H0": max(loads, abs(float(nodes["H"][0]))),
         "energy": abs(trajectory.energy),
         "states": 1.0,
         RESOLVED: strains,
@@ -79,7 +90,7 @@ def gaps_between(
     fractions, elements = between(trajectory, near_by, growth)
     if not len(fractions):
         return {}, result
-    ours, theirs = (t.outputs(fractions) for t in (trajectory, better))
+    ours, theirs = (t.looked_at(fractions) for t in (trajectory, better))
     gaps = {k: np.abs(theirs[k] - ours[k]).max(axis=1) for k in ("r", "d1", "d2", "d3", "u")}
     strains = np.where(_same_side(ours, theirs), gaps.pop("u"), 0.0)
     states = np.max(list(gaps.values()), axis=0)
@@ -91,23 +102,39 @@ def gaps_between(
     return {name: MISSED * float(values.max()) for name, values in found.items()}, result
 
 
-def _shifted(trajectory: Trajectory, nodes: Array) -> dict[str, Array]:
-    """Positions, directors and strains at other fractions (N + 1,), near the nodes.
+def compared(trajectory: Trajectory) -> Array:
+    """Columns (N + 1, c) at the nodes of what is compared: states, strains, n, m and H first."""
+    nodes = trajectory.at_nodes
+    choice = nodes.choice
+    return np.asarray(nodes.block(choice)[:, : choice.before("switching")])
+
+
+def _parts(columns: Array) -> Array:
+    """Largest number (k, p) of each part in such columns (k, c)."""
+    firsts = FIRSTS if columns.shape[1] > ALONG else FIRSTS[:2]
+    return np.asarray(np.maximum.reduceat(columns, firsts, axis=1))
+
+
+def _shifted(trajectory: Trajectory, nodes: Array) -> Array:
+    """Positions, directors and strains (N + 1, 15) at other fractions (N + 1,), near the nodes.
 
     Phases of two solutions are not as long; both are to be compared at the same arclength.
     """
     ours, length = trajectory.at_nodes, trajectory.length
+    found: Array = compared(trajectory)[:, :ALONG].copy()
     shift = (length * (nodes - trajectory.nodes))[:, None]
-    darboux = np.einsum("ki,ikj->kj", ours["u"], np.stack([ours[f"d{i}"] for i in (1, 2, 3)]))
+    r, directors, u = found[:, :3], found[:, 3:12], found[:, 12:]
     tangent = (1 + ours["extension"])[:, None] * ours["d3"]
-    found = {"r": ours["r"] + shift * tangent}
-    found |= {d: ours[d] + shift * np.cross(darboux, ours[d]) for d in ("d1", "d2", "d3")}
-    slope = np.zeros_like(ours["u"])
-    slope[1:] = np.diff(ours["u"], axis=0) / (length * np.diff(trajectory.nodes))[:, None]
+    slope = np.zeros_like(u)
+    slope[1:] = np.diff(u, axis=0) / (length * np.diff(trajectory.nodes))[:, None]
     # Where phases meet strains may jump: there the next phase says how they change.
     meet = np.searchsorted(trajectory.nodes, trajectory.ends[1:-1])
     slope[meet] = slope[meet + 1]
-    return found | {"u": ours["u"] + shift * slope}
+    turning = (u @ TURNING).reshape(-1, 3, 3) @ directors.reshape(-1, 3, 3)
+    directors += shift * turning.reshape(-1, 9)
+    r += shift * tangent
+    u += shift * slope
+    return found
 
 
 def _same_side(ours: Mapping[str, Array], theirs: Mapping[str, Array]) -> NDArray[np.bool_]:
@@ -116,6 +143,6 @@ def _same_side(ours: Mapping[str, Array], theirs: Mapping[str, Array]) -> NDArra
     return same
 
 
-def _gap(a: Array, b: Array, size: float = 1.0) -> float:
-    difference, whole = (float(np.abs(x).max(initial=0.0)) for x in (a - b, b))
+def _gap(difference: float, whole: float, size: float = 1.0) -> float:
+    """Return a difference, no less than the rounding of what is as large."""
     return max(difference, ROUNDING * max(size, whole))

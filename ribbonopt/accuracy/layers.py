@@ -10,6 +10,7 @@ from __future__ import annotations
 
 from collections.abc import Callable
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
@@ -116,10 +117,11 @@ def layers(trajectory: Trajectory, phase: int) -> Layers:
     rows = trajectory.singular_at_stages(phase) if stages else np.empty(0)
     if not rows.size:
         return Layers.none()
-    a, b = trajectory.ends[phase : phase + 2]
-    _, fraction, _, phases = trajectory.stages
-    sigma = (fraction if len(trajectory.ends) == 2 else fraction[phases == phase]) - a
-    sigma, nodes = sigma / (b - a), trajectory.dense.nodes(phase)
+    _, sigma, _, phases = trajectory.stages
+    if len(trajectory.ends) > 2:
+        a, b = trajectory.ends[phase : phase + 2]
+        sigma = (sigma[phases == phase] - a) / (b - a)
+    nodes = trajectory.nodes_within[phase]
     values = rows[:, :, 0] + 1j * rows[:, :, 1]
     step, change = (sigma[1:] - sigma[:-1])[:, None], values[1:] - values[:-1]
     widths = nodes[1:] - nodes[:-1]
@@ -152,7 +154,7 @@ def clear_of(
 
     What rounding does to the place of such a layer is more than strains in it can bear.
     """
-    if all(near.fade.all() for near in found):
+    if all(not len(near) or near.fade.all() for near in found):
         return lambda fractions: np.ones(len(fractions), bool)
     places, depths = [], []
     for a, b, near in zip(trajectory.ends[:-1], trajectory.ends[1:], found, strict=True):
@@ -181,10 +183,11 @@ def between(
 
     In elements of large `growth` (N,), and next to layers and in them.
     """
-    dense, nodes, ends = trajectory.dense, trajectory.nodes, trajectory.ends
+    degree, nodes, ends = trajectory.dense.blocks.degree, trajectory.nodes, trajectory.ends
     chosen, extra = growth > WATCHED, [np.empty(0)]
     if any(map(len, found)):
-        chosen = chosen | np.concatenate([n.close(dense.nodes(i)) for i, n in enumerate(found)])
+        pairs = zip(found, trajectory.nodes_within, strict=True)
+        chosen = chosen | np.concatenate([near.close(within) for near, within in pairs])
         extra += [
             a + (b - a) * near.places.real
             for a, b, near in zip(ends[:-1], ends[1:], found, strict=True)
@@ -193,11 +196,17 @@ def between(
     if not len(elements):
         return np.empty(0), elements
     # The error of a collocation polynomial is largest at its stages.
-    inside = (1 + np.polynomial.legendre.leggauss(max(3, dense.blocks.degree))[0]) / 2
+    inside = _inside(max(3, degree))
     regular = (nodes[elements, None] + np.diff(nodes)[elements, None] * inside).ravel()
     fractions = np.concatenate([regular, *extra])
     fractions = fractions[(fractions > 0) & (fractions < 1)]
     return fractions, np.clip(np.searchsorted(nodes, fractions) - 1, 0, len(nodes) - 2)
+
+
+@lru_cache
+def _inside(count: int) -> Array:
+    """Gauss nodes (count,) in an element, from 0 to 1."""
+    return np.asarray((1 + np.polynomial.legendre.leggauss(count)[0]) / 2)
 
 
 def overlooked(trajectory: Trajectory, found: tuple[Layers, ...]) -> Array:
@@ -206,11 +215,10 @@ def overlooked(trajectory: Trajectory, found: tuple[Layers, ...]) -> Array:
     if not any(map(len, found)):
         return np.zeros(1)
     lengths = np.diff(trajectory.ends) * trajectory.length
-    return np.concatenate(
-        [
-            length * near.overlooked(trajectory.dense.nodes(i), blocks.degree, blocks.order)
-            if len(near)
-            else np.zeros(blocks.layout.elements[i])
-            for i, (near, length) in enumerate(zip(found, lengths, strict=True))
-        ]
-    )
+    parts = [
+        length * near.overlooked(within, blocks.degree, blocks.order)
+        if len(near)
+        else np.zeros(len(within) - 1)
+        for near, length, within in zip(found, lengths, trajectory.nodes_within, strict=True)
+    ]
+    return np.concatenate(parts)

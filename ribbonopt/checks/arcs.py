@@ -9,6 +9,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 from itertools import pairwise
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -20,6 +21,7 @@ from ribbonopt.guess.named import ShapeGuess
 from ribbonopt.mechanics.outputs import sheet_slopes
 from ribbonopt.scene import Scene
 from ribbonopt.solution.solution import Solution
+from ribbonopt.solution.trajectory import Trajectory
 
 NEGLIGIBLE = 1e-7  # m2 over the largest |m| that has no sign
 FAINT, SEEN = 1e-5, 10.0  # (m2, m3) over the largest |m|, and over the tolerance: is not seen
@@ -35,6 +37,12 @@ class Arcs:
 
     kinds: tuple[int, ...]
     switches: Array
+
+
+class Signs(NamedTuple):
+    """Arcs of a solution by how faint tails may be, and whether every change of sign counts."""
+
+    known: dict[tuple[float, bool], Arcs]
 
 
 MIXTURE = Arcs((0,), np.empty(0))  # from end to end
@@ -70,14 +78,30 @@ def sign_changes(solution: Solution, every: bool = False) -> Arcs:
     Where nothing leaps there (a planar ribbon) the law is smooth: such changes do not count, unless
     `every` one is asked for.
     """
-    o, ends, scale = solution.at_stages, solution.at_nodes, _scale(solution)
+    asked = _faint(solution), every
+    known = solution.trajectory.found.setdefault(Signs, Signs({})).known
+    if asked not in known:
+        known[asked] = _sign_changes(solution.trajectory, *asked)
+    found: Arcs = known[asked]
+    return found
+
+
+def _sign_changes(trajectory: Trajectory, faint: float, every: bool) -> Arcs:
+    """Return the same; in tails as `faint` as that nothing can be told."""
+    o, ends = trajectory.at_stages, trajectory.at_nodes
+    scale, inside, at_ends = o.largest("m"), o["switching"], ends["switching"]
+    lowest = min(float(inside.min()), float(at_ends[0]), float(at_ends[-1]))
+    highest = max(float(inside.max()), float(at_ends[0]), float(at_ends[-1]))
+    least = NEGLIGIBLE * scale
+    if max(-lowest, highest) > max(NEGLIGIBLE, faint) * scale and min(-lowest, highest) <= least:
+        return Arcs((1 if highest > -lowest else -1,), np.empty(0))  # one sign, but for rounding
     value, leap = (
         np.concatenate([ends[name][:1], o[name], ends[name][-1:]]) for name in ("switching", "leap")
     )
-    f = np.concatenate([[0.0], solution.trajectory.stages[1], [1.0]])
+    f = np.concatenate([[0.0], trajectory.stages[1], [1.0]])
     size = np.abs(value) > NEGLIGIBLE * scale
     # In the tail of a layer, which mesh and rounding may let change sign, nothing can be told.
-    size &= np.maximum(np.abs(value), leap) > _faint(solution) * scale
+    size &= np.maximum(np.abs(value), leap) > faint * scale
     f, value, leap = f[size], value[size], leap[size]
     if not len(value):
         return Arcs((1,), np.empty(0))
@@ -112,7 +136,7 @@ def _counted(
 
 def leaps(solution: Solution) -> bool:
     """Whether the law's strains would leap at a sign change: not where the ribbon is planar."""
-    return bool((solution.at_stages["leap"] > NEGLIGIBLE * _scale(solution)).any())
+    return bool((solution.trajectory.at_stages["leap"] > NEGLIGIBLE * _scale(solution)).any())
 
 
 def leaps_at_ends(solution: Solution) -> list[bool]:
@@ -121,7 +145,7 @@ def leaps_at_ends(solution: Solution) -> list[bool]:
     Not where the ribbon is its own image by inversion: there its law is smooth, and in the small
     elements that others need rounding would be all there is.
     """
-    leap = solution.at_nodes["leap"]
+    leap = solution.trajectory.at_nodes["leap"]
     starts = [part.start for part in solution.dense.blocks.layout.phase_slices[1:]]
     return [bool(value > FAINT * leap.max()) for value in leap[starts]]
 
@@ -143,7 +167,8 @@ def with_mixtures(sharp: Solution, blunt: Solution) -> Iterator[Arcs]:
             mixtures.append((a, b))
     if not mixtures:
         return
-    zero = np.abs(sharp.at_nodes["switching"][[0, -1]]) <= NEGLIGIBLE * _scale(sharp)
+    at_ends = sharp.trajectory.at_nodes["switching"][[0, -1]]
+    zero = np.abs(at_ends) <= NEGLIGIBLE * _scale(sharp)
     arcs = sign_changes(sharp)
     apart, to_ends = (
         _interleaved(arcs, [_reaching(mixture, *gaps) for mixture in mixtures])
@@ -209,7 +234,7 @@ def _interleaved(arcs: Arcs, mixtures: list[tuple[float, float]]) -> Arcs:
 
 def _beyond(solution: Solution) -> list[tuple[float, float]]:
     """Fractions between which strains are beyond those of one sheet."""
-    f, slopes = solution.trajectory.stages[1], sheet_slopes(solution.at_stages)
+    f, slopes = solution.trajectory.stages[1], sheet_slopes(solution.trajectory.at_stages)
     beyond = np.concatenate([[False], slopes > BEYOND, [False]])
     edges = np.flatnonzero(beyond[1:] != beyond[:-1])
     return [(f[a], f[b - 1]) for a, b in zip(edges[::2], edges[1::2], strict=True)]
@@ -218,8 +243,8 @@ def _beyond(solution: Solution) -> list[tuple[float, float]]:
 def _faint(solution: Solution) -> float:
     """Return (m2, m3), over the largest |m|, of a tail that does not show in the answer."""
     tolerance = solution.posed.scene.tolerance
-    return NEGLIGIBLE if tolerance is None else float(np.clip(SEEN * tolerance, NEGLIGIBLE, FAINT))
+    return NEGLIGIBLE if tolerance is None else min(max(SEEN * tolerance, NEGLIGIBLE), FAINT)
 
 
 def _scale(solution: Solution) -> float:
-    return float(np.abs(solution.at_stages["m"]).max())
+    return solution.trajectory.at_stages.largest("m")

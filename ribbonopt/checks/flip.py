@@ -9,11 +9,13 @@ d1 (a fold), d1, u2 and u3 continue.
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 import numpy as np
 
 from ribbonopt.arrays import Array
+from ribbonopt.solution.named import Each
 from ribbonopt.solution.solution import Solution
 
 TOLERANCE = 1e-6  # of directors and fields, and of positions relative to the length
@@ -52,9 +54,14 @@ class Flip:
         return np.asarray(self.point + self.rotate(points - self.point))
 
 
-def flip_at(values: dict[str, Array], s: Array, index: int, director: str) -> Flip:
+def flip_at(values: Mapping[str, Array], s: Array, index: int, director: str) -> Flip:
     """Flip about a director, d1 or d2, at one row of outputs at arclengths s (k,)."""
     return Flip(float(s[index]), values["r"][index], values[director][index], director == "d2")
+
+
+def at_ends(solution: Solution) -> Mapping[str, Array]:
+    """Return outputs at both ends, in own units: (2,) for scalars, (2, 3) for vectors."""
+    return Each(solution.at_nodes, lambda _, values: values[[0, -1]])
 
 
 def find_flip(solution: Solution) -> Flip | None:
@@ -64,8 +71,7 @@ def find_flip(solution: Solution) -> Flip | None:
     (position and tangent, within 1e-6) at both ends: both must lie on the axis.
     """
     start, end = solution.scene.interval
-    s = np.array([start, end])
-    ends = solution.outputs(s)
+    s, ends = np.array([start, end]), at_ends(solution)
     gap = ends["r"][0] - ends["r"][1]
     if np.linalg.norm(gap) <= TOLERANCE * (end - start):
         return None

@@ -83,7 +83,7 @@ def gauss_stages(solution: Solution, ribbon: Ribbon, theta: Array) -> GaussStage
         if np.abs(own - places).max() < SAME:
             error = _known_error(solution)
     if error is not None:
-        along = trajectory.at_stages
+        along: Mapping[str, Array] = trajectory.at_stages
     else:
         parts = -(-LEAST_ELEMENTS // len(widths))
         widths = np.repeat(widths / parts, parts)

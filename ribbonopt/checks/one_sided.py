@@ -19,9 +19,12 @@ def ends_on_switch(solution: Solution) -> bool:
     At the start, whose strains are told with a bar; at the end only where rounding takes the law to
     the side where the ribbon is not.
     """
-    nodes, stages = solution.at_nodes, solution.at_stages
-    scale = float(np.abs(stages["m"]).max())
-    value, beside = (v[[0, -1]] for v in (nodes["switching"], stages["switching"]))
-    zero = (np.abs(value) <= ROUNDED * scale) & (np.abs(beside) > NEGLIGIBLE * scale)
-    counts = np.array([True, value[1] * np.sign(beside[1]) <= 0])
-    return bool((zero & (nodes["leap"][[0, -1]] > NEGLIGIBLE * scale) & counts).any())
+    nodes, stages = solution.trajectory.at_nodes, solution.trajectory.at_stages
+    scale = stages.largest("m")
+    value, beside, leap = nodes["switching"], stages["switching"], nodes["leap"]
+    for at in (0, -1):
+        zero = abs(value[at]) <= ROUNDED * scale and abs(beside[at]) > NEGLIGIBLE * scale
+        counts = at == 0 or value[at] * np.sign(beside[at]) <= 0
+        if zero and leap[at] > NEGLIGIBLE * scale and counts:
+            return True
+    return False

@@ -2,9 +2,12 @@
 
 from __future__ import annotations
 
+from typing import NamedTuple
+
 import numpy as np
 
-from ribbonopt.problem import Ribbon
+from ribbonopt.arrays import Array
+from ribbonopt.problem import Posed, Ribbon
 from ribbonopt.problem.imposed import margins_function
 from ribbonopt.solution.solution import Solution
 from ribbonopt.transcription.buffered import Mapped
@@ -23,31 +26,59 @@ def phase_problems(
     to the largest load: what must be zero is so to that. `moments` is the error of the moments:
     what must not be negative is so to that.
     """
-    problems = []
-    v, fraction, _, phase = solution.trajectory.stages
-    theta, at_nodes = solution.dense.theta, solution.dense.at_nodes
-    scale, force = (float(np.abs(solution.trajectory.at_stages[v]).max()) for v in "mn")
+    at_stages = solution.trajectory.at_stages
+    scale, force = at_stages.largest("m"), at_stages.largest("n")
     loads = max(scale, force)
-    s, s_nodes = (
-        solution.posed.scene.interval[0] + solution.posed.length * at
-        for at in (fraction, solution.trajectory.nodes)
-    )
+    margin = min(MARGIN * scale, max(moments, ROUNDED * scale))
     start, end = solution.scene.interval
     ends = start + (end - start) * solution.trajectory.ends
-    constants = solution.constants[: len(ribbon.constants)]
-    for i, kind in enumerate(solution.sheets):
-        rows, part = phase == i, solution.dense.blocks.layout.phase_slices[i]
-        places = np.concatenate([s[rows], s_nodes[part.start : part.stop + 1]])
-        states = np.concatenate([v[rows], at_nodes[part.start : part.stop + 1]])
-        where = f"between s = {ends[i]:.4g} and {ends[i + 1]:.4g}"
-        names, count, margins = ribbon.kept(_margins)[kind]
-        (values,) = margins(states[:, : len(ribbon.states)], constants, theta, places)
-        least = values.reshape(-1, len(names)).min(axis=0)
-        margin = min(MARGIN * scale, max(moments, ROUNDED * scale))
+    problems = []
+    for i, (names, count, least) in enumerate(_least(solution, ribbon)):
         allowed = np.where(np.arange(len(names)) < count, margin, accuracy * loads)
-        short = zip(names, least, allowed, strict=True)
-        problems += [name.format(where=where) for name, value, most in short if value < -most]
+        if (least < -allowed).any():
+            where = f"between s = {ends[i]:.4g} and {ends[i + 1]:.4g}"
+            short = zip(names, least, allowed, strict=True)
+            problems += [name.format(where=where) for name, value, most in short if value < -most]
     return problems
+
+
+class _Least(NamedTuple):
+    """Least margins of a solution of a posed scene, in phases of some kinds: see `_least`."""
+
+    posed: Posed
+    sheets: tuple[int, ...]
+    phases: list[tuple[tuple[str, ...], int, Array]]
+
+
+def _least(solution: Solution, ribbon: Ribbon) -> list[tuple[tuple[str, ...], int, Array]]:
+    """Return for each phase names of margins, how many are none of zeros, and the least of each.
+
+    Found once: they are judged again when the error is known.
+    """
+    kept, posed, sheets = solution.trajectory.found, solution.posed, solution.sheets
+    known: _Least | None = kept.get(_Least)
+    if known is None or known.posed is not posed or known.sheets != sheets:
+        phases = [_least_of(solution, ribbon, i, kind) for i, kind in enumerate(sheets)]
+        known = kept[_Least] = _Least(posed, sheets, phases)
+    return known.phases
+
+
+def _least_of(
+    solution: Solution, ribbon: Ribbon, phase: int, kind: int
+) -> tuple[tuple[str, ...], int, Array]:
+    """Return the same of one phase, at its stages and nodes."""
+    trajectory, (start, _) = solution.trajectory, solution.posed.scene.interval
+    v, fraction, _, phases = trajectory.stages
+    rows, part = phases == phase, solution.dense.blocks.layout.phase_slices[phase]
+    nodes = slice(part.start, part.stop + 1)
+    places = start + solution.posed.length * np.concatenate(
+        [fraction[rows], trajectory.nodes[nodes]]
+    )
+    states = np.concatenate([v[rows], solution.dense.at_nodes[nodes]])[:, : len(ribbon.states)]
+    constants = solution.constants[: len(ribbon.constants)]
+    names, count, margins = ribbon.kept(_margins)[kind]
+    (values,) = margins(states, constants, solution.dense.theta, places)
+    return names, count, values.reshape(-1, len(names)).min(axis=0)
 
 
 def _margins(ribbon: Ribbon) -> dict[int, tuple[tuple[str, ...], int, Mapped]]:

@@ -12,7 +12,7 @@ from ribbonopt.kernel import COMPILED
 
 Index = NDArray[np.intp]
 
-AT_ONCE = 4096  # pairs
+AT_ONCE = 5120  # pairs: those of a polygon of 100 points
 LISTED = 1 << 22  # pairs whose indices are listed at once
 MEETING = 1e-6  # distance, relative to the length of the polygon, at which segments meet
 
@@ -117,28 +117,35 @@ def _pairs(r: Array) -> Iterator[list[Array]]:
 
     A few at a time: all at once would take more memory than the rest of a solve.
     """
-    after = np.roll(r, -1, axis=0)
+    # Columns of three: numpy then works on long rows.
+    points = np.ascontiguousarray(r.T)
+    after = np.roll(points, -1, axis=1)
     for i, j in _indices(len(r)):
         for start in range(0, len(i), AT_ONCE):
             part = slice(start, start + AT_ONCE)
             first, second = i[part], j[part]
-            ends = (r, first), (after, first), (r, second), (after, second)
-            # Columns of three: numpy then works on long rows.
-            yield [np.ascontiguousarray(p[k].T) for p, k in ends]
+            ends = (points, first), (after, first), (points, second), (after, second)
+            yield [np.take(p, k, axis=1) for p, k in ends]
 
 
 def _indices(count: int) -> Iterator[tuple[Index, Index]]:
     """Yield the indices of those pairs, i < j, of as many i at once as memory is no matter for."""
     rows = max(1, LISTED // count)
     for start in range(0, count, rows):
-        firsts = range(start, min(start + rows, count))
-        seconds = [np.arange(k + 2, count - (k == 0)) for k in firsts]
-        i = np.repeat(np.array(firsts), [len(part) for part in seconds])
-        yield i, np.concatenate(seconds)
+        firsts = np.arange(start, min(start + rows, count))
+        # The last segment is next to the first.
+        ends = np.where(firsts == 0, count - 1, count)
+        each = np.maximum(ends - (firsts + 2), 0)
+        i, before = np.repeat(firsts, each), np.cumsum(each) - each
+        yield i, np.arange(len(i)) + np.repeat(firsts + 2 - before, each)
 
 
 def _cross(u: Array, v: Array) -> Array:
     """Cross products of columns (3, k)."""
     x, y, z = u
     a, b, c = v
-    return np.stack([y * c - z * b, z * a - x * c, x * b - y * a])
+    found = np.empty_like(u)
+    found[0] = y * c - z * b
+    found[1] = z * a - x * c
+    found[2] = x * b - y * a
+    return found

@@ -8,6 +8,7 @@ with dihedral symmetry (a flip at each end; the two together are a turn by 2 pi 
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 
 import numpy as np
@@ -16,11 +17,12 @@ from ribbonopt.arrays import Array
 from ribbonopt.scene import Loop
 from ribbonopt.solution.solution import Solution
 
-from .flip import TOLERANCE, Flip, find_flip, flip_at
+from .flip import TOLERANCE, Flip, at_ends, find_flip, flip_at
 from .polygons import nearest_half_twists, writhe, writhe_and_crossings
 
 POINTS = (100, 200, 400, 800)  # of the closed polygon, until its writhe is stable
 STABLE = 0.01  # change of the writhe against half the points
+CLEAR = 0.01  # as far as that there is no doubt, though the line be not exact
 WHOLE = 0.05  # farthest from a whole number that counts as one
 
 
@@ -57,12 +59,15 @@ class ClosedBand:
         """Twist of the whole band, in turns."""
         return self.pieces * self.solution.twist
 
-    def line(self, count: int) -> Array:
-        """At least `count` points (k, 3) of the centre line, evenly spaced, the first not again."""
-        start, end = self.solution.scene.interval
+    def line(self, count: int, *, quick: bool = False) -> Array:
+        """At least `count` points (k, 3) of the centre line, evenly spaced, the first not again.
+
+        `quick` for those on the polynomials of the mesh, which is less exact between its nodes.
+        """
         # An even number, so that every other point is a polygon of the same band.
         rows = 2 * -(-count // (2 * self.pieces))
-        r = self.solution.outputs(np.linspace(start, end, rows + 1))["r"]
+        fraction, trajectory = np.linspace(0.0, 1.0, rows + 1), self.solution.trajectory
+        r = trajectory.line(fraction, quick=quick) * self.solution.units.length
         points = r[:-1]
         if self.flip is not None:
             points = np.concatenate([points, self.flip.carry(r[:0:-1])])
@@ -71,10 +76,19 @@ class ClosedBand:
             images.append(images[-1] @ self.turn.T + self.shift)
         return np.concatenate(images)
 
-    def half_twists(self) -> tuple[int, float]:
-        """Nearest whole number of half twists, and how far from it their count is."""
+    def half_twists(self, asked: int | None = None) -> tuple[int, float]:
+        """Nearest whole number of half twists, and how far from it their count is.
+
+        Where that is in doubt, or not what was `asked`, the line is followed exactly.
+        """
+        found, off = self._half_twists(quick=True)
+        clear = off <= CLEAR and asked in (None, found)
+        return (found, off) if clear else self._half_twists(quick=False)
+
+    def _half_twists(self, *, quick: bool) -> tuple[int, float]:
+        """Return the same of a line that is exact, or `quick`."""
         for count in POINTS:
-            r = self.line(count)
+            r = self.line(count, quick=quick)
             found = writhe(r)
             if abs(found - writhe(r[::2])) < STABLE:
                 break
@@ -87,7 +101,7 @@ def closure(solution: Solution) -> ClosedBand | None:
     if loop is not None:
         band = declared(solution, loop)
         return band if is_closed(band, TOLERANCE) else None
-    ends = solution.outputs(np.array(solution.scene.interval))
+    ends = at_ends(solution)
     for sign in (1.0, -1.0):
         whole = _whole(solution, ends, sign)
         if is_closed(whole, TOLERANCE):
@@ -148,7 +162,7 @@ def _counted(band: ClosedBand, asked: int | None) -> tuple[int, float]:
 
     Of one that passes through itself those nearest to what is asked.
     """
-    found, off = band.half_twists()
+    found, off = band.half_twists(asked)
     if asked is not None and found != asked:
         # Passing through itself a line gains or loses four: the figure of eight has 2 or -2.
         rest, crossings = writhe_and_crossings(band.line(POINTS[1]))
@@ -169,8 +183,7 @@ def is_closed(band: ClosedBand, tolerance: float) -> bool:
 def declared(solution: Solution, loop: Loop) -> ClosedBand:
     """ClosedBand that a scene says a solution is, or is a piece of, closed or not."""
     start, end = solution.scene.interval
-    s = np.array([start, end])
-    ends = solution.outputs(s)
+    s, ends = np.array([start, end]), at_ends(solution)
     if loop.piece == "whole":
         return _whole(solution, ends, -1.0 if loop.half_twists % 2 else 1.0)
     copies = loop.pieces // 2
@@ -187,7 +200,7 @@ def declared(solution: Solution, loop: Loop) -> ClosedBand:
     return ClosedBand(solution, gap, float(tilt), last, copies, turn, shift)
 
 
-def _whole(solution: Solution, ends: dict[str, Array], sign: float) -> ClosedBand:
+def _whole(solution: Solution, ends: Mapping[str, Array], sign: float) -> ClosedBand:
     """Band of a whole loop whose d1 and d2 return with a sign; `ends` are its outputs there."""
     start, end = solution.scene.interval
     gap = (ends["r"][1] - ends["r"][0]) / (end - start)

@@ -7,15 +7,17 @@ loop must close with the half twists that were asked.
 
 from __future__ import annotations
 
+import math
 from dataclasses import replace
+from typing import NamedTuple
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ribbonopt.accuracy.estimate import SAFETY, Analysis, analyse
-from ribbonopt.accuracy.gaps import LEAST
-from ribbonopt.arrays import Array
+from ribbonopt.accuracy.gaps import LEAST, compared
 from ribbonopt.mechanics.outputs import SLOPE, sheet_slopes
-from ribbonopt.problem import Ribbon
+from ribbonopt.problem import Posed, Ribbon
 from ribbonopt.problem.imposed import verdicts_function
 from ribbonopt.solution.solution import Solution
 from ribbonopt.solution.verification import NO_LENGTH, Verification, unverified
@@ -29,13 +31,12 @@ JUMP = 1e-6  # of the largest moment, on either side of a jump of the law
 
 def verify(solution: Solution, ribbon: Ribbon) -> Verification:
     """Check a solution against its scene."""
-    if not (np.diff(solution.trajectory.ends) > NO_LENGTH).all():
+    trajectory = solution.trajectory
+    if len(trajectory.ends) > 2 and not (np.diff(trajectory.ends) > NO_LENGTH).all():
         problem = f"a phase between two sign changes of {ribbon.law.switch_name} has no length"
         return replace(unverified(), problems=(problem,))
-    worst_name, worst = _worst_condition(solution, ribbon)
-    residual = float(solution.dense.residual_between_nodes().max())
-    nodes, drift = solution.at_nodes, _drifts(solution, ribbon.uniform)
-    problems = []
+    found, nodes = _measured(solution, ribbon), trajectory.at_nodes
+    worst, residual, drift, problems = found.worst, found.residual, found.drift, list[str]()
     # Gauss keeps orthonormality to rounding, other schemes only to their own accuracy; natural
     # conditions of a minimum hold to the accuracy of the mesh.
     exact = solution.dense.blocks.symplectic and not solution.problem.recovered
@@ -43,7 +44,7 @@ def verify(solution: Solution, ribbon: Ribbon) -> Verification:
     if not worst <= allowed:
         same = solution.posed.given is solution.posed.scene
         units = "" if same else " (units Dw = L = 1)"
-        problems.append(f"{worst_name} is off by {worst:.2g}{units}")
+        problems.append(f"{found.name} is off by {worst:.2g}{units}")
     if not drift["orthonormality"] <= allowed:
         problems.append(
             f"the directors are not orthonormal (off by {drift['orthonormality']:.2g}); refine the "
@@ -73,11 +74,11 @@ def verify(solution: Solution, ribbon: Ribbon) -> Verification:
     if ribbon.law.bounds_eta and not solution.problem.recovered:
         eta = sheet_slopes(nodes)
         if 0 in solution.sheets:
-            phase = solution.trajectory.phase_of(solution.trajectory.nodes)
+            phase = trajectory.phase_of(trajectory.nodes)
             eta[np.array(solution.sheets)[phase] == 0] = 0
         # Of a section without a moment, a free end, rounding tells the strains.
         told = np.maximum(np.abs(nodes["switching"]), nodes["leap"])
-        eta[told <= ROUNDED * _size(nodes["m"])] = 0
+        eta[told <= ROUNDED * nodes.largest("m")] = 0
         if not eta.max() <= 1 + TOLERANCE + residual:
             s = solution.nodes[int(eta.argmax())]
             what = "the slope, |eta| but for natural strains," if SLOPE in nodes else "|eta|"
@@ -85,15 +86,40 @@ def verify(solution: Solution, ribbon: Ribbon) -> Verification:
                 f"{what} = {eta.max():.4g} at s = {s:.4g}, beyond 1: eq. (4.1) forbids it; the "
                 "ribbon wants to switch sheets there (law: sadowsky, regularized or variational)"
             )
-    problems += _off_the_law(solution, ribbon)
-    loop = solution.scene.boundary.loop
-    if loop is not None:
-        from .topology import loop_problems  # only where a scene has one
-
-        problems += loop_problems(solution, loop, residual)
-    law = float(solution.at_stages["law_residual"].max())
-    law /= max(_size(nodes["u"]), LEAST)  # a straight ribbon has no strains
+    problems += (*_off_the_law(solution, ribbon), *found.of_loop)
+    law = trajectory.at_stages.largest("law_residual")
+    law /= max(nodes.largest("u"), LEAST)  # a straight ribbon has no strains
     return Verification(tuple(problems), worst, residual, law, drift)
+
+
+class _Measured(NamedTuple):
+    """What was measured of a solution of a posed scene; see `Verification`.
+
+    `name` is that of the worst condition, `of_loop` what a loop is not that was asked for.
+    """
+
+    posed: Posed
+    name: str
+    worst: float
+    residual: float
+    drift: dict[str, float]
+    of_loop: list[str]
+
+
+def _measured(solution: Solution, ribbon: Ribbon) -> _Measured:
+    """Measure once: a solution in phases is judged again when its error is known."""
+    kept, posed = solution.trajectory.found, solution.posed
+    known: _Measured | None = kept.get(_Measured)
+    if known is None or known.posed is not posed:
+        residual = float(solution.dense.residual_between_nodes().max())
+        of_loop, loop = list[str](), solution.scene.boundary.loop
+        if loop is not None:
+            from .topology import loop_problems  # only where a scene has one
+
+            of_loop = loop_problems(solution, loop, residual)
+        worst, drift = _worst_condition(solution, ribbon), _drifts(solution, ribbon.uniform)
+        known = kept[_Measured] = _Measured(posed, *worst, residual, drift, of_loop)
+    return known
 
 
 def _off_the_law(solution: Solution, ribbon: Ribbon) -> list[str]:
@@ -103,13 +129,14 @@ def _off_the_law(solution: Solution, ribbon: Ribbon) -> list[str]:
     phases and in the inverted form they are the law's own; minima of a relaxed energy have others.
     """
     nodes = solution.trajectory.at_nodes
-    off = nodes["law_residual"]
+    off, size = nodes["law_residual"], max(nodes.largest("u"), LEAST)
+    if nodes.largest("law_residual") <= TOLERANCE * size or solution.problem.recovered:
+        return []
     if not ribbon.law.smooth:
         # Where the law jumps rounding decides on which side it is.
-        off = np.where(np.abs(nodes["switching"]) > JUMP * _size(nodes["m"]), off, 0.0)
-    size = max(_size(nodes["u"]), LEAST)
+        off = np.where(np.abs(nodes["switching"]) > JUMP * nodes.largest("m"), off, 0.0)
     found = float(off.max()) / size
-    if found <= TOLERANCE or solution.problem.recovered:
+    if found <= TOLERANCE:
         return []
     try:
         errors = analyse(solution).errors
@@ -134,13 +161,13 @@ def _moment_error(solution: Solution) -> float:
         errors = analyse(solution).errors
     except np.linalg.LinAlgError:  # no estimate
         return np.inf
-    force = float(np.abs(solution.trajectory.at_nodes["n"]).max())
+    force = solution.trajectory.at_nodes.largest("n")
     return SAFETY * (errors["m0"] + force * errors["states"])
 
 
 def _worst_condition(solution: Solution, ribbon: Ribbon) -> tuple[str, float]:
     """Name and size of the condition that is furthest from what was asked."""
-    names, verdicts = ribbon.kept(_verdicts)
+    names, of_loads, verdicts = ribbon.kept(_verdicts)
     count, constants = len(ribbon.states), len(ribbon.constants)
     nodes = solution.dense.at_nodes
     # Without further states, and without the lengths of phases.
@@ -154,45 +181,41 @@ def _worst_condition(solution: Solution, ribbon: Ribbon) -> tuple[str, float]:
         known.append(solution.trajectory.states(places)[:, :count].ravel())
     (values,) = verdicts(*known)
     # Relative to the loads, absolute in lengths and directors (L = 1).
-    n0, m0 = solution.n0 / solution.units.force, solution.m0 / solution.units.moment
-    scale = 1 + max(np.linalg.norm(n0), np.linalg.norm(m0))
-    sizes = np.abs(values)
-    loads = np.array(["force" in n or "moment" in n or "also" in n for n in names])
-    sizes = np.where(np.isfinite(sizes), sizes / np.where(loads, scale, 1.0), np.inf)
+    start = solution.trajectory.at_nodes
+    scale = 1 + max(math.hypot(*start[name][0].tolist()) for name in ("n", "m"))
+    sizes = np.abs(values) / np.where(of_loads, scale, 1.0)
+    if not math.isfinite(sizes.sum()):
+        sizes = np.where(np.isfinite(sizes), sizes, np.inf)
     index = int(sizes.argmax())
     return names[index], float(sizes[index])
 
 
-def _verdicts(ribbon: Ribbon) -> tuple[tuple[str, ...], Buffered]:
-    """Names of what to verify, and their values on numpy arrays."""
+def _verdicts(ribbon: Ribbon) -> tuple[tuple[str, ...], NDArray[np.bool_], Buffered]:
+    """Names of what to verify, which are loads, and their values on numpy arrays."""
     names, function = verdicts_function(ribbon)
-    return names, Buffered(function)
+    loads = np.array(["force" in n or "moment" in n or "also" in n for n in names], bool)
+    return names, loads, Buffered(function)
 
 
 def _drifts(solution: Solution, uniform: bool) -> dict[str, float]:
     """Drifts of what is conserved; H is not where the law depends on s."""
     nodes, unknown = solution.trajectory.at_nodes, float("nan")
+    drift = {"orthonormality": nodes.largest("orthonormality")}
     if solution.posed.stations:  # n steps there, and what follows from it
-        drift = {"orthonormality": float(nodes["orthonormality"].max())}
         return dict.fromkeys(("n", "n_dot_m", "H"), unknown) | drift
-    drift = {"orthonormality": float(nodes["orthonormality"].max())}
     if solution.posed.loads:
         from .conserved import conserved  # few scenes have loads
 
         found = {name: one.drift for name, one in conserved(solution, uniform).items()}
         return {"n": unknown, "n_dot_m": unknown, "H": unknown} | drift | found
-    scale = float(np.linalg.norm(nodes["n"][0])) * _size(nodes["m"])
-    n_dot_m = _drift(nodes["n_dot_m"], scale)
-    changes = _drift(nodes["H"]) if uniform else unknown
-    return {"n": _drift(nodes["n"]), "n_dot_m": n_dot_m, "H": changes} | drift
+    rows = compared(solution.trajectory)
+    changes = nodes.choice.largest(np.abs(rows - rows[0]).max(axis=0))
+    scale = math.hypot(*nodes["n"][0].tolist()) * nodes.largest("m")
+    n, H = (_drift(changes[name], nodes.largest(name)) for name in ("n", "H"))
+    n_dot_m = _drift(changes["n_dot_m"], scale)
+    return {"n": n, "n_dot_m": n_dot_m, "H": H if uniform else unknown} | drift
 
 
-def _drift(values: Array, scale: float | None = None) -> float:
-    """Largest change along the ribbon, relative to the size of the quantity."""
-    size = _size(values) if scale is None else scale
-    change = np.abs(values - values[0]).max()
-    return float(change / size) if size > 0 else float(change)
-
-
-def _size(values: Array) -> float:
-    return float(np.abs(values).max())
+def _drift(change: float, size: float) -> float:
+    """Return a change along the ribbon, relative to the size of the quantity."""
+    return change / size if size > 0 else change

@@ -8,6 +8,8 @@ is the stiffness of the guard. Buckling loads are another matter: `ribbonopt.stu
 
 from __future__ import annotations
 
+from functools import reduce
+
 import numpy as np
 from numpy.typing import NDArray
 
@@ -57,9 +59,11 @@ def share_without_moment(solution: Solution, law: ConstitutiveLaw) -> float:
     """Share of the length along which the moments of a law's free strains vanish."""
     free, largest = _moments(solution, law)
     zero = free <= max(ZERO * largest, LEAST)
+    if not zero.any():
+        return 0.0
     ends = np.flatnonzero(zero[1:] != zero[:-1])
     beside = np.maximum(free[ends], free[ends + 1])
-    if not zero.any() or (len(ends) and beside.max() <= FADES * largest):
+    if len(ends) and beside.max() <= FADES * largest:
         return 0.0
     return _share(solution, zero)
 
@@ -68,8 +72,8 @@ def _moments(solution: Solution, law: ConstitutiveLaw) -> tuple[Array, float]:
     """Largest moment of a law's free strains at every stage, and the largest load of all."""
     values = solution.trajectory.at_stages
     bent = law.components[1:] if law.edgewise else law.components
-    free = np.max([np.abs(values[f"m{i + 1}"]) for i in bent], axis=0)
-    return free, max(float(np.abs(values[name]).max()) for name in ("n", "m"))
+    free: Array = reduce(np.maximum, (np.abs(values[f"m{i + 1}"]) for i in bent))
+    return free, max(values.largest("n"), values.largest("m"))
 
 
 def _share(solution: Solution, zero: NDArray[np.bool_]) -> float:

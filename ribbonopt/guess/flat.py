@@ -42,7 +42,7 @@ def nearly_flat(solution: Solution) -> bool:
     """Whether a solution lies in a plane but for a little, which may be an error."""
     o, off = solution.trajectory.at_nodes, 0.0
     for name in ("m3", "m1", "n2"):
-        across, whole = float(np.abs(o[name]).max()), float(np.abs(o[name[0]]).max())
+        across, whole = o.largest(name), o.largest(name[0])
         if across >= NEARLY * whole > 0:
             return False
         off = max(off, across / whole if whole > 0 else 0.0)

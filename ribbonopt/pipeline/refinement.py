@@ -94,7 +94,7 @@ def refine(
             # In phases the signs of m2 are judged by the error, which is known only now.
             same = solution is first and not solution.sheets
             done = solution if same else verified(solution, ribbon)
-            return replace(done, steps=tuple(steps))
+            return done if same else replace(done, steps=tuple(steps))
         least = analyse(solution).least
         if _is_left(error, least) or (error > SLOW * before and _is_rounding(solution, tolerance)):
             status = Status.ROUNDED

@@ -43,6 +43,8 @@ def of_starts(first: Solution | None, found: Solution) -> Solution:
 
 def regularized(best: Solution, smooth: Sequence[Solution], prepare: Prepare) -> Solution | None:
     """Return an equilibrium of the smooth law, labelled: none was found of the exact one."""
+    if not smooth:
+        return None
     law = capabilities(best.scene)
     if law.linear_at_zero or law.states:
         return None  # equilibria of rods, or of wide ribbons, may be far from any of the smooth law

@@ -18,7 +18,7 @@ is unknown it stretches with the phase (`ribbonopt.transcription.fields` has fie
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
 from typing import Any, TypeVar
@@ -200,14 +200,23 @@ class BoundaryValueProblem:
         return ca.Function("extent", [self.constants, self.parameters], [extent])
 
     @cached_property
-    def output_functions(self) -> tuple[tuple[ca.Function, dict[str, int]], ...]:
-        """For each phase: function (v, c, theta, [s; k]) of its outputs in a column, and sizes."""
-        result = []
-        for phase in self.phases:
-            column = ca.densify(ca.vertcat(*phase.outputs.values()))
-            sizes = {name: int(value.numel()) for name, value in phase.outputs.items()}
-            result.append((ca.Function("outputs", self._along, [column]), sizes))
-        return tuple(result)
+    def output_sizes(self) -> Mapping[str, int]:
+        """How many numbers each output is, by name."""
+        return {name: int(value.numel()) for name, value in self.phases[0].outputs.items()}
+
+    def output_functions(self, names: Sequence[str]) -> tuple[ca.Function, ...]:
+        """For each phase: function (v, c, theta, [s; k]) of these outputs, in a column."""
+        chosen = ([phase.outputs[name] for name in names] for phase in self.phases)
+        columns = (ca.densify(ca.vertcat(*outputs)) for outputs in chosen)
+        return tuple(ca.Function("outputs", self._along, [column]) for column in columns)
+
+    @property
+    def placed(self) -> bool:
+        """Whether outputs or singularities depend on the place by itself, or on known fields."""
+        every = [
+            ca.vertcat(*phase.outputs.values(), ca.vec(phase.singular)) for phase in self.phases
+        ]
+        return bool(ca.depends_on(ca.vertcat(*every), ca.vertcat(self.position, self.known)))
 
     @cached_property
     def singular_functions(self) -> tuple[ca.Function, ...]:

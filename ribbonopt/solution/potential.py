@@ -48,6 +48,8 @@ def dead_force_of(posed: Posed) -> Array:
     """Dead force (3,) on an end, lab frame, units Dw = L = 1."""
     force = np.zeros(3)
     for c in posed.conditions:
+        if c.kinematic:
+            continue
         if isinstance(c, Component) and c.quantity == "force" and c.axis in "xyz":
             force["xyz".index(c.axis)] = c.value
         elif isinstance(c, LoadAlong):

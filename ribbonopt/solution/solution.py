@@ -17,6 +17,7 @@ from ribbonopt.scene.units import Units
 from ribbonopt.solvers import Status
 from ribbonopt.transcription import Mesh
 
+from .named import Each
 from .trajectory import Trajectory
 from .verification import Verification
 
@@ -163,20 +164,19 @@ class Solution:
             raise ValueError(f"arclengths are expected in [{start}, {end}], found {s}")
         if len(s) == 0:
             return {name: value[:0] for name, value in self.outputs(np.array([start])).items()}
-        return self._in_own_units(self.trajectory.outputs(sigma))
+        return dict(self._in_own_units(self.trajectory.outputs(sigma)))
 
     def integral(self, name: str) -> float:
         """Integral over s of a scalar named output, by the scheme's own quadrature."""
-        start, end = self.scene.interval
-        return float((end - start) * self.trajectory.stages[2] @ self.at_stages[name])
+        return self.trajectory.integral(name) * self.units.length * self.units.of(name)
 
     @cached_property
-    def at_stages(self) -> dict[str, Array]:
+    def at_stages(self) -> Mapping[str, Array]:
         """All named outputs at the stages, where the solver itself evaluated the equations."""
         return self._in_own_units(self.trajectory.at_stages)
 
     @cached_property
-    def at_nodes(self) -> dict[str, Array]:
+    def at_nodes(self) -> Mapping[str, Array]:
         """All named outputs at the nodes; where two phases meet, those of the later one."""
         return self._in_own_units(self.trajectory.at_nodes)
 
@@ -207,9 +207,9 @@ class Solution:
         return self.trajectory.fields(fraction)
 
     @cached_property
-    def start(self) -> dict[str, Array]:
+    def start(self) -> Mapping[str, Array]:
         """Named outputs at the start of the ribbon."""
-        return {k: v[0] for k, v in self.at_nodes.items()}
+        return Each(self.at_nodes, lambda _, values: values[0])
 
     @property
     def constants(self) -> Array:
@@ -242,9 +242,9 @@ class Solution:
     @property
     def twist(self) -> float:
         """Twist of the directors about the centre line, in turns."""
-        return self.integral("u3") / (2 * np.pi)
+        found = self.trajectory
+        return float(found.length * found.stages[2] @ found.at_stages["u"][:, 2]) / (2 * np.pi)
 
-    def _in_own_units(self, values: Mapping[str, Array]) -> dict[str, Array]:
-        if self.posed.given is self.posed.scene:
-            return dict(values)
-        return {name: value * self.units.of(name) for name, value in values.items()}
+    def _in_own_units(self, values: Mapping[str, Array]) -> Mapping[str, Array]:
+        same, unit_of = self.posed.given is self.posed.scene, self.units.of
+        return values if same else Each(values, lambda name, value: value * unit_of(name))

@@ -6,9 +6,10 @@ estimate of the error and the summary read the same numbers.
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field
 from functools import cached_property
+from itertools import pairwise
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -21,11 +22,14 @@ from ribbonopt.problem import BoundaryValueProblem
 from ribbonopt.transcription.buffered import Buffered, Mapped
 from ribbonopt.transcription.known import sampled
 
+from .named import Choice, Choices, Named, Part, Places, Rows
+
 if TYPE_CHECKING:
     from ribbonopt.transcription.structure import Output
 
 
 Phases = NDArray[np.intp]
+ALL: Sequence[Rows] = (slice(None),)
 
 
 @dataclass(frozen=True, eq=False)
@@ -42,6 +46,8 @@ class Trajectory:
     @cached_property
     def ends(self) -> Array:
         """Fractions (P + 1,) at which the phases begin and end."""
+        if len(self.problem.phases) == 1:
+            return np.array([0.0, 1.0])
         lengths = self._extent[1:]
         ends = np.append(0.0, np.cumsum(lengths) / lengths.sum())
         ends[-1] = 1.0
@@ -54,12 +60,17 @@ class Trajectory:
         return tuple(i for i in range(1, len(self.problem.phases)) if i not in stations)
 
     @cached_property
+    def nodes_within(self) -> tuple[Array, ...]:
+        """For each phase relative positions (n + 1,) of its nodes."""
+        return tuple(self.dense.nodes(i) for i in range(len(self.problem.phases)))
+
+    @cached_property
     def nodes(self) -> Array:
         """Fractions (N + 1,) of all nodes."""
-        parts = [
-            a + (b - a) * self.dense.nodes(i)
-            for i, (a, b) in enumerate(zip(self.ends[:-1], self.ends[1:], strict=True))
-        ]
+        if len(self.problem.phases) == 1:
+            return self.nodes_within[0]
+        pairs = zip(self.nodes_within, pairwise(self.ends.tolist()), strict=True)
+        parts = [a + (b - a) * within for within, (a, b) in pairs]
         return np.concatenate([*(part[:-1] for part in parts[:-1]), parts[-1]])
 
     def phase_of(self, fraction: Array) -> Phases:
@@ -69,25 +80,23 @@ class Trajectory:
 
     def approximate(self, fraction: Array) -> Array:
         """Unknowns v (k, nv) at fractions: quick, fit to start Newton's method on."""
-        phase, local = self._local(fraction)
         v = np.empty((len(fraction), self.dense.blocks.layout.nv))
-        for i in range(len(self.problem.phases)):
-            rows = phase == i
-            if rows.any():
-                v[rows] = self.dense.approximate(i, local[rows])
+        for i, rows, local in self._local(fraction):
+            v[rows] = self.dense.approximate(i, local)
         return v
 
     def outputs(self, fraction: Array) -> dict[str, Array]:
         """Named outputs at fractions: (k,) for scalars, (k, 3) for vectors."""
-        phase, local = self._local(fraction)
-        v = np.empty((len(fraction), self.dense.blocks.layout.nv))
-        nx = self.dense.blocks.layout.nx
-        v[:, :nx] = self.states(fraction)
-        for i in range(len(self.problem.phases)):
-            rows = phase == i
-            if rows.any():
-                v[rows, nx:] = self.dense.algebraic(i, local[rows])
-        return self._named(v, fraction, phase)
+        return self._outputs(self._choices.every, self._unknowns(fraction), fraction)
+
+    def looked_at(self, fraction: Array) -> dict[str, Array]:
+        """Return those outputs that estimates compare between the nodes; see `outputs`."""
+        return self._outputs(self._choices.places, self._unknowns(fraction), fraction)
+
+    def line(self, fraction: Array, *, quick: bool = False) -> Array:
+        """Positions r (k, 3) at fractions; `quick` for those on the polynomials of the mesh."""
+        v = self.approximate(fraction) if quick else self._unknowns(fraction)
+        return self._outputs(self._choices.line, v, fraction)["r"]
 
     def fields(self, fraction: Array) -> RodFields:
         """Fields at fractions (k,), own states of the law among them, if it has any."""
@@ -98,55 +107,53 @@ class Trajectory:
 
     def states(self, fraction: Array) -> Array:
         """States (k, nx) at fractions."""
-        phase, local = self._local(fraction)
         x = np.empty((len(fraction), self.dense.blocks.layout.nx))
-        for i in range(len(self.problem.phases)):
-            rows = phase == i
-            if rows.any():
-                x[rows] = self.dense.states(i, local[rows])
+        for i, rows, local in self._local(fraction):
+            x[rows] = self.dense.states(i, local)
         return x
 
     @cached_property
     def stages(self) -> tuple[Array, Array, Array, Phases]:
         """Stage values v (k, nv), fractions (k,), quadrature weights (k,), phases (k,)."""
+        if len(self.problem.phases) == 1:
+            v, fraction, weights = self.dense.stages(0)
+            return v, fraction, weights, np.zeros(len(v), np.intp)
         parts = []
-        for i, (a, b) in enumerate(zip(self.ends[:-1], self.ends[1:], strict=True)):
+        for i, (a, b) in enumerate(pairwise(self.ends.tolist())):
             v, sigma, weights = self.dense.stages(i)
-            phase = np.full(len(sigma), i)
-            parts.append((v, a + (b - a) * sigma, (b - a) * weights, phase))
+            parts.append((v, a + (b - a) * sigma, (b - a) * weights, np.full(len(sigma), i)))
         v, sigma, weights, phases = (np.concatenate(part) for part in zip(*parts, strict=True))
         return v, sigma, weights, phases
 
     @cached_property
-    def at_stages(self) -> Mapping[str, Array]:
+    def at_stages(self) -> Named:
         """Named outputs at the stages, where the solver itself evaluated the equations."""
         v, fraction, _, phase = self.stages
-        return self._named(v, fraction, phase)
+        count, known = len(self.problem.phases), self._choices
+        rows = [phase == i for i in range(count)] if count > 1 else ALL
+        return Named(self._at(v, fraction, rows), known.stages, known.every)
 
     @cached_property
-    def at_nodes(self) -> Mapping[str, Array]:
+    def at_nodes(self) -> Named:
         """Named outputs at the nodes; where two phases meet, those of the later one."""
-        if self.dense.blocks.layout.nz:
-            return self.outputs(self.nodes)
-        counts = self.dense.blocks.layout.elements
-        phase = np.append(np.repeat(np.arange(len(counts)), counts), len(counts) - 1)
-        return self._named(self.dense.at_nodes, self.nodes, phase)
+        layout, known = self.dense.blocks.layout, self._choices
+        fraction = self.nodes if layout.nz or known.placed else None
+        v = self.dense.at_nodes if fraction is None or not layout.nz else self._unknowns(fraction)
+        *slices, last = layout.phase_slices
+        rows = [*slices, slice(last.start, None)]
+        return Named(self._at(v, fraction, rows), known.nodes, known.every)
 
     def singular_at_stages(self, phase: int) -> Array:
         """Rows (k, q, 4) of (a, b, size, fades) at the stages of a phase: see `Phase.singular`."""
         count = self.problem.phases[phase].singular.shape[0]
         if not count:
             return np.empty((0, 0, 4))
-        v, fraction, _, phases = self.stages
-        if len(self.problem.phases) > 1:
-            rows = phases == phase
-            v, fraction = v[rows], fraction[rows]
-        places = self._places(phase, fraction, self._extent[0] + self.length * fraction)
-        function = self.problem.kept(_singular)[phase]
-        (found,) = function(v, self.dense.constants, self.dense.theta, places)
+        at = self.at_stages.places
+        _, v, places = at.parts[phase]
+        (found,) = self.problem.kept(_singular)[phase](v, *at.numbers, places)
         return found.reshape(-1, count, 4)
 
-    @property
+    @cached_property
     def length(self) -> float:
         """Length of the ribbon."""
         return float(self._extent[1:].sum())
@@ -158,47 +165,65 @@ class Trajectory:
 
     def integral(self, name: str) -> float:
         """Integral over s of a scalar named output, by the quadrature of the scheme."""
-        return float(self.length * self.stages[2] @ self.at_stages[name])
+        return float(self.length * (self.stages[2] @ self.at_stages[name]))
 
     @cached_property
     def _extent(self) -> Array:
         """Arclength where the ribbon starts, and the lengths of its phases."""
         return self.problem.kept(_extent)(self.dense.constants, self.dense.theta)[0]
 
-    def _local(self, fraction: Array) -> tuple[Phases, Array]:
-        """Phase and position in the phase of each fraction."""
+    @property
+    def _choices(self) -> Choices:
+        return self.problem.kept(Choices)
+
+    def _local(self, fraction: Array) -> Iterator[tuple[int, Rows, Array]]:
+        """Yield the phases in which fractions (k,) are: which, and their positions in the phase."""
+        if len(self.problem.phases) == 1:
+            yield 0, slice(None), np.clip(fraction, 0.0, 1.0)
+            return
         phase = self.phase_of(fraction)
-        a, b = self.ends[phase], self.ends[phase + 1]
-        widths = np.where(b != a, b - a, 1.0)  # a phase may begin without length
-        return phase, np.clip((fraction - a) / widths, 0.0, 1.0)
-
-    def _places(self, phase: int, fraction: Array, s: Array) -> Array:
-        """Arclengths s (k,) at fractions in one phase, with the known fields there after each."""
-        count = self.dense.blocks.layout.known
-        if not count:
-            return s
-        a, b = self.ends[phase : phase + 2]
-        local = np.clip((fraction - a) / (b - a), 0.0, 1.0)
-        return np.column_stack([s, sampled(self.dense.known, phase, local, count)])
-
-    def _named(self, v: Array, fraction: Array, phase: Phases) -> dict[str, Array]:
-        sizes = self.problem.output_functions[0][1]
-        column = np.empty((len(v), sum(sizes.values())))
-        s = self._extent[0] + self.length * fraction
-        numbers = self.dense.constants, self.dense.theta
-        for i, function in enumerate(self.problem.kept(_outputs)):
+        for i, (a, b) in enumerate(pairwise(self.ends.tolist())):
             rows = phase == i
-            count = int(np.count_nonzero(rows))
-            if count:
-                places = self._places(i, fraction[rows], s[rows])
-                (found,) = function(v[rows], *numbers, places)
-                column[rows] = found.reshape(count, -1)
-        result, at = {}, 0
-        for name, size in sizes.items():
-            part = column[:, at : at + size]
-            result[name] = part[:, 0] if size == 1 else part
-            at += size
-        return result
+            if rows.any():
+                # A phase may begin without length.
+                yield i, rows, np.clip((fraction[rows] - a) / (b - a or 1.0), 0.0, 1.0)
+
+    def _unknowns(self, fraction: Array) -> Array:
+        """Unknowns v (k, nv) at fractions."""
+        layout = self.dense.blocks.layout
+        if not layout.nz:
+            return self.states(fraction)
+        v = np.empty((len(fraction), layout.nv))
+        v[:, : layout.nx] = self.states(fraction)
+        for i, rows, local in self._local(fraction):
+            v[rows, layout.nx :] = self.dense.algebraic(i, local)
+        return v
+
+    def _outputs(self, choice: Choice, v: Array, fraction: Array) -> dict[str, Array]:
+        """Return outputs of a choice for the unknowns v (k, nv) at fractions (k,)."""
+        phase = self.phase_of(fraction) if len(self.ends) > 2 else None
+        rows = ALL if phase is None else [phase == i for i in range(len(self.problem.phases))]
+        found = self._at(v, fraction, rows).columns(choice)
+        return {name: found[:, at] for name, at in choice.columns.items()}
+
+    def _at(self, v: Array, fraction: Array | None, rows: Sequence[Rows]) -> Places:
+        """Return places at fractions (k,), each phase in turn, with the unknowns there.
+
+        Fractions may be None where no output depends on the place by itself.
+        """
+        dense, numbers = self.dense, (self.dense.constants, self.dense.theta)
+        if fraction is None or not self._choices.placed:
+            nowhere = np.zeros(len(v))
+            return Places([Part(part, v[part], nowhere[part]) for part in rows], numbers)
+        s, parts = self._extent[0] + self.length * fraction, []
+        for i, part in enumerate(rows):
+            places = s[part]
+            if (count := dense.blocks.layout.known) and len(places):
+                a, b = self.ends[i : i + 2]
+                local = np.clip((fraction[part] - a) / (b - a), 0.0, 1.0)
+                places = np.column_stack([places, sampled(dense.known, i, local, count)])
+            parts.append(Part(part, v[part], places))
+        return Places(parts, numbers)
 
 
 def _extent(problem: BoundaryValueProblem) -> Buffered:
@@ -209,8 +234,3 @@ def _extent(problem: BoundaryValueProblem) -> Buffered:
 def _singular(problem: BoundaryValueProblem) -> tuple[Mapped, ...]:
     """Return the singularities of each phase, for any number of places."""
     return tuple(Mapped(function) for function in problem.singular_functions)
-
-
-def _outputs(problem: BoundaryValueProblem) -> tuple[Mapped, ...]:
-    """Return the outputs of each phase, for any number of places."""
-    return tuple(Mapped(function) for function, _ in problem.output_functions)

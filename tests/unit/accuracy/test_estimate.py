@@ -7,6 +7,7 @@ import numpy as np
 import pytest
 
 from ribbonopt.accuracy.estimate import SAFETY, Analysis, analyse, estimate_error
+from ribbonopt.accuracy.gaps import _shifted
 from ribbonopt.accuracy.recorded import recorded_errors
 from ribbonopt.pipeline.prepared import solve
 from ribbonopt.scene import loads_scene
@@ -79,3 +80,18 @@ def test_what_schemes_overlook_is_in_the_bars_of_records_too(solved: Solved) -> 
     assert bars[0][0] > 0
     for more, less in zip(bars[1], bars[0], strict=True):
         assert more == pytest.approx(2.5 * less)
+
+
+def test_what_is_compared_elsewhere_is_what_is_there(solved: Solved) -> None:
+    """Phases of two solutions are not as long: to first order that changes nothing."""
+    found = solved("moebius_regularized", "law={type: sadowsky}").trajectory
+    nodes = found.nodes
+    for by in (1e-4, -1e-4, 1e-5, -1e-5):
+        # Ends stay, and so does where phases meet, beside which strains jump.
+        moved = nodes + by * np.sin(np.pi * nodes) * (np.abs(nodes - found.ends[1]) > 0.1)
+        there = found.outputs(moved)
+        expected = np.hstack([there[name] for name in ("r", "d1", "d2", "d3")])
+        off = np.abs(_shifted(found, moved)[:, :12] - expected).max()
+        assert 0 < off < 100 * by**2
+        strains = np.abs(_shifted(found, moved)[:, 12:] - found.at_nodes["u"]).max()
+        assert 0 < strains < 100 * abs(by)

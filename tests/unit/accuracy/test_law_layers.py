@@ -54,8 +54,8 @@ def test_layers_beyond_either_end_are_seen_alike(size: float) -> None:
         trajectory: Any = SimpleNamespace(
             dense=SimpleNamespace(
                 blocks=SimpleNamespace(layout=SimpleNamespace(stages=4)),
-                nodes=lambda _: np.linspace(0, 1, 11),
             ),
+            nodes_within=(np.linspace(0, 1, 11),),
             singular_at_stages=lambda _, rows=rows: rows,
             ends=np.array([0.0, 1.0]),
             stages=(None, stages, None, phases),

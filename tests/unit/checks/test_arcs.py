@@ -12,9 +12,12 @@ from typing import Any
 import numpy as np
 import pytest
 
-from ribbonopt.checks.arcs import given_arcs, leaps, sign_changes, with_mixtures
+from ribbonopt.checks import arcs
+from ribbonopt.checks.arcs import Arcs, given_arcs, leaps, sign_changes, with_mixtures
+from ribbonopt.pipeline.prepared import solve
 from ribbonopt.scene import load_scene
 from ribbonopt.solution.solution import Solution
+from ribbonopt.solution.trajectory import Trajectory
 
 Array = np.ndarray
 SIZES = [1e-3, 1.0, 1e3]  # of moments, Dw = L = 1: a hundred lengths, one, a thousandth
@@ -24,16 +27,23 @@ NOISE = 1e-9 * (-1) ** np.arange(200)  # of the largest moment: what rounding le
 each_size = pytest.mark.parametrize("size", SIZES)
 
 
+class Outputs(dict[str, Array]):
+    """Outputs by name, as a trajectory has them."""
+
+    def largest(self, name: str) -> float:
+        return float(np.abs(self[name]).max())
+
+
 def ribbon(size: float, m2: Array, leap: Array, eta: Array | None = None) -> Solution:
     """Return what arcs are read from: m2 and leaps, over the largest moment, at all stages."""
     m = size * np.stack([np.ones_like(m2), m2, leap], axis=1)
     named = {"switching": size * m2, "leap": size * leap, "m": m}
     named["eta"] = np.zeros_like(m2) if eta is None else eta
     ends = {name: values[[0, -1]] for name, values in named.items()}
+    stages = None, STAGES, None, None
+    known = {"stages": stages, "at_stages": Outputs(named), "at_nodes": Outputs(ends), "found": {}}
     found: Any = SimpleNamespace(
-        at_stages=named,
-        at_nodes=ends,
-        trajectory=SimpleNamespace(stages=(None, STAGES, None, None)),
+        trajectory=SimpleNamespace(**known),
         posed=SimpleNamespace(scene=SimpleNamespace(tolerance=None)),
     )
     return found
@@ -142,3 +152,32 @@ def test_changes_without_a_leap_count_where_a_phase_would_end_on_the_other_side(
     np.testing.assert_allclose(apart.switches, [0.2, 0.4, 0.6], atol=1e-3)
     beside = sign_changes(ribbon(1.0, m2, leaping(0.4, 0.6)))
     assert beside.kinds == (-1, 1, -1)
+
+
+def test_signs_are_read_once_of_a_solution(configs: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    asked: list[tuple[int, float, bool]] = []
+    read = arcs._sign_changes
+
+    def counted(trajectory: Trajectory, faint: float, every: bool) -> Arcs:
+        asked.append((id(trajectory), faint, every))
+        return read(trajectory, faint, every)
+
+    monkeypatch.setattr(arcs, "_sign_changes", counted)
+    found = solve(load_scene(configs / "moebius_half.yaml", ["tolerance=1e-9"]))
+    assert len(asked) == len(set(asked)) == 1
+    # What counts is part of the question.
+    assert sign_changes(found).kinds == sign_changes(found, every=True).kinds == (1,)
+    assert len(asked) == len(set(asked)) == 2
+
+
+@each_size
+def test_one_sign_is_told_at_once_as_all_signs_are(size: float) -> None:
+    """The short way says what the long one does, whichever side rounding is on."""
+    for m2 in (1.0 - 0.9 * STAGES, np.abs(NOISE) + STAGES**9, np.where(STAGES < 0.8, 1.0, NOISE)):
+        for sign in (1.0, -1.0):
+            shown = ribbon(size, sign * m2, np.full(200, 0.5))
+            assert sign_changes(shown).kinds == (sign,)
+            # A sign on the other side that counts takes the long way.
+            other = sign * np.where(np.arange(200) == 150, -1e-3, m2)
+            assert len(sign_changes(ribbon(size, other, np.full(200, 0.5))).kinds) == 3
+    assert sign_changes(ribbon(size, NOISE, np.full(200, 0.5))).kinds == (1,)

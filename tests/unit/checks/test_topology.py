@@ -2,6 +2,7 @@
 
 from collections.abc import Callable
 from dataclasses import replace
+from types import SimpleNamespace
 from typing import Any
 
 import numpy as np
@@ -66,14 +67,11 @@ def test_a_half_that_is_loaded_along_its_axis_is_none(solved: Solved, load: str)
     flip = find_flip(half)
     assert flip is not None
 
-    class Loaded:
-        scene = half.scene
-
-        def outputs(self, s: Array) -> dict[str, Array]:
-            values = half.outputs(s)
-            return values | {load: values[load] + 1e-3 * np.abs(values[load]).max() * flip.axis}
-
-    loaded: Any = Loaded()
+    values = half.at_nodes[load]
+    more = values + 1e-3 * np.abs(values).max() * flip.axis
+    loaded: Any = SimpleNamespace(scene=half.scene, at_nodes=dict(half.at_nodes))
+    assert find_flip(loaded) is not None
+    loaded.at_nodes[load] = more
     assert find_flip(loaded) is None
 
 
@@ -82,3 +80,39 @@ def test_a_half_under_a_load_between_its_ends_is_none(solved: Solved) -> None:
     assert closure(half) is not None
     heavy = loads_of(replace(half.scene, loads=Loads(force=(0, 0, -1))))
     assert closure(replace(half, posed=replace(half.posed, loads=heavy))) is None
+
+
+def test_a_doubtful_count_follows_the_line_exactly(
+    solved: Solved, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    band = closure(solved("moebius_half"))
+    assert band is not None
+    looked_at: list[bool] = []
+    line = ClosedBand.line
+
+    def counted(band: ClosedBand, count: int, *, quick: bool = False) -> Array:
+        looked_at.append(quick)
+        return line(band, count, quick=quick)
+
+    monkeypatch.setattr(ClosedBand, "line", counted)
+    for asked, clear, expected in (
+        (1, topology.CLEAR, [True]),
+        (None, topology.CLEAR, [True]),
+        (3, topology.CLEAR, [True, False]),
+        (1, 1e-9, [True, False]),
+    ):
+        monkeypatch.setattr(topology, "CLEAR", clear)
+        looked_at.clear()
+        assert band.half_twists(asked)[0] == 1
+        assert looked_at == expected
+
+
+def test_the_quick_line_is_near_the_exact_one(solved: Solved) -> None:
+    for name in ("moebius_half", "band_three", "ribbon_si"):
+        found = solved(name)
+        band = ClosedBand(found, np.zeros(3), 0.0)
+        exact, quick = band.line(60), band.line(60, quick=True)
+        length = found.units.length
+        np.testing.assert_allclose(exact[0], found.at_nodes["r"][0], atol=1e-14 * length)
+        np.testing.assert_allclose(quick, exact, rtol=0, atol=1e-4 * length)
+        assert np.abs(quick - exact).max() > 0

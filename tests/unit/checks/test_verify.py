@@ -55,3 +55,26 @@ def test_moments_in_phases_are_as_exact_as_their_bar(solved: Solved, intervals: 
     there = exact.outputs(found.nodes)["m"]
     off = float(np.abs(found.at_nodes["m"] - there).max())
     assert 1e-9 < off < moment_error(found) < 100 * off
+
+
+def test_what_is_measured_once_is_judged_again(
+    configs: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Phases are judged again when the error is known; all else is as it was."""
+    law = ["law={type: sadowsky}", "tolerance=1e-8"]
+    prepared = prepare(load_scene(configs / "moebius_regularized.yaml", law))
+    found = prepared.solve()
+    assert found.verified and len(found.sheets) == 2
+    # Of what is another question the answer is another: sheets, or what was asked.
+    turned = verify(replace(found, sheets=found.sheets[::-1]), prepared.ribbon)
+    assert len(turned.problems) >= 2
+    posed = replace(found.posed, scene=replace(found.posed.scene))
+    output = type(found.dense)
+    monkeypatch.delattr(output, "residual_between_nodes")
+    again = verify(found, prepared.ribbon)
+    assert not again.problems
+    kept = found.verification
+    assert (again.worst_condition, again.law_residual) == (kept.worst_condition, kept.law_residual)
+    assert again.residual_between_nodes == kept.residual_between_nodes
+    with pytest.raises(AttributeError, match="residual_between_nodes"):
+        verify(replace(found, posed=posed), prepared.ribbon)

@@ -69,10 +69,16 @@ def test_outputs_are_evaluated_by_name() -> None:
     problem = rational()
     x = problem.state
     phase = replace(problem.phases[0], outputs={"both": x, "sum": x[0] + x[1]})
-    ((function, sizes),) = replace(problem, phases=(phase,)).output_functions
-    assert sizes == {"both": 2, "sum": 1}
-    found = np.array(function([3.0, 4.0], ca.DM(0, 1), ca.DM(0, 1), 0.0))
-    np.testing.assert_array_equal(found.ravel(), [3, 4, 7])
+    problem = replace(problem, phases=(phase,))
+    assert problem.output_sizes == {"both": 2, "sum": 1}
+    for names, expected in (
+        (("both", "sum"), [3, 4, 7]),
+        (("sum",), [7]),
+        (("sum", "both"), [7, 3, 4]),
+    ):
+        (function,) = problem.output_functions(names)
+        found = np.array(function([3.0, 4.0], ca.DM(0, 1), ca.DM(0, 1), 0.0))
+        np.testing.assert_array_equal(found.ravel(), expected)
 
 
 def test_what_is_made_of_a_problem_is_made_once_and_belongs_to_it() -> None:
