@@ -23,7 +23,8 @@ from ribbonopt.arrays import Array
 from ribbonopt.transcription.residuals import Derivatives, Residuals
 
 from .condense import CondensedSystem
-from .extended import ExtendedSystem, Line, local
+from .extended import ExtendedSystem, Line
+from .local import local
 
 STEP = 1e-5  # half the largest change of an unknown that derivatives of conditions are taken over
 

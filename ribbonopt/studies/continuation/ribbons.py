@@ -16,7 +16,8 @@ from ribbonopt.attempt.attempt import Attempt, verified
 from ribbonopt.checks.zero_moment import unbent_share, unseen
 from ribbonopt.pipeline.prepared import Prepared
 from ribbonopt.solution.solution import Solution
-from ribbonopt.solvers.extended import ExtendedSystem, Local, local
+from ribbonopt.solvers.extended import ExtendedSystem
+from ribbonopt.solvers.local import Local, local
 from ribbonopt.solvers.newton import NewtonSolver
 from ribbonopt.studies.buckling.twin import has_twin, twin_of, twin_scene
 from ribbonopt.transcription import Mesh
@@ -24,16 +25,19 @@ from ribbonopt.transcription import Mesh
 from .buckled import StageBuckling
 from .coordinates import metric_at, reduced, row_of
 from .curve import Curve
+from .estimating import estimating
 from .finishing import elsewhere, finished
 from .leaving import leaving
 from .passage import passage
 from .phases import orientation
 from .trials import checked, trial_of, without_last
 from .walk.departure import Departure
+from .walk.linearised import Heading
 from .walk.metric import Metric
 from .walk.points import BUCKLING, POINT, Point
 from .walk.protocol import Passage, Trial
 
+SAME = 1e-6  # arclength to what the better scheme finds, up to which its tangent is as good
 MOST = 20  # iterations of Newton's method: a step that needs more is too long
 
 
@@ -75,13 +79,26 @@ class RibbonEquations:
                 raise
             line = self._rod.curve.line(self._rod.restored(solution, unknowns))
             found = local(line, row, *there)
+        return replace(found, sign=self._sign(solution, found.sign, unbent))
+
+    def heading(self, solution: Solution, unknowns: Array, ahead: Array) -> Heading:
+        """Return where the branch goes at a solution, from what estimates its error if possible."""
+        if self.unbent(solution):
+            return self.linearise(solution, unknowns, ahead)
+        row = row_of(solution, self.metric.dual(ahead))
+        found = estimating(solution, self.curve, row, float(unknowns[-1]))
+        if found is None or self.metric.length(reduced(solution, found.step)) > SAME:
+            return self.linearise(solution, unknowns, ahead)
+        return replace(found, sign=self._sign(solution, found.sign, False))
+
+    def _sign(self, solution: Solution, sign: float, unbent: bool) -> float:
+        """Return the sign of a determinant as it is comparable between layouts."""
         if solution.problem.slack:
             # Conditions with slack keep a ribbon in its phases: their zeros are no branch points.
-            return replace(found, sign=1.0)
+            return 1.0
         # Its determinant would be that of the law's guard.
         told = not (unbent or unseen(solution, self.prepared.ribbon.law))
-        sign = orientation(solution.sheets) * found.sign if told else 0.0
-        return replace(found, sign=sign)
+        return orientation(solution.sheets) * sign if told else 0.0
 
     def correct_at(self, origin: Solution, guess: Array) -> Trial[Solution]:
         """Correct at a position (natural continuation)."""

@@ -138,6 +138,18 @@ class ElementBlocks:
         nodes = np.vstack([v[:, 0, : lay.nx], output.at_nodes[-1:]])
         return lay.pack(nodes, v[:, 1:], output.constants)
 
+    def of_finer(self, w: Array) -> Array:
+        """Unknowns (nw,) that stand for such of `finer`: the polynomials through its stages."""
+        finer, split = self.finer
+        nodes, stages, c = finer.layout.unpack(w)
+        t = split * self.tableau.nodes
+        part = np.minimum(t.astype(int), split - 1)
+        basis = finer.tableau.basis(t - part)
+        if split == 1:
+            return self.layout.pack(nodes, basis @ stages, c)
+        own = [basis[i] @ stages[part[i] :: split] for i in range(len(t))]
+        return self.layout.pack(nodes[::split], np.stack(own, axis=1), c)
+
     def widths(self, p: Array) -> Array:
         """Relative widths (N,) of the elements."""
         return self.layout.widths(p)

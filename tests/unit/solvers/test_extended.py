@@ -20,7 +20,8 @@ from scipy.optimize import brentq
 
 from ribbonopt.problem import BoundaryValueProblem, Phase
 from ribbonopt.solvers import NewtonSolver, Status
-from ribbonopt.solvers.extended import ExtendedSystem, Line, Local, ScalarCondition, local
+from ribbonopt.solvers.extended import ExtendedSystem, Line, ScalarCondition
+from ribbonopt.solvers.local import Local, local
 from ribbonopt.transcription import NLP, CollocationMethod, Mesh, MultipleShooting
 
 Array = np.ndarray
