@@ -12,7 +12,7 @@ import numpy as np
 
 from ribbonopt.arrays import Array
 from ribbonopt.solution.solution import Solution
-from ribbonopt.solvers.condense import CondensedSystem
+from ribbonopt.solvers.condense import factored
 from ribbonopt.solvers.protocols import Factors
 from ribbonopt.transcription.residuals import Derivatives, Residuals
 from ribbonopt.transcription.structure import Output
@@ -63,7 +63,7 @@ def improved(solution: Solution, near: Factors | None = None, *, keep: bool = Fa
         return Improved(finer, split, residuals, near.solve(residuals), dense.growth, near)
     residuals, derivatives = blocks.linearize(w, p)
     only, neutral = None if keep else residuals, spins(solution)
-    factors = CondensedSystem(blocks, derivatives, p, only, neutral)
+    factors = factored(blocks, derivatives, p, only, neutral)
     growth = growth_of(finer, split, derivatives)
     step = factors.solve(residuals)
     return Improved(finer, split, residuals, step, growth, factors if keep else None)

@@ -7,14 +7,18 @@ or scheme, Newton's step too, which is the estimate of that one's error.
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ribbonopt.arrays import Array
 from ribbonopt.transcription.residuals import Derivatives, Residuals
 
-from .condense import CondensedSystem
+from .condense import factored
 from .extended import ExtendedSystem, Line, ScalarCondition
+
+if TYPE_CHECKING:
+    from .protocols import Condensed
 
 
 @dataclass(frozen=True, eq=False)
@@ -23,7 +27,7 @@ class Local:
 
     Attributes
     ----------
-    factors, residuals : CondensedSystem, Residuals
+    factors, residuals : Condensed, Residuals
         Factors, and the residuals they are for; all zero at a solution.
     step : (nw + k,) array
         Newton's step with row . dy = 0; zero at a solution.
@@ -34,7 +38,7 @@ class Local:
         that point the same way along the branch: it vanishes at branch points, not at folds.
     """
 
-    factors: CondensedSystem
+    factors: Condensed
     residuals: Residuals
     step: Array
     direction: Array
@@ -78,7 +82,7 @@ def local(
         np.zeros_like(residuals.nodes),
         np.zeros_like(residuals.conditions),
     )
-    factors = CondensedSystem(line.bordered, derivatives, p, none, line.neutral)
+    factors = factored(line.bordered, derivatives, p, none, line.neutral)
     return _local(line, factors, none, np.zeros(len(w) + line.count))
 
 
@@ -89,11 +93,11 @@ def local_near(line: Line, row: Array, w: Array, position: float) -> tuple[Local
     # The row says nothing of where along the branch.
     conditions = np.append(residuals.conditions[:-1], 0.0)
     residuals = replace(residuals, conditions=conditions)
-    factors = CondensedSystem(line.bordered, derivatives, p, residuals, line.neutral)
+    factors = factored(line.bordered, derivatives, p, residuals, line.neutral)
     return _local(line, factors, residuals, factors.solve(residuals)), derivatives
 
 
-def _local(line: Line, factors: CondensedSystem, residuals: Residuals, step: Array) -> Local:
+def _local(line: Line, factors: Condensed, residuals: Residuals, step: Array) -> Local:
     along = np.zeros(len(residuals.conditions))
     along[-1] = 1.0
     direction = _solved(factors, residuals, step, along)
@@ -102,7 +106,7 @@ def _local(line: Line, factors: CondensedSystem, residuals: Residuals, step: Arr
     return Local(factors, residuals, step, direction, *told)
 
 
-def _solved(factors: CondensedSystem, residuals: Residuals, step: Array, rows: Array) -> Array:
+def _solved(factors: Condensed, residuals: Residuals, step: Array, rows: Array) -> Array:
     """Solve for `rows` in the conditions: factors are for the stages' part of the residuals."""
     wider = replace(residuals, conditions=residuals.conditions - rows)
     return np.asarray(factors.solve(wider) - step)
