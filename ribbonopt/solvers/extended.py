@@ -59,8 +59,7 @@ class Line:
 
     def at_points(self, w: Array) -> Array:
         """States at all points, one after another, and constants: y without its positions."""
-        nodes, _, c = self.blocks.layout.unpack(w)
-        return np.concatenate([nodes[list(self.blocks.layout.point_elements)].ravel(), c])
+        return w[self.blocks.layout.condition_columns]
 
     def reduced(self, extended: Array) -> Array:
         """Return y of [w, l]."""

@@ -98,6 +98,7 @@ class Layout:
         """Index of the node at the start, at each phase boundary and at the end."""
         return tuple(int(i) for i in np.concatenate([[0], np.cumsum(self.elements)]))
 
+    @cached_property
     def condition_columns(self) -> NDArray[np.int64]:
         """Place in w of every variable of the conditions: the states at all points, c."""
         nodes = np.array(self.point_elements)[:, None] * self.element_unknowns + np.arange(self.nx)

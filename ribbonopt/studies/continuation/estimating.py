@@ -18,6 +18,7 @@ from ribbonopt.arrays import Array
 from ribbonopt.solution.solution import Solution
 from ribbonopt.solvers.local import local_near
 
+from .coordinates import reduced_in
 from .curve import Curve
 
 
@@ -31,13 +32,13 @@ class Ahead:
         Tangent, of any length.
     sign : float
         Sign of the bordered determinant.
-    step : (nw + 1,) array
-        To the branch that the better scheme finds.
+    off : (m,) array
+        From the solution to the branch that the better scheme finds, as `coordinates` has it.
     """
 
     direction: Array
     sign: float
-    step: Array
+    off: Array
 
 
 def estimating(solution: Solution, curve: Curve, row: Array, position: float) -> Ahead | None:
@@ -58,8 +59,6 @@ def estimating(solution: Solution, curve: Curve, row: Array, position: float) ->
     conditions = found.residuals.conditions[:-1]
     residuals = replace(found.residuals, conditions=conditions)
     known[Improved] = Improved(finer, split, residuals, step, growth_of(finer, split, derivatives))
-    direction, off = (
-        np.append(dense.blocks.of_finer(vector[:-1]), vector[-1])
-        for vector in (found.direction, found.step)
-    )
+    direction = np.append(dense.blocks.of_finer(found.direction[:-1]), found.direction[-1])
+    off = reduced_in(finer.blocks.layout, solution.problem, found.step)
     return Ahead(direction, found.sign, off)

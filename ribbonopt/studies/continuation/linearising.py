@@ -12,7 +12,7 @@ from ribbonopt.checks.zero_moment import unseen
 from ribbonopt.solution.solution import Solution
 from ribbonopt.solvers.local import Local, local
 
-from .coordinates import reduced, row_of
+from .coordinates import row_of
 from .estimating import estimating
 from .phases import orientation
 from .walk.linearised import Heading
@@ -47,7 +47,7 @@ def heading(
     if not equations.unbent(solution):
         row = row_of(solution, metric.dual(ahead))
         found = estimating(solution, equations.curve, row, float(unknowns[-1]))
-        if found is not None and metric.length(reduced(solution, found.step)) <= SAME:
+        if found is not None and metric.length(found.off) <= SAME:
             return replace(found, sign=_sign(equations, solution, found.sign))
     return linearised(equations, solution, unknowns, ahead)
 

@@ -68,12 +68,13 @@ class RibbonEquations:
 
     def measured(self, solution: Solution) -> RibbonEquations:
         """Return the same with the metric that fits a solution."""
-        known: dict[Trajectory, Metric] = self._kept.setdefault("metrics", {})
+        known: dict[Trajectory, RibbonEquations] = self._kept.setdefault("measured", {})
         if solution.trajectory not in known:
             if len(known) >= RECENT:
                 known.pop(next(iter(known)))
-            known[solution.trajectory] = metric_at(solution, self.curve)
-        return replace(self, metric=known[solution.trajectory])
+            metric = metric_at(solution, self.curve)
+            known[solution.trajectory] = replace(self, metric=metric)
+        return known[solution.trajectory]
 
     def reduced(self, solution: Solution, vector: Array) -> Array:
         """States at both ends, constants of the rod and position, of a vector [w, l]."""

@@ -10,6 +10,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ribbonopt.arrays import Array
 from ribbonopt.transcription.buffered import Mapped
@@ -152,12 +153,10 @@ class ElementBlocks:
         """Unknowns (nw,) that stand for such of `finer`: the polynomials through its stages."""
         finer, split = self.finer
         nodes, stages, c = finer.layout.unpack(w)
-        t = split * self.tableau.nodes
-        part = np.minimum(t.astype(int), split - 1)
-        basis = finer.tableau.basis(t - part)
+        part, basis = self._of_finer
         if split == 1:
             return self.layout.pack(nodes, basis @ stages, c)
-        own = [basis[i] @ stages[part[i] :: split] for i in range(len(t))]
+        own = [basis[i] @ stages[part[i] :: split] for i in range(len(basis))]
         return self.layout.pack(nodes[::split], np.stack(own, axis=1), c)
 
     def widths(self, p: Array) -> Array:
@@ -183,6 +182,14 @@ class ElementBlocks:
         result = values.copy()
         result[:, :, : lay.nx] = stages[:, :, : lay.nx] - integrals[:, :-1]
         return Residuals(result, ends, b)
+
+    @cached_property
+    def _of_finer(self) -> tuple[NDArray[np.intp], Array]:
+        """The part of a split element that each stage is in (K,), and the basis there (K, K')."""
+        finer, split = self.finer
+        t = split * self.tableau.nodes
+        part = np.minimum(t.astype(np.intp), split - 1)
+        return part, finer.tableau.basis(t - part)
 
     @cached_property
     def _coefficients(self) -> Array:
