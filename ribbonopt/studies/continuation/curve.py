@@ -47,19 +47,19 @@ class Curve:
     units: Units | None = None
     _posed: dict[float, Posed] = field(default_factory=dict)
 
-    @property
+    @cached_property
     def begin(self) -> float:
         """Position where the stage begins."""
         assert self.stage.from_ is not None
         return self.position(self.stage.from_)
 
-    @property
+    @cached_property
     def start(self) -> float:
         """Position of the end that is not the last: where the stage begins, or goes first."""
         to = self.stage.to
         return self.position(to[0]) if isinstance(to, tuple) else self.begin
 
-    @property
+    @cached_property
     def goals(self) -> tuple[float, ...]:
         """Positions that must be met exactly, in order; the last is the end."""
         return tuple(
@@ -74,12 +74,12 @@ class Curve:
         back = replace(self.stage, to=self.stage.to[::-1])
         return Curve(self.scene, back, self.units), self
 
-    @property
+    @cached_property
     def span(self) -> float:
         """Distance from end to end."""
         return abs(self.goals[-1] - self.start)
 
-    @property
+    @cached_property
     def largest(self) -> float:
         """Largest change of the position in a step."""
         if self.stage.largest or not self.stage.values:
@@ -87,12 +87,12 @@ class Curve:
         places = (self.start, *self.goals)
         return max(abs(b - a) for a, b in pairwise(places))
 
-    @property
+    @cached_property
     def first(self) -> float:
         """Change of the position in the first step."""
         return self.stage.first or self.largest
 
-    @property
+    @cached_property
     def smallest(self) -> float:
         """Change of the position below which a step is not tried."""
         return self.stage.smallest or 1e-6 * min(self.span, self.first)
