@@ -62,6 +62,9 @@ class Dense:
         rows = self.jacobian(self.reduced(solution, unknowns))
         return DenseLinearised(np.vstack([rows, self.metric.dual(ahead)]) * units)
 
+    def heading(self, solution: Unit, unknowns: Array, ahead: Array) -> DenseLinearised:
+        return self.linearise(solution, unknowns, ahead)
+
     def correct_at(self, origin: Unit, guess: Array) -> Trial[Unit]:
         return self._newton(origin, guess, np.eye(len(guess))[-1], guess[-1])
 

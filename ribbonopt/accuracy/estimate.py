@@ -26,13 +26,12 @@ from ribbonopt.scene import Ipopt
 from ribbonopt.solution.potential import dead_force_of
 from ribbonopt.solution.solution import Solution
 from ribbonopt.solution.trajectory import Trajectory
-from ribbonopt.solvers.condense import factored
 from ribbonopt.solvers.protocols import Factors
 
 from .compared import compared
 from .gaps import LEAST, RESOLVED, gaps_at_nodes, gaps_between, sizes_of
+from .improved import improved
 from .layers import Layers, clear_of, layers, overlooked
-from .spin import spins
 from .witness import columns_of_rod, more_of, summed, witness
 
 UNIT = 3e-16  # local error by rounding alone
@@ -155,18 +154,9 @@ def _analysed(solution: Solution, near: Factors | None, keep: bool) -> Analysis:
     if solution.problem.recovered:
         return _of_minimum(solution)
     trajectory, tolerance = solution.trajectory, solution.posed.scene.tolerance or USUAL
-    dense = trajectory.dense
-    finer, split = dense.refined()
-    blocks, w, p = finer.blocks, finer.w, finer.p
-    if near is None:
-        residuals, derivatives = blocks.linearize(w, p)
-        only, neutral = None if keep else residuals, spins(solution)
-        factors: Factors = factored(blocks, derivatives, p, only, neutral)
-        growth = summed(blocks.growth(derivatives, p), split)
-    else:
-        residuals, factors, keep, growth = blocks.residuals(w, p), near, True, dense.growth
-    step = factors.solve(residuals)
-    better = Trajectory(trajectory.problem, finer.moved(step))
+    found = improved(solution, near, keep=keep)
+    dense, split, residuals, growth = trajectory.dense, found.split, found.residuals, found.growth
+    better = Trajectory(trajectory.problem, found.finer.moved(found.step))
     size = np.maximum(np.abs(dense.at_nodes).max(axis=0), 1.0)
     defects = np.abs(residuals.nodes / size)
     local = summed(defects.max(axis=1), split)
@@ -186,9 +176,9 @@ def _analysed(solution: Solution, near: Factors | None, keep: bool) -> Analysis:
         # Errors in states of the law's own show in the rod where they matter to it.
         of_rod, _ = more_of(summed(defects[:, rod].max(axis=1), split), witnessed)
     errors["states"] = max(errors["states"], float(of_rod.max()))
-    kept = factors if keep else None
     known = doubt <= DOUBTFUL or _worst(errors, sizes)[0] <= SMALL
-    return Analysis(trajectory, better, local, inside, errors, sizes, more, known, near_by, kept)
+    parts = trajectory, better, local, inside, errors, sizes, more, known, near_by
+    return Analysis(*parts, found.factors)
 
 
 def _of_minimum(solution: Solution) -> Analysis:

@@ -15,7 +15,6 @@ from typing import TypeVar
 import numpy as np
 
 from ribbonopt.accuracy.spin import SPIN, spins
-from ribbonopt.mechanics.laws.catalogue import capabilities
 from ribbonopt.problem import BoundaryValueProblem, Ribbon
 from ribbonopt.problem.potentials import without_potential
 from ribbonopt.solution.solution import Solution
@@ -24,7 +23,7 @@ from .arcs import NEGLIGIBLE, sign_changes
 from .elimination import factored
 from .in_plane import mechanics, planar_posed
 from .variation import Energy, Variation
-from .zero_moment import faded_share, unbent_share
+from .zero_moment import faded_share, law_of, unbent_share
 
 T = TypeVar("T")
 
@@ -110,7 +109,7 @@ def variation_of(solution: Solution) -> Variation | str:
     """Return the second variation as a quadratic form or, in words, why there is none."""
     if not solution.status.converged:
         return NO_EQUILIBRIUM
-    name, law = solution.scene.law.type, capabilities(solution.scene)
+    name, law = solution.scene.law.type, law_of(solution)
     if not law.variational:
         return f"the law {name} has no energy"
     if law.states and law.direct() is law:

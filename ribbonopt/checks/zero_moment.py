@@ -86,12 +86,21 @@ def _share(solution: Solution, zero: NDArray[np.bool_]) -> float:
 
 def lacks_linearisation(solution: Solution) -> bool:
     """Whether nothing can be said of a solution that rests on its linearised equations."""
-    return unbent_share(solution, capabilities(solution.scene)) > 0
+    return unbent_share(solution, law_of(solution)) > 0
+
+
+def law_of(solution: Solution) -> ConstitutiveLaw:
+    """Return the relation of a solution's scene, to be asked what it has; made once."""
+    known = solution.trajectory.found
+    if ConstitutiveLaw not in known:
+        known[ConstitutiveLaw] = capabilities(solution.scene)
+    found: ConstitutiveLaw = known[ConstitutiveLaw]
+    return found
 
 
 def unknown_of(solution: Solution) -> list[str]:
     """Say what is not known of such a state; nothing of all others."""
-    law = capabilities(solution.scene)
+    law = law_of(solution)
     share = unbent_share(solution, law)
     if not share:
         return [FADED] if unseen(solution, law) else []

@@ -67,6 +67,11 @@ def value_at(scene: Scene, path: str) -> float:
     return float(_number(scene, path).value)
 
 
+def steps_to(scene: Scene, path: str) -> KeyPath:
+    """Return the steps to the number at a path, as `replaced` takes them; SceneError as above."""
+    return _number(scene, path).steps
+
+
 def with_value(scene: Scene, path: str, value: float) -> Scene:
     """Return the scene with another number at a path; nothing is validated.
 
@@ -75,7 +80,7 @@ def with_value(scene: Scene, path: str, value: float) -> Scene:
     SceneError
         As `value_at` does.
     """
-    changed: Scene = replaced(scene, _number(scene, path).steps, float(value))
+    changed: Scene = replaced(scene, steps_to(scene, path), float(value))
     return changed
 
 

@@ -59,8 +59,7 @@ class Line:
 
     def at_points(self, w: Array) -> Array:
         """States at all points, one after another, and constants: y without its positions."""
-        nodes, _, c = self.blocks.layout.unpack(w)
-        return np.concatenate([nodes[list(self.blocks.layout.point_elements)].ravel(), c])
+        return w[self.blocks.layout.condition_columns]
 
     def reduced(self, extended: Array) -> Array:
         """Return y of [w, l]."""
@@ -166,61 +165,3 @@ class ExtendedSystem:
         further = [condition.value(w) for condition in self.further]
         conditions = np.concatenate([residuals.conditions, further, [off]])
         return replace(residuals, conditions=conditions)
-
-
-@dataclass(frozen=True, eq=False)
-class Local:
-    """The branch near one of its points: the extended Jacobian, factored.
-
-    Attributes
-    ----------
-    direction : (nw + k,) array
-        Tangent [dw, dl] with row . dy = 1.
-    sign, log : float
-        Sign and logarithm of the determinant, comparable between points of one layout and rows
-        that point the same way along the branch: it vanishes at branch points, not at folds.
-    """
-
-    factors: Condensed
-    residuals: Residuals
-    direction: Array
-    sign: float
-    log: float
-
-    def solve(self, rows: Array) -> Array:
-        """Solve the extended Jacobian for right-hand sides in the conditions (nb + k,) alone."""
-        return self.factors.solve(replace(self.residuals, conditions=-rows))
-
-    def kernel(self) -> Array:
-        """Solve for a right-hand side with a share of every condition, and none of the row.
-
-        Next to a branch point that is the null direction, times much.
-        """
-        count = len(self.residuals.conditions)
-        return self.solve(np.append(np.cos(np.arange(1.0, count)), 0.0))
-
-
-def local(
-    line: Line,
-    row: Array,
-    w: Array,
-    positions: float | Array,
-    further: tuple[ScalarCondition, ...] = (),
-) -> Local:
-    """Linearise at a solution; `row` should point along the branch."""
-    system = ExtendedSystem(line, row, 0.0, further)
-    p = line.parameters(*np.atleast_1d(positions))
-    residuals, derivatives = system.linearize(np.append(w, positions), p)
-    none = Residuals(
-        np.zeros_like(residuals.stages),
-        np.zeros_like(residuals.nodes),
-        np.zeros_like(residuals.conditions),
-    )
-    # Whatever is solved for later has its right-hand side in the conditions alone.
-    factors = factored(line.bordered, derivatives, p, none, line.neutral)
-    last = none.conditions.copy()
-    last[-1] = 1.0
-    direction = factors.solve(replace(none, conditions=-last))
-    # A neutral direction leaves the determinant zero all along: it tells nothing.
-    told = (0.0, 0.0) if line.neutral else factors.determinant
-    return Local(factors, none, direction, *told)

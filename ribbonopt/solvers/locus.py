@@ -23,7 +23,8 @@ import numpy as np
 from ribbonopt.arrays import Array
 from ribbonopt.transcription.residuals import Derivatives, Residuals
 
-from .extended import ExtendedSystem, Line, local
+from .extended import ExtendedSystem, Line
+from .local import local
 
 if TYPE_CHECKING:
     from .protocols import Condensed

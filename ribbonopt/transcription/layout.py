@@ -103,6 +103,7 @@ class Layout:
         """The same as an array (P + 1,)."""
         return np.array(self.point_elements)
 
+    @cached_property
     def condition_columns(self) -> NDArray[np.int64]:
         """Place in w of every variable of the conditions: the states at all points, c."""
         nodes = self.points[:, None] * self.element_unknowns + np.arange(self.nx)

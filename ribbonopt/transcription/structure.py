@@ -104,6 +104,9 @@ class Blocks(Protocol):
     def sampled(self, output: Output, p: Array) -> Array:
         """Unknowns w that stand for an output of the same problem, on any elements."""
 
+    def of_finer(self, w: Array) -> Array:
+        """Unknowns (nw,) that stand for such of `finer`, or for their derivatives: linear in w."""
+
 
 class Output(Protocol):
     """A solution anywhere; positions are relative to their phase."""

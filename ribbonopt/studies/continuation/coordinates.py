@@ -10,6 +10,7 @@ import numpy as np
 from ribbonopt.arrays import Array
 from ribbonopt.problem import BoundaryValueProblem
 from ribbonopt.solution.solution import Solution
+from ribbonopt.transcription import Layout
 
 from .curve import Curve
 from .walk.metric import Metric
@@ -20,10 +21,14 @@ def reduced(solution: Solution, extended: Array) -> Array:
 
     They determine the whole solution, and are the same in any layout.
     """
-    layout = solution.dense.blocks.layout
-    nodes, _, c = layout.unpack(extended[:-1])
-    rod = layout.nc - solution.problem.kept(_lengths) - solution.problem.slack
-    return np.concatenate([nodes[0], nodes[-1], c[:rod], extended[-1:]])
+    return reduced_in(solution.dense.blocks.layout, solution.problem, extended)
+
+
+def reduced_in(layout: Layout, problem: BoundaryValueProblem, extended: Array) -> Array:
+    """Return the same of a vector [w, l] in a layout of the problem."""
+    last, c = layout.constants_at - layout.nx, layout.constants_at
+    rod = c + layout.nc - problem.lengths - problem.slack
+    return np.concatenate([extended[: layout.nx], extended[last:c], extended[c:rod], extended[-1:]])
 
 
 def row_of(solution: Solution, part: Array) -> Array:
@@ -49,8 +54,3 @@ def metric_at(solution: Solution, curve: Curve) -> Metric:
     sizes[2 * nx :] = sizes[2 * nx :].max(initial=1.0)
     sizes[-1] = curve.span
     return Metric(sizes)
-
-
-def _lengths(problem: BoundaryValueProblem) -> int:
-    """Return how many constants are lengths of phases; those between stations are known."""
-    return problem.lengths

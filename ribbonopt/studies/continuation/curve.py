@@ -12,7 +12,8 @@ from ribbonopt.accuracy.spin import spins
 from ribbonopt.arrays import Array
 from ribbonopt.problem import BoundaryValueProblem, Posed
 from ribbonopt.scene import ContinuationStage, Scene
-from ribbonopt.scene.lens import with_value
+from ribbonopt.scene.faults import KeyPath
+from ribbonopt.scene.lens import replaced, steps_to
 from ribbonopt.scene.stages import ends_of
 from ribbonopt.scene.units import Units
 from ribbonopt.solution.solution import Solution
@@ -46,19 +47,19 @@ class Curve:
     units: Units | None = None
     _posed: dict[float, Posed] = field(default_factory=dict)
 
-    @property
+    @cached_property
     def begin(self) -> float:
         """Position where the stage begins."""
         assert self.stage.from_ is not None
         return self.position(self.stage.from_)
 
-    @property
+    @cached_property
     def start(self) -> float:
         """Position of the end that is not the last: where the stage begins, or goes first."""
         to = self.stage.to
         return self.position(to[0]) if isinstance(to, tuple) else self.begin
 
-    @property
+    @cached_property
     def goals(self) -> tuple[float, ...]:
         """Positions that must be met exactly, in order; the last is the end."""
         return tuple(
@@ -73,12 +74,12 @@ class Curve:
         back = replace(self.stage, to=self.stage.to[::-1])
         return Curve(self.scene, back, self.units), self
 
-    @property
+    @cached_property
     def span(self) -> float:
         """Distance from end to end."""
         return abs(self.goals[-1] - self.start)
 
-    @property
+    @cached_property
     def largest(self) -> float:
         """Largest change of the position in a step."""
         if self.stage.largest or not self.stage.values:
@@ -86,12 +87,12 @@ class Curve:
         places = (self.start, *self.goals)
         return max(abs(b - a) for a, b in pairwise(places))
 
-    @property
+    @cached_property
     def first(self) -> float:
         """Change of the position in the first step."""
         return self.stage.first or self.largest
 
-    @property
+    @cached_property
     def smallest(self) -> float:
         """Change of the position below which a step is not tried."""
         return self.stage.smallest or 1e-6 * min(self.span, self.first)
@@ -123,11 +124,16 @@ class Curve:
 
     def value(self, position: float) -> float:
         """Value of the parameter, exactly that of the scene file where it names one."""
-        named = (self.stage.from_, *ends_of(self.stage), *(self.stage.values or ()))
-        for value in named:
-            if value is not None and self.position(value) == position:
-                return value
+        named = self._named.get(position)
+        if named is not None:
+            return named
         return float(10**position) if self.stage.scale == "log" else position
+
+    @cached_property
+    def _named(self) -> dict[float, float]:
+        """Values that the scene file names, by position; the first of those at one position."""
+        named = (self.stage.from_, *ends_of(self.stage), *(self.stage.values or ()))
+        return {self.position(v): v for v in reversed(named) if v is not None}
 
     def error_of(self, point: Point[Solution]) -> float | None:
         """Return the bound of the error of a special point's value, relative; None for unknown."""
@@ -186,7 +192,14 @@ class Curve:
         if position not in self._posed:
             if len(self._posed) >= KEPT:
                 self._posed.pop(next(iter(self._posed)))
-            scene = with_value(self.scene, self.stage.parameter, self.value(position))
-            scene = replace(scene, continuation=None)
-            self._posed[position] = Posed.of(scene, self.units)
+            scene: Scene = replaced(*self._place, self.value(position))
+            known = next(iter(self._posed.values()), None)
+            posed = known.moved(scene, self.units) if known else Posed.of(scene, self.units)
+            self._posed[position] = posed
         return self._posed[position]
+
+    @cached_property
+    def _place(self) -> tuple[Scene, KeyPath]:
+        """The scene without its continuation, and the steps to the parameter in it."""
+        steps = steps_to(self.scene, self.stage.parameter)
+        return replace(self.scene, continuation=None), steps

@@ -153,6 +153,8 @@ class StageRecords:
 
     def stopped(self, row: Mapping[str, Any]) -> str:
         """Return the condition of the stage that a row meets, "" if none."""
+        if not self.stops.conditions:
+            return ""
         return self.stops.met(self.recorder.named(row, self.curve.stage))
 
     def stopped_at(self, kind: str, count: int) -> str:

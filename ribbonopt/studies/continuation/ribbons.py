@@ -7,16 +7,18 @@ changes of m2 do. So a layout is a mesh and its phases.
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from typing import Any
+from typing import Any, NamedTuple
 
 import numpy as np
 
 from ribbonopt.arrays import Array
 from ribbonopt.attempt.attempt import Attempt, verified
-from ribbonopt.checks.zero_moment import unbent_share, unseen
+from ribbonopt.checks.zero_moment import unbent_share
 from ribbonopt.pipeline.prepared import Prepared
 from ribbonopt.solution.solution import Solution
-from ribbonopt.solvers.extended import ExtendedSystem, Local, local
+from ribbonopt.solution.trajectory import Trajectory
+from ribbonopt.solvers.extended import ExtendedSystem
+from ribbonopt.solvers.local import Local
 from ribbonopt.solvers.newton import NewtonSolver
 from ribbonopt.studies.buckling.twin import has_twin, twin_of, twin_scene
 from ribbonopt.transcription import Mesh
@@ -26,15 +28,23 @@ from .coordinates import metric_at, reduced, row_of
 from .curve import Curve
 from .finishing import elsewhere, finished
 from .leaving import leaving
+from .linearising import heading, linearised
 from .passage import passage
-from .phases import orientation
 from .trials import checked, trial_of, without_last
 from .walk.departure import Departure
+from .walk.linearised import Heading
 from .walk.metric import Metric
 from .walk.points import BUCKLING, POINT, Point
 from .walk.protocol import Passage, Trial
 
+RECENT = 4  # solutions whose metric is remembered
 MOST = 20  # iterations of Newton's method: a step that needs more is too long
+
+
+class Unbent(NamedTuple):
+    """Whether m2 = m3 = 0 along a part of a trajectory."""
+
+    there: bool
 
 
 @dataclass(frozen=True, eq=False)
@@ -58,7 +68,13 @@ class RibbonEquations:
 
     def measured(self, solution: Solution) -> RibbonEquations:
         """Return the same with the metric that fits a solution."""
-        return replace(self, metric=metric_at(solution, self.curve))
+        known: dict[Trajectory, RibbonEquations] = self._kept.setdefault("measured", {})
+        if solution.trajectory not in known:
+            if len(known) >= RECENT:
+                known.pop(next(iter(known)))
+            metric = metric_at(solution, self.curve)
+            known[solution.trajectory] = replace(self, metric=metric)
+        return known[solution.trajectory]
 
     def reduced(self, solution: Solution, vector: Array) -> Array:
         """States at both ends, constants of the rod and position, of a vector [w, l]."""
@@ -66,31 +82,20 @@ class RibbonEquations:
 
     def linearise(self, solution: Solution, unknowns: Array, ahead: Array) -> Local:
         """Linearise at a solution with a row along the branch."""
-        row = row_of(solution, self.metric.dual(ahead))
-        there, unbent = (solution.dense.w, float(unknowns[-1])), self.unbent(solution)
-        try:
-            found = local(self.curve.line(solution), row, *there)
-        except np.linalg.LinAlgError:
-            if not (unbent and self._rod):
-                raise
-            line = self._rod.curve.line(self._rod.restored(solution, unknowns))
-            found = local(line, row, *there)
-        if solution.problem.slack:
-            # Conditions with slack keep a ribbon in its phases: their zeros are no branch points.
-            return replace(found, sign=1.0)
-        # Its determinant would be that of the law's guard.
-        told = not (unbent or unseen(solution, self.prepared.ribbon.law))
-        sign = orientation(solution.sheets) * found.sign if told else 0.0
-        return replace(found, sign=sign)
+        return linearised(self, solution, unknowns, ahead)
+
+    def heading(self, solution: Solution, unknowns: Array, ahead: Array) -> Heading:
+        """Return where the branch goes at a solution, from what estimates its error if possible."""
+        return heading(self, solution, unknowns, ahead)
 
     def correct_at(self, origin: Solution, guess: Array) -> Trial[Solution]:
         """Correct at a position (natural continuation)."""
         attempt = self._beside(origin, float(guess[-1]))
         attempt.run_from(guess[:-1], quick=True, check=False)
         trial = trial_of(attempt, guess[-1:])
-        if trial.converged or not (self.unbent(origin) and self._rod):
+        if trial.converged or not (self.unbent(origin) and self.rod):
             return trial
-        straight = self._rod.correct_at(origin, guess)
+        straight = self.rod.correct_at(origin, guess)
         found = attempt.restored(straight.unknowns[:-1])
         same = straight.converged and self.unbent(found)
         return replace(straight, solution=found) if same else trial
@@ -163,7 +168,7 @@ class RibbonEquations:
         return found
 
     @property
-    def _rod(self) -> RibbonEquations | None:
+    def rod(self) -> RibbonEquations | None:
         """The same with a linear law, where straight states have a linearisation."""
         if "rod" not in self._kept:
             self._kept["rod"] = None
@@ -208,7 +213,10 @@ class RibbonEquations:
 
     def unbent(self, solution: Solution) -> bool:
         """Whether m2 = m3 = 0 along a part of a solution."""
-        return unbent_share(solution, self.prepared.ribbon.law) > 0
+        known = solution.trajectory.found
+        if Unbent not in known:
+            known[Unbent] = Unbent(unbent_share(solution, self.prepared.ribbon.law) > 0)
+        return bool(known[Unbent].there)
 
     def _beside(self, solution: Solution, position: float) -> Attempt:
         """Return the means to solve at a position, on the mesh and in the phases of a solution."""

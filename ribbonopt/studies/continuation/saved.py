@@ -8,6 +8,7 @@ from __future__ import annotations
 import base64
 import binascii
 from dataclasses import dataclass, field
+from functools import cached_property
 from pathlib import Path
 from typing import Annotated, Any, Literal
 
@@ -88,6 +89,16 @@ class _Course:
     count: int = 0
     ended: set[Key] = field(default_factory=set)
 
+    @cached_property
+    def moving(self) -> tuple[str, ...]:
+        """What each stage moves."""
+        return tuple(stage.parameter for stage in stages_of(self.scene))
+
+    @cached_property
+    def numbers(self) -> frozenset[str]:
+        """Columns that are numbers, or unknown."""
+        return frozenset((*ANSWERS, *self.scene.record, *self.moving))
+
     def checked(self, data: Any, where: str) -> dict[str, Any]:
         """Return a line, with its parameter under its own name; OutputError if it is damaged."""
         if not isinstance(data, dict) or not data.keys() & {"row", "ending"}:
@@ -116,7 +127,7 @@ class _Course:
         if row.parameter != parameter:
             raise ValueError(f"parameter: expected {parameter}, which its stage moves")
         line = {**line, "row": _renamed(line["row"])}
-        _refuse_values(line["row"], self.scene)
+        _refuse_values(line["row"], self.numbers)
         _refuse_state(state)
         if row.intervals not in (None, sum(state.elements)):
             raise ValueError("intervals: expected as many as there are elements")
@@ -125,12 +136,11 @@ class _Course:
 
     def _fits(self, stage: int, branch: int) -> str:
         """Return what a stage moves; ValueError where the branch is none that can go on."""
-        stages = stages_of(self.scene)
-        if stage >= len(stages):
-            raise ValueError(f"stage: found {stage}, its scene has {len(stages)}")
+        if stage >= len(self.moving):
+            raise ValueError(f"stage: found {stage}, its scene has {len(self.moving)}")
         if (stage, branch) in self.ended:
             raise ValueError("stage, branch: it has ended in a line before")
-        return stages[stage].parameter
+        return self.moving[stage]
 
 
 def read_branch(path: Path, scene: Scene) -> list[dict[str, Any]]:
@@ -168,8 +178,7 @@ def unpacked(text: str) -> Array:
     return array
 
 
-def _refuse_values(row: Row, scene: Scene) -> None:
-    numbers = {*ANSWERS, *scene.record, *(stage.parameter for stage in stages_of(scene))}
+def _refuse_values(row: Row, numbers: frozenset[str]) -> None:
     for name in numbers & row.keys():
         if not is_number(row[name]) and (row[name] is not None or name == row["parameter"]):
             raise ValueError(f"{name}: expected a number")

@@ -62,10 +62,10 @@ class Stored:
                 self._refuse_elsewhere(regular[-1])
                 scene = self._curves[-1].scene_at(regular[-1]["state"]["position"])
 
-    def points(self, stage: int, branch: int, kind: str) -> list[Point[Solution]]:
-        """Points of a kind, in order."""
+    def points(self, stage: int, branch: int, kind: str) -> Iterator[Point[Solution]]:
+        """Points of a kind, in order, each restored when it is asked for."""
         lines = self._lines.get((stage, branch), [])
-        return [self.point(line) for line in lines if line["row"]["kind"] == kind]
+        return (self.point(line) for line in lines if line["row"]["kind"] == kind)
 
     def point(self, line: dict[str, Any]) -> Point[Solution]:
         """Return the point of a line.

@@ -156,7 +156,7 @@ class Assembler:
         row, col = triplets_of(self.conditions.jacobian.sparsity())
         nonzeros.append(condition_nonzeros)
         rows.append(row + lay.conditions_at)
-        columns.append(lay.condition_columns()[col])
+        columns.append(lay.condition_columns[col])
         shape = (lay.equations, lay.unknowns)
         jacobian = scatter(nonzeros, np.concatenate(rows), np.concatenate(columns), shape)
         return self._residuals([e for e, _ in stage_outputs], conditions), jacobian
@@ -197,7 +197,7 @@ class Assembler:
                 out.append(np.where(index < lay.nv, base + index, constant).ravel())
         row, col = triplets_of(self.conditions.lagrangian_hessian.sparsity())
         nonzeros.append(self.conditions.hessian(*self._condition_inputs(), rest))
-        where = lay.condition_columns()
+        where = lay.condition_columns
         rows.append(where[row])
         columns_of.append(where[col])
         return scatter(nonzeros, np.concatenate(rows), np.concatenate(columns_of), shape)

@@ -10,6 +10,7 @@ from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ribbonopt.arrays import Array
 from ribbonopt.transcription.buffered import Mapped
@@ -148,6 +149,16 @@ class ElementBlocks:
         nodes = np.vstack([v[:, 0, : lay.nx], output.at_nodes[-1:]])
         return lay.pack(nodes, v[:, 1:], output.constants)
 
+    def of_finer(self, w: Array) -> Array:
+        """Unknowns (nw,) that stand for such of `finer`: the polynomials through its stages."""
+        finer, split = self.finer
+        nodes, stages, c = finer.layout.unpack(w)
+        part, basis = self._of_finer
+        if split == 1:
+            return self.layout.pack(nodes, basis @ stages, c)
+        own = [basis[i] @ stages[part[i] :: split] for i in range(len(basis))]
+        return self.layout.pack(nodes[::split], np.stack(own, axis=1), c)
+
     def widths(self, p: Array) -> Array:
         """Relative widths (N,) of the elements."""
         return self.layout.widths(p)
@@ -180,6 +191,14 @@ class ElementBlocks:
     @cached_property
     def _splitting(self) -> Splitting:
         return Splitting(self.layout, self.tableau, self.phases)
+
+    @cached_property
+    def _of_finer(self) -> tuple[NDArray[np.intp], Array]:
+        """The part of a split element that each stage is in (K,), and the basis there (K, K')."""
+        finer, split = self.finer
+        t = split * self.tableau.nodes
+        part = np.minimum(t.astype(np.intp), split - 1)
+        return part, finer.tableau.basis(t - part)
 
     @cached_property
     def _depends_on_position(self) -> bool:

@@ -80,7 +80,7 @@ def _places(lay: Layout, conditions: ConditionFunctions) -> tuple[Index, Index]:
             [
                 np.broadcast_to(columns, rows.shape).ravel(),
                 ends + lay.nx,
-                lay.condition_columns()[col],
+                lay.condition_columns[col],
             ]
         ),
     )

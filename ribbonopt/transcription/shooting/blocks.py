@@ -138,6 +138,12 @@ class ShootingBlocks:
         stages = np.empty((lay.element_count, 0, lay.nv))
         return lay.pack(np.concatenate(nodes), stages, output.constants)
 
+    def of_finer(self, w: Array) -> Array:
+        """Unknowns (nw,) that stand for such of `finer`: every second node."""
+        nodes, _, c = self.finer[0].layout.unpack(w)
+        stages = np.empty((self.layout.element_count, 0, self.layout.nv))
+        return self.layout.pack(nodes[::2], stages, c)
+
     def _residuals(self, w: Array, after: Array, b: Array) -> Residuals:
         lay = self.layout
         nodes, _, _ = lay.unpack(w)

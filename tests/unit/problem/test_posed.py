@@ -1,5 +1,6 @@
 """A scene is posed once, whatever is then asked of it."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -9,6 +10,7 @@ from ribbonopt.errors import ModelError
 from ribbonopt.pipeline.prepared import prepare, solve
 from ribbonopt.problem import Posed, posed
 from ribbonopt.scene import Variational, load_scene, loads_scene
+from ribbonopt.scene.lens import paths_of, value_at, with_value
 
 
 def counted(monkeypatch: pytest.MonkeyPatch) -> list[object]:
@@ -51,6 +53,41 @@ def test_numbers_alone_make_no_other_structure(configs: Path) -> None:
     one, two = (Posed.of(load_scene(path, [f"law.epsilon={e}"])) for e in (0.1, 0.2))
     assert one.structure == two.structure
     assert (one.values != two.values).sum() == 1
+
+
+MOVED = (
+    *("clamped_arch", "moebius_whole", "moebius_regularized", "ribbon_si", "tapered_strip"),
+    *("heavy_cantilever", "curved_ring", "rod_to_ribbon", "wunderlich_clamps", "curled_strip"),
+)
+
+
+@pytest.mark.parametrize("name", MOVED)
+def test_what_has_moved_is_posed_as_if_anew(configs: Path, name: str) -> None:
+    """Whatever number it is, and also after another that has moved before."""
+    scene = replace(load_scene(configs / f"{name}.yaml"), continuation=None)
+    first = last = Posed.of(scene)
+    for path in paths_of(scene):
+        other = with_value(scene, path, 1.01 * value_at(scene, path) + 0.001)
+        expected = Posed.of(other)
+        last = last.moved(other)
+        for found in (first.moved(other), last):
+            assert found.given is other
+            assert found.theta == expected.theta, path
+            assert list(found.theta) == list(expected.theta), path
+            assert found.structure == expected.structure, path
+            assert [c.theta() for c in found.conditions] == [c.theta() for c in expected.conditions]
+            assert found.units == expected.units
+            np.testing.assert_array_equal(found.values, expected.values)
+
+
+def test_where_the_law_moves_the_ends_stay(configs: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    scene = load_scene(configs / "moebius_regularized.yaml")
+    first, calls = Posed.of(scene), counted(monkeypatch)
+    for epsilon in (0.1, 0.2):
+        other = with_value(scene, "law.epsilon", epsilon)
+        assert first.moved(other).conditions is first.conditions
+    first.moved(with_value(scene, "boundary.end.position.y", 0.1))
+    assert len(calls) == 1
 
 
 STRIP = """

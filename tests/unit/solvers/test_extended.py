@@ -20,7 +20,8 @@ from scipy.optimize import brentq
 
 from ribbonopt.problem import BoundaryValueProblem, Phase
 from ribbonopt.solvers import NewtonSolver, Status
-from ribbonopt.solvers.extended import ExtendedSystem, Line, Local, ScalarCondition, local
+from ribbonopt.solvers.extended import ExtendedSystem, Line, ScalarCondition
+from ribbonopt.solvers.local import Local, local
 from ribbonopt.transcription import NLP, CollocationMethod, Mesh, MultipleShooting
 
 Array = np.ndarray
@@ -105,7 +106,7 @@ def dense_jacobian(nlp: NLP, w: Array, p: Array, slope: Array, row: Array) -> Ar
     """Return the extended Jacobian from whole derivatives; `slope` is dp/dl."""
     J, by_parameters = (np.array(part) for part in whole_derivatives(nlp)(w, p))
     last = np.zeros(len(w) + 1)
-    last[nlp.blocks.layout.condition_columns()] = row[:-1]
+    last[nlp.blocks.layout.condition_columns] = row[:-1]
     last[-1] = row[-1]
     return np.vstack([np.column_stack([J, by_parameters @ slope]), last])
 
@@ -351,7 +352,7 @@ def test_several_positions_are_those_of_the_dense_jacobian(
 
     J, by_parameters = (np.array(part) for part in whole_derivatives(nlp)(w, p))
     last = np.zeros((count, len(z)))
-    columns = [*nlp.blocks.layout.condition_columns(), *range(len(w), len(z))]
+    columns = [*nlp.blocks.layout.condition_columns, *range(len(w), len(z))]
     last[:, columns] = [*(condition.row(z) for condition in further), rows[-1]]
     dense = np.vstack([np.column_stack([J, by_parameters @ slopes]), last])
     off = [*(condition.value(z) for condition in further), rows[-1] @ line.reduced(z) - 0.7]

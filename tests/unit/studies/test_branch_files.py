@@ -194,8 +194,8 @@ def test_points_are_found_by_stage_branch_and_kind(followed: dict[str, Followed]
         found = history.points(stage, branch, kind)
         assert [point.number for point in found] == expected
         assert expected
-    assert history.points(2, 0, POINT) == []
-    assert history.points(1, 0, BRANCH_POINT) == []
+    assert list(history.points(2, 0, POINT)) == []
+    assert list(history.points(1, 0, BRANCH_POINT)) == []
     assert sorted(history.endings) == [(0, 0), (0, 1), (0, 2), (1, 0)]
     assert all(ending.reached for ending in history.endings.values())
 

@@ -85,6 +85,9 @@ class FoldLocus:
         p = self.line.parameters(*unknowns[-2:])
         return system.factor(system.linearize(unknowns, p)[1], p)
 
+    def heading(self, solution: None, unknowns: Array, ahead: Array) -> LocusFactors:
+        return self.linearise(solution, unknowns, ahead)
+
     def correct_at(self, origin: None, guess: Array) -> Trial[None]:
         return self._solved(guess, lambda z: z[-1] - guess[-1])
 

@@ -16,8 +16,9 @@ import numpy as np
 
 from ribbonopt.arrays import Array
 
+from .linearised import Linearised
 from .points import Point, S
-from .protocol import Equations, Linearised
+from .protocol import Equations
 from .tangents import near
 
 OFFSETS = (-3, -2, -1, 1, 2, 3)  # of the arclengths that are read, in units of the spacing

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterable, Iterator, Mapping
 from dataclasses import dataclass, field, replace
 from typing import Generic, Protocol
 
@@ -27,8 +27,8 @@ class History(Protocol[S]):
 
     endings: dict[Key, Ending]
 
-    def points(self, stage: int, branch: int, kind: str) -> list[Point[S]]:
-        """Points of a kind, in order."""
+    def points(self, stage: int, branch: int, kind: str) -> Iterable[Point[S]]:
+        """Points of a kind, in order, each made when it is asked for."""
 
 
 @dataclass(eq=False)
@@ -37,7 +37,7 @@ class Nothing(Generic[S]):
 
     endings: dict[Key, Ending] = field(default_factory=dict)
 
-    def points(self, stage: int, branch: int, kind: str) -> list[Point[S]]:
+    def points(self, stage: int, branch: int, kind: str) -> Iterable[Point[S]]:
         """Return no points."""
         return []
 

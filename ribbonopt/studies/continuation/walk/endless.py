@@ -29,9 +29,10 @@ def comes_home(atlas: Atlas[S], trace: Trace, a: Point[S], b: Point[S]) -> bool:
 
 def is_home(atlas: Atlas[S], trace: Trace, last: Point[S]) -> bool:
     """Whether the last point of a branch is its first again."""
-    metric, places = atlas.metric(last), trace.places
+    places = trace.places
     if len(places) <= 3:
         return False
+    metric = atlas.metric(last)
     away, first_step = places[-1] - places[0], metric.length(places[1] - places[0])
     beyond = homeward(atlas, trace, last) / metric.length(trace.headings[0])
     return metric.length(away) < SAME and abs(beyond) < NEAR * first_step
@@ -39,8 +40,9 @@ def is_home(atlas: Atlas[S], trace: Trace, last: Point[S]) -> bool:
 
 def is_idle(atlas: Atlas[S], trace: Trace, last: Point[S]) -> bool:
     """Whether the last points of a branch have led nowhere."""
-    metric, places = atlas.metric(last), trace.places
+    places = trace.places
     if len(places) <= IDLE_POINTS:
         return False
+    metric = atlas.metric(last)
     first_step, latest = metric.length(places[1] - places[0]), places[-IDLE_POINTS:]
     return max(metric.length(place - latest[0]) for place in latest) < IDLE * first_step

@@ -17,6 +17,7 @@ from typing import Any, Generic, Protocol
 from ribbonopt.arrays import Array
 
 from .departure import Departure
+from .linearised import Heading, Linearised
 from .metric import Metric
 from .points import Point, S
 
@@ -72,32 +73,6 @@ class Passage(Generic[S]):
     located: Point[S] | None = None
 
 
-class Linearised(Protocol):
-    """The equations linearised at a solution, bordered by a row along the curve."""
-
-    @property
-    def direction(self) -> Array:
-        """Tangent (n + k,), of any length: the bordered matrix makes (0 .. 0, 1) of it."""
-
-    @property
-    def sign(self) -> float:
-        """Sign of the bordered determinant, which vanishes at branch points, not at folds.
-
-        Comparable for rows that point the same way along the curve, in any layout; 0 where the
-        equations have no derivative, so that it tells nothing.
-        """
-
-    @property
-    def log(self) -> float:
-        """Logarithm of the absolute value of the determinant."""
-
-    def kernel(self) -> Array:
-        """Solve (n + k,) for a right-hand side with a share of every equation, none of the row.
-
-        Next to a branch point that is the null direction, times much.
-        """
-
-
 class Equations(Protocol[S]):
     """The equations of one curve. A layout is what the numbers of a solution's vector stand for."""
 
@@ -115,6 +90,12 @@ class Equations(Protocol[S]):
         """Linearise with the row `metric.dual(ahead)`; LinAlgError where that is singular.
 
         `ahead` (m,) are coordinates of any direction along the curve.
+        """
+
+    def heading(self, solution: S, unknowns: Array, ahead: Array) -> Heading:
+        """Return the same as `linearise` tells of where the curve goes, at what may be a point.
+
+        It need be no better than the solution is exact. LinAlgError as there.
         """
 
     def correct_at(self, origin: S, guess: Array) -> Trial[S]:

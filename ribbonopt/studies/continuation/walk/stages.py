@@ -90,8 +90,8 @@ class _Ways(Generic[S]):
         self, stage: WalkStage[S], number: int, register: Register, history: History[S]
     ) -> None:
         """Solve where it begins, unless that is known."""
-        known = history.points(number, 0, POINT)
-        begin = (known[0].solution, known[0].unknowns) if known else stage.first()
+        known = next(iter(history.points(number, 0, POINT)), None)
+        begin = (known.solution, known.unknowns) if known else stage.first()
         self.stage, self.solution, self.unknowns = stage, *begin
         self.equations = stage.equations(self.solution)
         self.common = Common(number, register, stage.records, history, Atlas(self.equations))

@@ -20,7 +20,7 @@ from .points import FOLD, POINT, Point, S
 from .protocol import Equations, Passage, Range, Trial
 from .special import Special, special_points
 from .strides import Prediction, Stride
-from .tangents import moved, near, renewed
+from .tangents import headed, moved, renewed
 
 NATURAL = 0.1  # least share of the position in the tangent for natural continuation
 GROWTH, SHRINK = 2.0, 0.25  # of a step, after success and failure
@@ -186,14 +186,14 @@ class Stepper(Generic[S]):
         equations, solution = self.equations, trial.solution
         left = leaving(equations, point, prediction.unknowns)
         there = equations.reduced(solution, trial.unknowns)
-        found, tangent = near(equations, solution, trial.unknowns, there - left.here)
+        sign, tangent = headed(equations, solution, trial.unknowns, there - left.here)
         course = joined(left, there, equations.reduced(solution, tangent), equations.metric)
         following = replace(
             point,
             solution=solution,
             unknowns=trial.unknowns,
             tangent=tangent,
-            sign=found.sign,
+            sign=sign,
             step=abs(prediction.arc) * float(np.clip(course.growth, SHRINK, GROWTH)),
         )
         return following, course

@@ -6,8 +6,9 @@ from dataclasses import replace
 
 from ribbonopt.arrays import Array
 
+from .linearised import Heading, Linearised
 from .points import Point, S
-from .protocol import Equations, Linearised, Trial
+from .protocol import Equations, Trial
 
 
 def near(
@@ -17,13 +18,24 @@ def near(
 
     `ahead` (m,) are coordinates of any direction along the curve.
     """
-    metric = equations.metric
     found = equations.linearise(solution, unknowns, ahead)
-    direction = found.direction
+    return found, _unit(equations, solution, found, ahead)
+
+
+def headed(
+    equations: Equations[S], solution: S, unknowns: Array, ahead: Array
+) -> tuple[float, Array]:
+    """Return the sign and the tangent (n + k,) of what may become a point; else as `near`."""
+    found = equations.heading(solution, unknowns, ahead)
+    return found.sign, _unit(equations, solution, found, ahead)
+
+
+def _unit(equations: Equations[S], solution: S, found: Heading, ahead: Array) -> Array:
+    """Return the tangent (n + k,) of unit arclength that points ahead."""
+    metric, direction = equations.metric, found.direction
     y = equations.reduced(solution, direction)
-    if metric.product(y, ahead) < 0:
-        direction, y = -direction, -y
-    return found, direction / metric.length(y)
+    length = metric.length(y)
+    return direction / (length if metric.product(y, ahead) >= 0 else -length)
 
 
 def renewed(equations: Equations[S], point: Point[S]) -> Point[S]:
