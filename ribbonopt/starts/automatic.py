@@ -29,7 +29,7 @@ from ribbonopt.mechanics.laws.smooth import (
     sharpened,
     sharpness,
 )
-from ribbonopt.problem import Posed
+from ribbonopt.problem import Posed, Ribbon
 from ribbonopt.scene import Law, Variational
 from ribbonopt.solution.solution import Solution
 
@@ -76,7 +76,7 @@ class Automatic:
         last = slice(-1, None) if in_family(posed.scene.law) else slice(None)
         straight: list[Solution] = []
         met: list[float] = []
-        for number, start in enumerate([shape] if shape else shapes_for(posed)):
+        for number, start in enumerate([shape] if shape else shapes_for(posed, self._spatial)):
             if number:
                 what = "shape that fits the ends" if number == 1 else "shapes that fit the ends"
                 first = f"the first {'' if number == 1 else f'{number} '}{what} led nowhere"
@@ -109,6 +109,11 @@ class Automatic:
         if type(law) not in self._homotopies:
             self._homotopies[type(law)] = Structure.of(smooth_of(self.posed, law))
         return self._homotopies[type(law)]
+
+    @cached_property
+    def _spatial(self) -> Ribbon:
+        """Mechanics in space, by which shapes find their ends."""
+        return Ribbon.of(self.posed.under(states="reduced"))
 
     @cached_property
     def _piece(self) -> Automatic | None:

@@ -1,7 +1,8 @@
 """Least energy of a smooth law: the first solve, which needs to know nothing of loads.
 
 IPOPT on a coarse mesh, from a shape that need not even be a ribbon; force and moment follow from
-the costates. What is prescribed of loads at the ends is left out here, unless a dead force has a
+the costates. Two stages an interval are enough for a first equilibrium, at half the price of three
+(200 random clamps: as many found, of the same energies). What is prescribed of loads at the ends is left out here, unless a dead force has a
 potential; so are loads along the ribbon that have none.
 """
 
@@ -12,7 +13,7 @@ from dataclasses import replace
 from ribbonopt.problem import Posed
 from ribbonopt.scene import Collocation, Ipopt, Law
 
-MESH = Collocation(scheme="gauss", degree=3, intervals=16)
+MESH = Collocation(scheme="gauss", degree=2, intervals=16)
 SOLVER = Ipopt(tolerance=1e-6, max_iterations=120)
 
 
