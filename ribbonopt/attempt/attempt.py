@@ -81,16 +81,31 @@ class Attempt:
         quick: bool = False,
         check: bool = True,
         factors: Factors | None = None,
+        most: int | None = None,
+        loose: float = 0.0,
     ) -> bool:
-        """Solve from unknowns w (nw,); see `run`. Newton's method may begin with given factors."""
-        solver = self.solver
+        """Solve from unknowns w (nw,); see `run`.
+
+        Newton's method may begin with given `factors`, take `most` iterations, and stop at a last
+        step that is `loose`, relative.
+        """
+        solver, enough = self.solver, max(self.enough, loose)
         if quick and isinstance(solver, AutoSolver) and self.nlp.square:
             solver = solver.newton
-        if factors is not None and isinstance(solver, NewtonSolver):
-            report = solver.solve(w, self.p, enough=self.enough, factors=factors)
+        if isinstance(solver, NewtonSolver):
+            report = solver.solve(w, self.p, enough=enough, factors=factors, most=most)
         else:
             report = solver.solve(w, self.p, enough=self.enough)
         return self.take(report, check=check)
+
+    def run_slowly(self, guess: Guess, *, check: bool = True) -> bool:
+        """Solve by what a solver has beside Newton's method, which led nowhere from a guess.
+
+        False at once where it has nothing else.
+        """
+        if not (isinstance(self.solver, AutoSolver) and self.nlp.square):
+            return False
+        return self.take(self.solver.ipopt.solve(self.unknowns(guess), self.p), check=check)
 
     def take(self, report: SolveReport, *, check: bool = True) -> bool:
         """Take what a solver found; return whether there is a verified solution now."""

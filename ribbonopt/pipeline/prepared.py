@@ -163,15 +163,13 @@ class Prepared:
         if own is not None:
             step = "guess: given" if guess else f"guess: {words(posed.scene.guess)}"
             search.ledger.note(step, time.perf_counter() - started)
-        led = done = own is not None and search.run(own, quick=quick)
-        if not led and own is not None and fallback:
-            what = "the guess given" if guess else f"the guess ({words(posed.scene.guess)})"
-            search.ledger.give_up(f"{what} led nowhere and was given up for the automatic start")
+        led = done = own is not None and search.run(own, quick=quick or fallback)
         if not led and (own is None or fallback):
-            from .nothing import from_nothing  # IPOPT, which many scenes do without
+            from .nothing import from_nothing, instead_of  # IPOPT, which many scenes do without
 
-            guesses = partial(self.automatic.guesses, posed, search.ledger)
-            search = from_nothing(search, guesses, prepare)
+            what = "the guess given" if guess else f"the guess ({words(posed.scene.guess)})"
+            after = partial(instead_of, what, None if quick else own) if own else from_nothing
+            search = after(search, partial(self.automatic.guesses, posed, search.ledger), prepare)
             done = search.settled
         return self._with_costs(search, started, done)
 

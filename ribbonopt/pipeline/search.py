@@ -14,6 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ribbonopt.arrays import Array
 from ribbonopt.checks.arcs import (
     MIXTURE,
     Arcs,
@@ -33,10 +34,13 @@ from ribbonopt.solution.solution import Solution
 from ribbonopt.transcription import Mesh
 
 from .intervals import intervals_for
+from .poles import toward_poles
+from .shown import phases_shown
 from .tried import Tried, bluntness
 
 # Elements beside the end of a phase where strains fade away: to a millionth of one.
 LEVELS, RATIO = 7, 0.15
+FEW = 25  # iterations in phases that a guess shows before anything is solved
 COARSER = 3  # intervals of starts, of degree 3, to one of a scene
 
 
@@ -61,21 +65,59 @@ class Search(Tried):
             # From shapes of many turns IPOPT takes long, and leads nowhere.
             self.wound = quick = True
             guess = guess.balanced() if isinstance(guess, ShapeGuess) else guess
-        if not self.plain.run(guess, quick=quick, check=not self.phases_help):
+        w, signs = self.plain.unknowns(guess), not isinstance(guess, Solution) and self.has_signs
+        arcs = phases_shown(self.plain, w) if signs else None
+        if arcs is not None and self.run_in(arcs, self.plain.restored(w), most=FEW):
+            return True
+        if not self.plain.run_from(w, quick=True, check=not self.phases_help):
+            return (signs and self._on_one_side(w)) or (not quick and self.run_slowly(guess))
+        return self._in_shown_phases()
+
+    def run_slowly(self, guess: Guess) -> bool:
+        """Try a guess from which Newton's method led nowhere by what the solver has beside that."""
+        if intervals_for(guess, self.posed.scene) is not None:
             return False
+        self._take(None)
+        led = self.plain.run_slowly(guess, check=not self.phases_help)
+        return led and self._in_shown_phases()
+
+    def _in_shown_phases(self) -> bool:
+        """Try the phases of what was found without any; whether there is a solution now."""
         found = self._flattened(self.plain.best)
         if found is not None and self._in_given_phases(found):
             return True
         return self.plain.check() and found is not None and not self.jumps(found)
 
-    def run_in(self, arcs: Arcs, source: Guess, least: int = 0) -> bool:
-        """Try a guess in phases, on `least` intervals or more; whether that succeeds."""
+    def _on_one_side(self, w: Array) -> bool:
+        """Try unknowns w (nw,) on one side of the law's switch; whether that succeeds.
+
+        What comes out solves the law itself if it keeps to that side, as verification tells.
+        """
+        attempt = self.beside(w)
+        if not attempt.run(self.plain.restored(w), quick=True) or attempt.best is None:
+            return False
+        if not self.plain.run(attempt.best, quick=True):
+            self._kept(attempt)
+        return True
+
+    def run_in(self, arcs: Arcs, source: Guess, least: int = 0, most: int | None = None) -> bool:
+        """Try a guess in phases, on `least` intervals or more; whether that succeeds.
+
+        In `most` iterations, where it may be another guess that is better.
+        """
         if self.posed.stations:
             arcs = cut_at(arcs, self.posed.places)
         structure = self.structure.in_phases(arcs.kinds)
-        mesh = structure.mesh(arcs.switches, least, self._layers_of(source, arcs))
+        layers = self._layers_of(source, arcs)
+        mesh = structure.mesh(arcs.switches, least, layers)
         attempt = structure.attempt(self.posed, self.ledger, mesh, arcs.switches)
-        done = self._kept(attempt).run(source, quick=True)
+        w = attempt.unknowns(source)
+        near = self.posed.scene.tolerance is not None and layers is None
+        graded = toward_poles(attempt, w) if near else None
+        if graded is not None:
+            attempt = structure.attempt(self.posed, self.ledger, graded, arcs.switches)
+            w = attempt.unknowns(source)
+        done = self._kept(attempt).run_from(w, quick=True, most=most)
         found = attempt.best
         if found is None or not found.status.converged:
             return False
@@ -152,7 +194,7 @@ class Search(Tried):
                 return True
             first = first or guess
         # All that was spared to be quick.
-        return first is not None and not self.needs_phases and self.run(first)
+        return first is not None and not self.needs_phases and self.run_slowly(first)
 
     def _in_given_phases(self, source: Solution) -> bool:
         """Try the phases that a solution shows or the scene names; whether that succeeds."""

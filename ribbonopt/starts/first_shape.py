@@ -33,8 +33,8 @@ def shapes_for(
 ) -> Iterator[Shape]:
     """Yield shapes that fit the ends of a scene, the likeliest first.
 
-    `ribbon` are mechanics in space of a scene of this structure, built anew if not given; `wound` as
-    often as the ends say, where they say it; else as if they did not.
+    `ribbon` are mechanics in space of a scene of this structure, built anew if not given; `wound`
+    as often as the ends say, where they say it; else as if they did not.
     """
     loop = loop_of(posed.scene)
     if loop is not None:
