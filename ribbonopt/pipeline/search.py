@@ -77,8 +77,10 @@ class Search(Tried):
         """Try a guess from which Newton's method led nowhere by what the solver has beside that."""
         if intervals_for(guess, self.posed.scene) is not None:
             return False
-        self._take(None)
-        led = self.plain.run_slowly(guess, check=not self.phases_help)
+        attempt, before = self.structure.attempt(self.posed, self.ledger), self.plain.best
+        led = attempt.run_slowly(guess, check=not self.phases_help)
+        if led or (attempt.best is not None and not (before and before.status.converged)):
+            self.plain = self._kept(attempt)
         return led and self._in_shown_phases()
 
     def _in_shown_phases(self) -> bool:
@@ -108,7 +110,7 @@ class Search(Tried):
         if self.posed.stations:
             arcs = cut_at(arcs, self.posed.places)
         structure = self.structure.in_phases(arcs.kinds)
-        layers = self._layers_of(source, arcs)
+        layers = self.layers_of(source, arcs)
         mesh = structure.mesh(arcs.switches, least, layers)
         attempt = structure.attempt(self.posed, self.ledger, mesh, arcs.switches)
         w = attempt.unknowns(source)
@@ -124,7 +126,7 @@ class Search(Tried):
         fewer = without_empty(found)
         if fewer is not None and self.run_in(fewer, found, least):
             return True
-        if done and self._leaps_nowhere(found) and self.plain.run(found, quick=True):
+        if done and self.leaps_nowhere(found) and self.plain.run(found, quick=True):
             self._kept(self.plain)
             return True
         if done and self.structure.ribbon.law.fades:
@@ -214,14 +216,6 @@ class Search(Tried):
         found = attempt.best
         return arcs, source if found is None or not found.status.converged else found
 
-    def _leaps_nowhere(self, found: Solution) -> bool:
-        """Whether phases end where the law asked for leaps nowhere, as those of a smooth law may.
-
-        A mixture has m2 = 0, and shows no sign of it.
-        """
-        several = len(set(found.sheets)) > 1 and 0 not in found.sheets
-        return several and self.needs_phases and not self.changes_sign(found)
-
     def _flattened(self, found: Solution | None) -> Solution | None:
         """Return what lies in a plane but for a little within it, if there it is a solution."""
         if found is None or not self.needs_phases or not nearly_flat(found):
@@ -231,10 +225,3 @@ class Search(Tried):
             if not self.jumps(attempt.best):
                 self.plain = self._kept(attempt)
         return self.plain.best
-
-    def _layers_of(self, source: Guess, arcs: Arcs) -> Mesh | None:
-        """Mesh of a source that was graded to layers, where phases need that too."""
-        if not (self.layered and isinstance(source, Solution)) or len(arcs.kinds) == 1:
-            return None
-        graded = source.mesh.graded and not source.sheets
-        return source.mesh.joined(source.trajectory.ends[1:-1]) if graded else None

@@ -150,9 +150,9 @@ class Automatic:
         # Uneven rods snap on their way, from one equilibrium to the next.
         for _ in range(1 + (AGAIN if isinstance(law, Variational) else SNAPS)):
             quick = True
-            least = self._least(posed, law, start, ledger, quick=True)
+            least = self._least(posed, law, start, ledger, True)
             if not least.status.converged:
-                quick, least = False, self._least(posed, law, start, ledger, quick=False)
+                quick, least = False, self._least(posed, law, start, ledger, False)
             if not least.status.converged:
                 break
             if not points and not isinstance(law, Variational) and in_family(law):
@@ -161,7 +161,7 @@ class Automatic:
                 met.append(least.energy)
             followed = self._follow(posed, law, least, last, ledger)
             if quick and not followed.points:  # on few elements it may be too far from any
-                least = self._least(posed, law, least, ledger, quick=False)
+                least = self._least(posed, law, least, ledger, False)
                 followed = self._follow(posed, law, least, last, ledger)
             points += followed.points
             if followed.complete or not followed.points or not in_family(law):
@@ -182,10 +182,8 @@ class Automatic:
         last = sharpness(posed.scene.law, self._last)
         return list(self._follow(posed, rod, ShapeGuess(chord), last, ledger).points)
 
-    def _least(
-        self, posed: Posed, law: Law, start: Guess, ledger: Ledger, *, quick: bool
-    ) -> Solution:
-        """Least energy from a guess; worth nothing unless converged."""
+    def _least(self, posed: Posed, law: Law, start: Guess, ledger: Ledger, quick: bool) -> Solution:
+        """Least energy from a guess, on few elements if `quick`; worth nothing unless converged."""
         special = least_energy_of(closed_posed(posed), law, quick=quick)
         attempt = self._energy(law, quick).attempt(special)
         attempt.run(start, check=False)

@@ -20,8 +20,8 @@ QUICK_MESH = Collocation(scheme="gauss", degree=2, intervals=12)
 QUICK_SOLVER = Ipopt(tolerance=1e-6, max_iterations=60)
 
 
-def least_energy_of(posed: Posed, law: Law, *, quick: bool) -> Posed:
-    """Return a scene under a law with a smooth energy, as this solve wants it."""
+def least_energy_of(posed: Posed, law: Law, *, quick: bool = False) -> Posed:
+    """Return a scene under a law with a smooth energy, as this solve wants it, `quick` or not."""
     mesh, solver = (QUICK_MESH, QUICK_SOLVER) if quick else (MESH, SOLVER)
     settings = {"formulation": "energy", "states": "reduced", "solver": solver}
     found = posed.under(law=law, transcription=mesh, **settings)
