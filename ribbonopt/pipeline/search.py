@@ -35,7 +35,7 @@ from ribbonopt.transcription import Mesh
 
 from .intervals import intervals_for
 from .poles import toward_poles
-from .shown import phases_shown
+from .shown import phases_shown, side_shown
 from .tried import Tried, bluntness
 
 # Elements beside the end of a phase where strains fade away: to a millionth of one.
@@ -91,12 +91,17 @@ class Search(Tried):
         return self.plain.check() and found is not None and not self.jumps(found)
 
     def _on_one_side(self, w: Array) -> bool:
-        """Try unknowns w (nw,) on one side of the law's switch; whether that succeeds.
+        """Try unknowns w (nw,) on the side of the law's switch on which they are, but for noise.
 
-        What comes out solves the law itself if it keeps to that side, as verification tells.
+        Newton's method sees no kink there. What comes out solves the law itself if it keeps to that
+        side, as verification tells.
         """
-        attempt = self.beside(w)
-        if not attempt.run(self.plain.restored(w), quick=True) or attempt.best is None:
+        side, source = side_shown(self.plain, w), self.plain.restored(w)
+        if side is None:
+            return False
+        mesh = Mesh((self.plain.nlp.blocks.widths(self.plain.p),))
+        attempt = self.structure.in_phases((side,)).attempt(self.posed, self.ledger, mesh)
+        if not attempt.run(source, quick=True) or attempt.best is None:
             return False
         if not self.plain.run(attempt.best, quick=True):
             self._kept(attempt)

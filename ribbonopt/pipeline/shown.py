@@ -1,7 +1,9 @@
 """What a guess shows before anything is solved: on which sides of the law's switch the ribbon is.
 
 A guess that crosses the switch is tried in phases at once: Newton's method sees a smooth law there,
-and nothing is solved without phases that would be solved again in them.
+and nothing is solved without phases that would be solved again in them. Noise on a guess makes it
+cross everywhere, and Newton's method meet a kink at every step; averages along the ribbon tell the
+side all the same.
 """
 
 from __future__ import annotations
@@ -16,37 +18,50 @@ from ribbonopt.guess.unknowns import places_of
 from ribbonopt.problem import Ribbon
 from ribbonopt.transcription.buffered import Mapped
 
-MOST = 4  # phases of a guess: more of them are noise
+WINDOW = 0.1  # of the length, over which values are averaged: shorter arcs may be noise
+CLEAR = 0.5  # share of the averages' size that is left of them in all, where one side prevails
 WHOLE = np.array([0.0, 1.0])
 
 
-def sides_along(attempt: Attempt, w: Array) -> Array:
-    """Value (k,) of the law's switch at nodes and stages, in order, of unknowns w (nw,).
+def phases_shown(attempt: Attempt, w: Array) -> Arcs | None:
+    """Return the arcs that unknowns w (nw,) show beyond doubt, if there are several; else None.
 
-    Of an attempt without phases; Dw = L = 1.
+    Of an attempt without phases. They are beyond doubt if averages along the ribbon show the same.
     """
+    fractions, values = _sides_along(attempt, w)
+    if not (values.min() < 0 < values.max()):
+        return None
+    shown, signs = sign_changes(attempt.restored(w)), np.sign(_averages(fractions, values))
+    several = 1 < len(shown.kinds) == 1 + np.count_nonzero(signs[1:] != signs[:-1])
+    return shown if several else None
+
+
+def side_shown(attempt: Attempt, w: Array) -> int | None:
+    """Return the one side on which unknowns w (nw,) are behind their noise; None if on both."""
+    means = _averages(*_sides_along(attempt, w))
+    mean = float(means.mean())
+    return int(np.sign(mean)) if abs(mean) > CLEAR * np.abs(means).mean() else None
+
+
+def _averages(fractions: Array, values: Array) -> Array:
+    """Averages (k,) of values (k,) over a window that moves along the ribbon."""
+    steps = np.diff(fractions)
+    sums = np.append(0.0, np.cumsum(steps * (values[1:] + values[:-1]) / 2))
+    at = np.linspace(0.0, 1 - WINDOW, len(values))
+    before, after = (np.interp(x, fractions, sums) for x in (at, at + WINDOW))
+    return np.asarray((after - before) / WINDOW)
+
+
+def _sides_along(attempt: Attempt, w: Array) -> tuple[Array, Array]:
+    """Fractions (k,) of nodes and stages, in order, and values (k,) of the law's switch there."""
     ribbon, layout, blocks = attempt.ribbon, attempt.nlp.layout, attempt.nlp.blocks
     nodes, stages, constants = layout.unpack(w)
     inside = np.concatenate([nodes[:-1, None], stages[..., : layout.nx]], axis=1)
     states = np.concatenate([inside.reshape(-1, layout.nx), nodes[-1:]])
     start, end = attempt.posed.scene.interval
-    s = start + (end - start) * places_of(blocks, attempt.p, WHOLE)
-    (values,) = ribbon.kept(_sides)(states, constants, layout.theta(attempt.p), s)
-    return values
-
-
-def phases_shown(attempt: Attempt, w: Array) -> Arcs | None:
-    """Return the arcs that unknowns w (nw,) show; None where there is one, or too many of them."""
-    values = sides_along(attempt, w)
-    if not (values.min() < 0 < values.max()):
-        return None
-    arcs = sign_changes(attempt.restored(w))
-    return arcs if 1 < len(arcs.kinds) <= MOST else None
-
-
-def side_shown(attempt: Attempt, w: Array) -> int:
-    """Return the side on which most of the ribbon is, by unknowns w (nw,) that may be noisy."""
-    return 1 if np.sign(sides_along(attempt, w)).sum() >= 0 else -1
+    fractions = places_of(blocks, attempt.p, WHOLE)
+    theta, s = layout.theta(attempt.p), start + (end - start) * fractions
+    return fractions, ribbon.kept(_sides)(states, constants, theta, s)[0]
 
 
 def _sides(ribbon: Ribbon) -> Mapped:

@@ -19,8 +19,6 @@ from ribbonopt.problem import Posed
 from ribbonopt.solution.solution import Solution
 from ribbonopt.transcription import Mesh
 
-from .shown import side_shown
-
 LABELLED = 1e-3  # delta of the sharpest smooth law that is shown in place of another
 
 
@@ -129,15 +127,6 @@ class Tried:
     def has_signs(self) -> bool:
         """Whether sides of the switch in a guess may tell the phases of a solution."""
         return self.phases_help and not self.posed.stations
-
-    def beside(self, w: Array) -> Attempt:
-        """Return the means to solve on the side of the switch on which most of w (nw,) is.
-
-        Newton's method sees no kink there, which noise on a guess makes it meet everywhere.
-        """
-        structure = self.structure.in_phases((side_shown(self.plain, w),))
-        mesh = Mesh((self.plain.nlp.blocks.widths(self.plain.p),))
-        return structure.attempt(self.posed, self.ledger, mesh)
 
     def on_mesh(
         self, sheets: tuple[int, ...], mesh: Mesh, switches: Array | None = None
