@@ -14,7 +14,7 @@ from ribbonopt.solution.solution import Solution
 from ribbonopt.solvers import SolveReport, Status
 from ribbonopt.solvers.auto import AutoSolver
 from ribbonopt.solvers.newton import NewtonSolver
-from ribbonopt.transcription import NLP
+from ribbonopt.transcription import NLP, Mesh
 
 from .ledger import Ledger
 from .resistance import where_it_resists
@@ -128,6 +128,12 @@ class Attempt:
         if self.best is not None and self.best.verified and self._unchecked:
             self.best, self._unchecked = verified(self.best, self.ribbon), False
         return self.best is not None and self.best.verified
+
+    @property
+    def mesh(self) -> Mesh:
+        """The mesh that this is on."""
+        widths = self.nlp.blocks.widths(self.p)
+        return Mesh(tuple(widths[part] for part in self.nlp.layout.phase_slices))
 
     @property
     def enough(self) -> float:

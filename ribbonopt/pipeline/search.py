@@ -29,18 +29,18 @@ from ribbonopt.checks.arcs import (
 )
 from ribbonopt.guess import Guess, ShapeGuess
 from ribbonopt.guess.balanced import Balanced
-from ribbonopt.guess.flat import Flattened, nearly_flat
 from ribbonopt.solution.solution import Solution
 from ribbonopt.transcription import Mesh
 
 from .intervals import intervals_for
 from .poles import toward_poles
-from .shown import phases_shown, side_shown
+from .shown import crosses, phases_shown, side_shown
 from .tried import Tried, bluntness
 
 # Elements beside the end of a phase where strains fade away: to a millionth of one.
 LEVELS, RATIO = 7, 0.15
 FEW = 25  # iterations in phases that a guess shows before anything is solved
+SETTLED = 1e-3  # last step of Newton's method, relative, by which signs of m2 are settled
 COARSER = 3  # intervals of starts, of degree 3, to one of a scene
 
 
@@ -66,10 +66,22 @@ class Search(Tried):
             self.wound = quick = True
             guess = guess.balanced() if isinstance(guess, ShapeGuess) else guess
         w, signs = self.plain.unknowns(guess), not isinstance(guess, Solution) and self.has_signs
-        arcs = phases_shown(self.plain, w) if signs else None
-        if arcs is not None and self.run_in(arcs, self.plain.restored(w), most=FEW):
-            return True
-        if not self.plain.run_from(w, quick=True, check=not self.phases_help):
+        led, factors = True, None
+        if signs and crosses(self.plain, w):
+            arcs = phases_shown(self.plain, w)
+            if arcs is not None and self.run_in(arcs, self.plain.restored(w), most=FEW):
+                return True
+            # Without phases until they show, no further: the rest would be solved again in them.
+            first = self.structure.attempt(self.posed, self.ledger, self.plain.mesh)
+            led = first.run_from(w, quick=True, check=False, loose=SETTLED)
+            if led and first.best is not None:
+                if self._in_given_phases(first.best):
+                    return True
+                w, factors = first.best.dense.w, first.factors
+            else:
+                self.plain = self._kept(first)
+        check = not self.phases_help
+        if not (led and self.plain.run_from(w, quick=True, check=check, factors=factors)):
             return (signs and self._on_one_side(w)) or (not quick and self.run_slowly(guess))
         return self._in_shown_phases()
 
@@ -85,7 +97,7 @@ class Search(Tried):
 
     def _in_shown_phases(self) -> bool:
         """Try the phases of what was found without any; whether there is a solution now."""
-        found = self._flattened(self.plain.best)
+        found = self.flattened(self.plain.best)
         if found is not None and self._in_given_phases(found):
             return True
         return self.plain.check() and found is not None and not self.jumps(found)
@@ -99,8 +111,9 @@ class Search(Tried):
         side, source = side_shown(self.plain, w), self.plain.restored(w)
         if side is None:
             return False
-        mesh = Mesh((self.plain.nlp.blocks.widths(self.plain.p),))
-        attempt = self.structure.in_phases((side,)).attempt(self.posed, self.ledger, mesh)
+        attempt = self.structure.in_phases((side,)).attempt(
+            self.posed, self.ledger, self.plain.mesh
+        )
         if not attempt.run(source, quick=True) or attempt.best is None:
             return False
         if not self.plain.run(attempt.best, quick=True):
@@ -220,13 +233,3 @@ class Search(Tried):
         attempt.run(source, quick=True, check=False)
         found = attempt.best
         return arcs, source if found is None or not found.status.converged else found
-
-    def _flattened(self, found: Solution | None) -> Solution | None:
-        """Return what lies in a plane but for a little within it, if there it is a solution."""
-        if found is None or not self.needs_phases or not nearly_flat(found):
-            return found
-        attempt = self.structure.attempt(self.posed, self.ledger)
-        if attempt.run(Flattened(found), quick=True) and attempt.best is not None:
-            if not self.jumps(attempt.best):
-                self.plain = self._kept(attempt)
-        return self.plain.best

@@ -23,15 +23,19 @@ CLEAR = 0.5  # share of the averages' size that is left of them in all, where on
 WHOLE = np.array([0.0, 1.0])
 
 
+def crosses(attempt: Attempt, w: Array) -> bool:
+    """Whether unknowns w (nw,) of an attempt without phases are on both sides of the switch."""
+    _, values = _sides_along(attempt, w)
+    return bool(values.min() < 0 < values.max())
+
+
 def phases_shown(attempt: Attempt, w: Array) -> Arcs | None:
     """Return the arcs that unknowns w (nw,) show beyond doubt, if there are several; else None.
 
-    Of an attempt without phases. They are beyond doubt if averages along the ribbon show the same.
+    They are if averages along the ribbon show the same.
     """
-    fractions, values = _sides_along(attempt, w)
-    if not (values.min() < 0 < values.max()):
-        return None
-    shown, signs = sign_changes(attempt.restored(w)), np.sign(_averages(fractions, values))
+    means = _averages(*_sides_along(attempt, w))
+    shown, signs = sign_changes(attempt.restored(w)), np.sign(means)
     several = 1 < len(shown.kinds) == 1 + np.count_nonzero(signs[1:] != signs[:-1])
     return shown if several else None
 

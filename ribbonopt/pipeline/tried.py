@@ -14,6 +14,7 @@ from ribbonopt.attempt.structure import Structure
 from ribbonopt.checks.arcs import Arcs, sign_changes
 from ribbonopt.checks.one_sided import ends_on_switch
 from ribbonopt.guess import Guess
+from ribbonopt.guess.flat import Flattened, nearly_flat
 from ribbonopt.mechanics.laws.smooth import sharpness
 from ribbonopt.problem import Posed
 from ribbonopt.solution.solution import Solution
@@ -141,6 +142,16 @@ class Tried:
             return None
         graded = source.mesh.graded and not source.sheets
         return source.mesh.joined(source.trajectory.ends[1:-1]) if graded else None
+
+    def flattened(self, found: Solution | None) -> Solution | None:
+        """Return what lies in a plane but for a little within it, if there it is a solution."""
+        if found is None or not self.needs_phases or not nearly_flat(found):
+            return found
+        attempt = self.structure.attempt(self.posed, self.ledger)
+        if attempt.run(Flattened(found), quick=True) and attempt.best is not None:
+            if not self.jumps(attempt.best):
+                self.plain = self._kept(attempt)
+        return self.plain.best
 
     def _take(self, mesh: Mesh | None) -> None:
         """Begin anew without phases, on a mesh or that of the scene."""
