@@ -14,7 +14,7 @@ from ribbonopt.solution.solution import Solution
 from ribbonopt.solvers import SolveReport, Status
 from ribbonopt.solvers.auto import AutoSolver
 from ribbonopt.solvers.newton import NewtonSolver
-from ribbonopt.transcription import NLP
+from ribbonopt.transcription import NLP, Mesh
 
 from .ledger import Ledger
 from .resistance import where_it_resists
@@ -81,16 +81,31 @@ class Attempt:
         quick: bool = False,
         check: bool = True,
         factors: Factors | None = None,
+        most: int | None = None,
+        loose: float = 0.0,
     ) -> bool:
-        """Solve from unknowns w (nw,); see `run`. Newton's method may begin with given factors."""
-        solver = self.solver
+        """Solve from unknowns w (nw,); see `run`.
+
+        Newton's method may begin with given `factors`, take `most` iterations, and stop at a last
+        step that is `loose`, relative.
+        """
+        solver, enough = self.solver, max(self.enough, loose)
         if quick and isinstance(solver, AutoSolver) and self.nlp.square:
             solver = solver.newton
-        if factors is not None and isinstance(solver, NewtonSolver):
-            report = solver.solve(w, self.p, enough=self.enough, factors=factors)
+        if isinstance(solver, NewtonSolver):
+            report = solver.solve(w, self.p, enough=enough, factors=factors, most=most)
         else:
             report = solver.solve(w, self.p, enough=self.enough)
         return self.take(report, check=check)
+
+    def run_slowly(self, guess: Guess, *, check: bool = True) -> bool:
+        """Solve by what a solver has beside Newton's method, which led nowhere from a guess.
+
+        False at once where it has nothing else.
+        """
+        if not (isinstance(self.solver, AutoSolver) and self.nlp.square):
+            return False
+        return self.take(self.solver.ipopt.solve(self.unknowns(guess), self.p), check=check)
 
     def take(self, report: SolveReport, *, check: bool = True) -> bool:
         """Take what a solver found; return whether there is a verified solution now."""
@@ -113,6 +128,12 @@ class Attempt:
         if self.best is not None and self.best.verified and self._unchecked:
             self.best, self._unchecked = verified(self.best, self.ribbon), False
         return self.best is not None and self.best.verified
+
+    @property
+    def mesh(self) -> Mesh:
+        """The mesh that this is on."""
+        widths = self.nlp.blocks.widths(self.p)
+        return Mesh(tuple(widths[part] for part in self.nlp.layout.phase_slices))
 
     @property
     def enough(self) -> float:

@@ -25,11 +25,12 @@ def place_ends(ribbon: Ribbon, posed: Posed) -> tuple[Place, Place]:
 
     What is prescribed as a whole is taken as it is; the rest is what is nearest to a straight
     ribbon along d3, by Gauss-Newton steps of least change. Where these do not get there (conditions
-    that the ends alone cannot meet), the last of them is returned.
+    that the ends alone cannot meet), the last of them is returned. The ribbon is that of any scene
+    of this structure: functions are made of it once.
     """
     length = posed.length
-    first, last = (_frame(ribbon, name) for name in ENDS)
-    start, end = (_position(ribbon, name) for name in ENDS)
+    first, last = (_frame(posed, name) for name in ENDS)
+    start, end = (_position(posed, name) for name in ENDS)
     if np.isnan(start).any() and np.isnan(end).all():
         start = posed.start[0]
     first, last = _completed(first, last, _known_chord(start, end))
@@ -42,14 +43,12 @@ def place_ends(ribbon: Ribbon, posed: Posed) -> tuple[Place, Place]:
     fields = RodFields(
         np.stack([start, end]), np.stack([first, last]), np.zeros((2, 3)), np.zeros((2, 3))
     )
-    return _met(ribbon, posed.values, fields)
+    return _met(ribbon, posed, fields)
 
 
-def _met(ribbon: Ribbon, theta: Array, fields: RodFields) -> tuple[Place, Place]:
-    """Move both ends by Gauss-Newton steps of least norm until the conditions are met."""
+def _residuals(ribbon: Ribbon) -> ca.Function:
+    """Kinematic conditions on the states (14,) of both ends, and how they change with these."""
     least = ribbon.least
-    states, _ = least.model.pack(fields, np.zeros(3))
-    states = states[:, :KINEMATIC]
     count, rest = KINEMATIC, ca.SX.zeros(len(least.states) - KINEMATIC)
     x = ca.SX.sym("x", 2 * count)
     ends = ca.vertcat(x[:count], rest), ca.vertcat(x[count:], rest)
@@ -58,31 +57,37 @@ def _met(ribbon: Ribbon, theta: Array, fields: RodFields) -> tuple[Place, Place]
     end_unit = ca.sumsqr(x[count + 3 :]) - 1
     residual = ca.vertcat(*named.values(), end_unit)
     inputs = [x, ca.vertcat(*ribbon.theta.values())]
-    function = ca.Function("place", inputs, [residual, ca.densify(ca.jacobian(residual, x))])
-    values = states.ravel()
+    return ca.Function("place", inputs, [residual, ca.densify(ca.jacobian(residual, x))])
+
+
+def _met(ribbon: Ribbon, posed: Posed, fields: RodFields) -> tuple[Place, Place]:
+    """Move both ends by Gauss-Newton steps of least norm until the conditions are met."""
+    function, theta = ribbon.kept(_residuals), posed.values
+    states, _ = ribbon.least.model.pack(fields, np.zeros(3))
+    values = states[:, :KINEMATIC].ravel()
     if np.abs(np.array(function(values, theta)[0])).max() > CLOSE:
         # Off any symmetric place, where a step of least norm has no direction to choose.
         away = 1e-3 * np.sin(1.0 + np.arange(len(values)))
-        values = values + away * _free(ribbon).repeat(count)
+        values = values + away * _free(posed).repeat(KINEMATIC)
     for _ in range(STEPS):
         found, jacobian = (np.array(part) for part in function(values, theta))
         if np.abs(found).max() < CLOSE:
             break
         step = np.linalg.lstsq(jacobian, found.ravel(), rcond=1e-8)[0]
         values = values - min(1.0, 0.5 / max(float(np.linalg.norm(step)), 1e-300)) * step
-    start, end = values.reshape(2, count)
+    start, end = values.reshape(2, KINEMATIC)
     return (start[:3], matrix_of(start[3:7])), (end[:3], matrix_of(end[3:7]))
 
 
-def _free(ribbon: Ribbon) -> Array:
+def _free(posed: Posed) -> Array:
     """For each end, 1 where its frame is not prescribed as a whole, else 0."""
-    held = {c.end for c in ribbon.conditions if isinstance(c, Frame)}
+    held = {c.end for c in posed.conditions if isinstance(c, Frame)}
     return np.array([float(end not in held) for end in ("start", "end")])
 
 
-def _frame(ribbon: Ribbon, end: EndName) -> Array | None:
+def _frame(posed: Posed, end: EndName) -> Array | None:
     """Frame prescribed at an end, or the one that a prescribed director needs, or None."""
-    at_end = [c for c in ribbon.conditions if getattr(c, "end", None) == end]
+    at_end = [c for c in posed.conditions if getattr(c, "end", None) == end]
     for condition in at_end:
         if isinstance(condition, Frame):
             return condition.frame
@@ -110,10 +115,10 @@ def _known_chord(start: Array, end: Array) -> Array | None:
     return chord / size if np.isfinite(size) and size > 1e-9 else None
 
 
-def _position(ribbon: Ribbon, end: EndName) -> Array:
+def _position(posed: Posed, end: EndName) -> Array:
     """Prescribed lab components (3,) of an end, not a number where free."""
     position = np.full(3, np.nan)
-    for c in ribbon.conditions:
+    for c in posed.conditions:
         if isinstance(c, Component) and (c.end, c.quantity) == (end, "position"):
             position["xyz".index(c.axis)] = c.value
     return position

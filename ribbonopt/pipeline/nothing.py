@@ -12,6 +12,7 @@ from dataclasses import replace
 
 from ribbonopt.arrays import Array
 from ribbonopt.checks.winding import winds_as
+from ribbonopt.errors import ConvergenceError
 from ribbonopt.guess import Guess
 from ribbonopt.guess.flat import Flattened, nearly_flat
 from ribbonopt.mechanics.ends.winding import winding
@@ -64,6 +65,37 @@ def from_nothing(
     search.run_all(guesses())
     wound = winding(posed.scene.boundary, posed.scene.parameters)
     return _less_energy(search, guesses) if wound is None else _as_wound(search, wound, guesses)
+
+
+def instead_of(
+    what: str,
+    guess: Guess | None,
+    search: Search,
+    guesses: Callable[..., Iterable[Guess]],
+    prepare: Prepare,
+) -> Search:
+    """Return the search that led on where Newton's method led nowhere from a guess.
+
+    IPOPT from that comes last: where it leads nowhere it takes ten times as long to find out as the
+    automatic start takes to lead somewhere. Without a `guess` it does not come at all.
+    """
+    ledger, words = search.ledger, f"{what} led nowhere and was given up for the automatic start"
+    ledger.give_up(words)
+    nowhere: ConvergenceError | None = None
+    try:
+        search = from_nothing(search, guesses, prepare)
+    except ConvergenceError as error:  # no equilibrium to start from
+        nowhere = error
+    if guess is not None and not search.settled and search.run_slowly(guess):
+        ledger.given_up.remove(words)
+        ledger.fall_back(
+            "newton",
+            f"neither Newton's method from {what} nor the automatic start led anywhere: IPOPT did",
+        )
+        return search
+    if nowhere is not None:
+        raise nowhere
+    return search
 
 
 def _less_energy(search: Search, guesses: Callable[..., Iterable[Guess]]) -> Search:

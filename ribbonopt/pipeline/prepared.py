@@ -7,6 +7,7 @@ so that other numbers (epsilon, loads, prescribed values, meshes) are solved wit
 from __future__ import annotations
 
 import time
+from collections.abc import Callable
 from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from typing import TYPE_CHECKING
@@ -116,7 +117,7 @@ class Prepared:
         return self._with_costs(search, started, done)
 
     def search(self, scene: Scene | Posed | None = None) -> Search:
-        """Return a search for solutions of a scene of this structure; nothing is solved yet."""
+        """Return a search for solutions of a scene of this structure; nothing is solved."""
         return Search(self.posed(scene), self.structure)
 
     def refined(
@@ -157,21 +158,20 @@ class Prepared:
         return Automatic(self.structure.posed)
 
     def _once(self, posed: Posed, guess: Guess | None, fallback: bool, quick: bool) -> Solution:
-        started = time.perf_counter()
-        search = self.search(posed)
+        started, search = time.perf_counter(), self.search(posed)
         own = guess or self._own_guess(posed)
         if own is not None:
             step = "guess: given" if guess else f"guess: {words(posed.scene.guess)}"
             search.ledger.note(step, time.perf_counter() - started)
-        led = done = own is not None and search.run(own, quick=quick)
-        if not led and own is not None and fallback:
-            what = "the guess given" if guess else f"the guess ({words(posed.scene.guess)})"
-            search.ledger.give_up(f"{what} led nowhere and was given up for the automatic start")
+        led = done = own is not None and search.run(own, quick=quick or fallback)
         if not led and (own is None or fallback):
-            from .nothing import from_nothing  # IPOPT, which many scenes do without
+            from .nothing import from_nothing, instead_of  # IPOPT, which many do without
 
-            guesses = partial(self.automatic.guesses, posed, search.ledger)
-            search = from_nothing(search, guesses, prepare)
+            after: Callable[..., Search] = from_nothing
+            if own is not None:
+                what = "the guess given" if guess else f"the guess ({words(posed.scene.guess)})"
+                after = partial(instead_of, what, None if quick else own)
+            search = after(search, partial(self.automatic.guesses, posed, search.ledger), prepare)
             done = search.settled
         return self._with_costs(search, started, done)
 

@@ -14,6 +14,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from ribbonopt.arrays import Array
 from ribbonopt.checks.arcs import (
     MIXTURE,
     Arcs,
@@ -28,15 +29,18 @@ from ribbonopt.checks.arcs import (
 )
 from ribbonopt.guess import Guess, ShapeGuess
 from ribbonopt.guess.balanced import Balanced
-from ribbonopt.guess.flat import Flattened, nearly_flat
 from ribbonopt.solution.solution import Solution
 from ribbonopt.transcription import Mesh
 
 from .intervals import intervals_for
+from .poles import toward_poles
+from .shown import crosses, phases_shown, side_shown
 from .tried import Tried, bluntness
 
 # Elements beside the end of a phase where strains fade away: to a millionth of one.
 LEVELS, RATIO = 7, 0.15
+FEW = 25  # iterations in phases that a guess shows before anything is solved
+SETTLED = 1e-3  # last step of Newton's method, relative, by which signs of m2 are settled
 COARSER = 3  # intervals of starts, of degree 3, to one of a scene
 
 
@@ -61,28 +65,86 @@ class Search(Tried):
             # From shapes of many turns IPOPT takes long, and leads nowhere.
             self.wound = quick = True
             guess = guess.balanced() if isinstance(guess, ShapeGuess) else guess
-        if not self.plain.run(guess, quick=quick, check=not self.phases_help):
+        w, signs = self.plain.unknowns(guess), not isinstance(guess, Solution) and self.has_signs
+        led, factors = True, None
+        if signs and crosses(self.plain, w):
+            arcs = phases_shown(self.plain, w)
+            if arcs is not None and self.run_in(arcs, self.plain.restored(w), most=FEW):
+                return True
+            # Without phases until they show, no further: the rest would be solved again in them.
+            first = self.structure.attempt(self.posed, self.ledger, self.plain.mesh)
+            led = first.run_from(w, quick=True, check=False, loose=SETTLED)
+            if led and first.best is not None:
+                if self._in_given_phases(first.best):
+                    return True
+                w, factors = first.best.dense.w, first.factors
+            else:
+                self.plain = self._kept(first)
+        check = not self.phases_help
+        if not (led and self.plain.run_from(w, quick=True, check=check, factors=factors)):
+            return (signs and self._on_one_side(w)) or (not quick and self.run_slowly(guess))
+        return self._in_shown_phases()
+
+    def run_slowly(self, guess: Guess) -> bool:
+        """Try a guess from which Newton's method led nowhere by what the solver has beside that."""
+        if intervals_for(guess, self.posed.scene) is not None:
             return False
-        found = self._flattened(self.plain.best)
+        attempt, before = self.structure.attempt(self.posed, self.ledger), self.plain.best
+        led = attempt.run_slowly(guess, check=not self.phases_help)
+        if led or (attempt.best is not None and not (before and before.status.converged)):
+            self.plain = self._kept(attempt)
+        return led and self._in_shown_phases()
+
+    def _in_shown_phases(self) -> bool:
+        """Try the phases of what was found without any; whether there is a solution now."""
+        found = self.flattened(self.plain.best)
         if found is not None and self._in_given_phases(found):
             return True
         return self.plain.check() and found is not None and not self.jumps(found)
 
-    def run_in(self, arcs: Arcs, source: Guess, least: int = 0) -> bool:
-        """Try a guess in phases, on `least` intervals or more; whether that succeeds."""
+    def _on_one_side(self, w: Array) -> bool:
+        """Try unknowns w (nw,) on the side of the law's switch on which they are, but for noise.
+
+        Newton's method sees no kink there. What comes out solves the law itself if it keeps to that
+        side, as verification tells.
+        """
+        side, source = side_shown(self.plain, w), self.plain.restored(w)
+        if side is None:
+            return False
+        attempt = self.structure.in_phases((side,)).attempt(
+            self.posed, self.ledger, self.plain.mesh
+        )
+        if not attempt.run(source, quick=True) or attempt.best is None:
+            return False
+        if not self.plain.run(attempt.best, quick=True):
+            self._kept(attempt)
+        return True
+
+    def run_in(self, arcs: Arcs, source: Guess, least: int = 0, most: int | None = None) -> bool:
+        """Try a guess in phases, on `least` intervals or more; whether that succeeds.
+
+        In `most` iterations, where it may be another guess that is better.
+        """
         if self.posed.stations:
             arcs = cut_at(arcs, self.posed.places)
         structure = self.structure.in_phases(arcs.kinds)
-        mesh = structure.mesh(arcs.switches, least, self._layers_of(source, arcs))
+        layers = self.layers_of(source, arcs)
+        mesh = structure.mesh(arcs.switches, least, layers)
         attempt = structure.attempt(self.posed, self.ledger, mesh, arcs.switches)
-        done = self._kept(attempt).run(source, quick=True)
+        w = attempt.unknowns(source)
+        near = self.posed.scene.tolerance is not None and layers is None
+        graded = toward_poles(attempt, w) if near else None
+        if graded is not None:
+            attempt = structure.attempt(self.posed, self.ledger, graded, arcs.switches)
+            w = attempt.unknowns(source)
+        done = self._kept(attempt).run_from(w, quick=True, most=most)
         found = attempt.best
         if found is None or not found.status.converged:
             return False
         fewer = without_empty(found)
         if fewer is not None and self.run_in(fewer, found, least):
             return True
-        if done and self._leaps_nowhere(found) and self.plain.run(found, quick=True):
+        if done and self.leaps_nowhere(found) and self.plain.run(found, quick=True):
             self._kept(self.plain)
             return True
         if done and self.structure.ribbon.law.fades:
@@ -152,7 +214,7 @@ class Search(Tried):
                 return True
             first = first or guess
         # All that was spared to be quick.
-        return first is not None and not self.needs_phases and self.run(first)
+        return first is not None and not self.needs_phases and self.run_slowly(first)
 
     def _in_given_phases(self, source: Solution) -> bool:
         """Try the phases that a solution shows or the scene names; whether that succeeds."""
@@ -171,28 +233,3 @@ class Search(Tried):
         attempt.run(source, quick=True, check=False)
         found = attempt.best
         return arcs, source if found is None or not found.status.converged else found
-
-    def _leaps_nowhere(self, found: Solution) -> bool:
-        """Whether phases end where the law asked for leaps nowhere, as those of a smooth law may.
-
-        A mixture has m2 = 0, and shows no sign of it.
-        """
-        several = len(set(found.sheets)) > 1 and 0 not in found.sheets
-        return several and self.needs_phases and not self.changes_sign(found)
-
-    def _flattened(self, found: Solution | None) -> Solution | None:
-        """Return what lies in a plane but for a little within it, if there it is a solution."""
-        if found is None or not self.needs_phases or not nearly_flat(found):
-            return found
-        attempt = self.structure.attempt(self.posed, self.ledger)
-        if attempt.run(Flattened(found), quick=True) and attempt.best is not None:
-            if not self.jumps(attempt.best):
-                self.plain = self._kept(attempt)
-        return self.plain.best
-
-    def _layers_of(self, source: Guess, arcs: Arcs) -> Mesh | None:
-        """Mesh of a source that was graded to layers, where phases need that too."""
-        if not (self.layered and isinstance(source, Solution)) or len(arcs.kinds) == 1:
-            return None
-        graded = source.mesh.graded and not source.sheets
-        return source.mesh.joined(source.trajectory.ends[1:-1]) if graded else None

@@ -11,8 +11,10 @@ from ribbonopt.arrays import Array
 from ribbonopt.attempt.attempt import Attempt
 from ribbonopt.attempt.ledger import Ledger
 from ribbonopt.attempt.structure import Structure
-from ribbonopt.checks.arcs import sign_changes
+from ribbonopt.checks.arcs import Arcs, sign_changes
 from ribbonopt.checks.one_sided import ends_on_switch
+from ribbonopt.guess import Guess
+from ribbonopt.guess.flat import Flattened, nearly_flat
 from ribbonopt.mechanics.laws.smooth import sharpness
 from ribbonopt.problem import Posed
 from ribbonopt.solution.solution import Solution
@@ -96,6 +98,14 @@ class Tried:
         """Whether the law's strains jump along a solution, so that it needs phases to be right."""
         return self.needs_phases and self.changes_sign(solution)
 
+    def leaps_nowhere(self, found: Solution) -> bool:
+        """Whether phases end where the law asked for leaps nowhere, as those of a smooth law may.
+
+        A mixture has m2 = 0, and shows no sign of it.
+        """
+        several = len(set(found.sheets)) > 1 and 0 not in found.sheets
+        return several and self.needs_phases and not self.changes_sign(found)
+
     @property
     def needs_phases(self) -> bool:
         """Whether no solver can be trusted without phases: the law's strains jump."""
@@ -114,12 +124,34 @@ class Tried:
         allowed = scene.formulation == "inverted" and scene.switching != "off"
         return allowed and self.structure.ribbon.law.kinked
 
+    @property
+    def has_signs(self) -> bool:
+        """Whether sides of the switch in a guess may tell the phases of a solution."""
+        return self.phases_help and not self.posed.stations
+
     def on_mesh(
         self, sheets: tuple[int, ...], mesh: Mesh, switches: Array | None = None
     ) -> Attempt:
         """Return the means to solve on a mesh, in the phases of a solution."""
         structure = self.structure.in_phases(sheets)
         return self._kept(structure.attempt(self.posed, self.ledger, mesh, switches))
+
+    def layers_of(self, source: Guess, arcs: Arcs) -> Mesh | None:
+        """Mesh of a source that was graded to layers, where phases need that too."""
+        if not (self.layered and isinstance(source, Solution)) or len(arcs.kinds) == 1:
+            return None
+        graded = source.mesh.graded and not source.sheets
+        return source.mesh.joined(source.trajectory.ends[1:-1]) if graded else None
+
+    def flattened(self, found: Solution | None) -> Solution | None:
+        """Return what lies in a plane but for a little within it, if there it is a solution."""
+        if found is None or not self.needs_phases or not nearly_flat(found):
+            return found
+        attempt = self.structure.attempt(self.posed, self.ledger)
+        if attempt.run(Flattened(found), quick=True) and attempt.best is not None:
+            if not self.jumps(attempt.best):
+                self.plain = self._kept(attempt)
+        return self.plain.best
 
     def _take(self, mesh: Mesh | None) -> None:
         """Begin anew without phases, on a mesh or that of the scene."""

@@ -1,7 +1,8 @@
 """IPOPT through CasADi: the solver that globalises, bounds and minimises.
 
 Settings that decide speed (measured in `scripts/bench_path.py`): no scaling, so that the tolerance
-means the residual; MUMPS with the minimum-degree ordering; for square programs no Hessian at all.
+means the residual; MUMPS with the minimum-degree ordering and without a permutation to a heavy
+diagonal, which a symmetric matrix does not need; for square programs no Hessian at all.
 """
 
 from __future__ import annotations
@@ -74,6 +75,7 @@ class IpoptSolver:
                 "nlp_scaling_method": "none",
                 "linear_solver": "mumps",
                 "mumps_pivot_order": 0,
+                "mumps_permuting_scaling": 0,
                 "mumps_mem_percent": 100,
             },
         }

@@ -29,7 +29,7 @@ from ribbonopt.mechanics.laws.smooth import (
     sharpened,
     sharpness,
 )
-from ribbonopt.problem import Posed
+from ribbonopt.problem import Posed, Ribbon
 from ribbonopt.scene import Law, Variational
 from ribbonopt.solution.solution import Solution
 
@@ -54,7 +54,7 @@ class Automatic:
     """Everything that is built for the automatic start of one structure of scenes, when needed."""
 
     posed: Posed
-    _energies: dict[type, Structure] = field(default_factory=dict)
+    _energies: dict[tuple[type, bool], Structure] = field(default_factory=dict)
     _homotopies: dict[type, Structure] = field(default_factory=dict)
 
     def guesses(self, posed: Posed, ledger: Ledger, shape: Shape | None = None) -> Iterator[Guess]:
@@ -76,7 +76,7 @@ class Automatic:
         last = slice(-1, None) if in_family(posed.scene.law) else slice(None)
         straight: list[Solution] = []
         met: list[float] = []
-        for number, start in enumerate([shape] if shape else shapes_for(posed)):
+        for number, start in enumerate([shape] if shape else shapes_for(posed, self._spatial)):
             if number:
                 what = "shape that fits the ends" if number == 1 else "shapes that fit the ends"
                 first = f"the first {'' if number == 1 else f'{number} '}{what} led nowhere"
@@ -98,17 +98,22 @@ class Automatic:
         law = capabilities(self.posed.scene)
         return LAST if law.direct() is law else BLUNT
 
-    def _energy(self, law: Law) -> Structure:
+    def _energy(self, law: Law, quick: bool) -> Structure:
         """Return what finds least energies: the numbers of a law may tell which it begins with."""
-        if type(law) not in self._energies:
-            least = least_energy_of(closed_posed(self.posed), law)
-            self._energies[type(law)] = Structure.least_energy(least)
-        return self._energies[type(law)]
+        if (type(law), quick) not in self._energies:
+            least = least_energy_of(closed_posed(self.posed), law, quick=quick)
+            self._energies[type(law), quick] = Structure.least_energy(least)
+        return self._energies[type(law), quick]
 
     def _homotopy(self, law: Law) -> Structure:
         if type(law) not in self._homotopies:
             self._homotopies[type(law)] = Structure.of(smooth_of(self.posed, law))
         return self._homotopies[type(law)]
+
+    @cached_property
+    def _spatial(self) -> Ribbon:
+        """Mechanics in space, by which shapes find their ends."""
+        return Ribbon.of(self.posed.under(states="reduced"))
 
     @cached_property
     def _piece(self) -> Automatic | None:
@@ -144,7 +149,10 @@ class Automatic:
         start: Guess = guess
         # Uneven rods snap on their way, from one equilibrium to the next.
         for _ in range(1 + (AGAIN if isinstance(law, Variational) else SNAPS)):
-            least = self._least(posed, law, start, ledger)
+            quick = True
+            least = self._least(posed, law, start, ledger, True)
+            if not least.status.converged:
+                quick, least = False, self._least(posed, law, start, ledger, False)
             if not least.status.converged:
                 break
             if not points and not isinstance(law, Variational) and in_family(law):
@@ -152,6 +160,9 @@ class Automatic:
                     break
                 met.append(least.energy)
             followed = self._follow(posed, law, least, last, ledger)
+            if quick and not followed.points:  # on few elements it may be too far from any
+                least = self._least(posed, law, least, ledger, False)
+                followed = self._follow(posed, law, least, last, ledger)
             points += followed.points
             if followed.complete or not followed.points or not in_family(law):
                 break
@@ -171,14 +182,15 @@ class Automatic:
         last = sharpness(posed.scene.law, self._last)
         return list(self._follow(posed, rod, ShapeGuess(chord), last, ledger).points)
 
-    def _least(self, posed: Posed, law: Law, start: Guess, ledger: Ledger) -> Solution:
-        """Least energy from a guess; worth nothing unless converged."""
-        attempt = self._energy(law).attempt(least_energy_of(closed_posed(posed), law))
+    def _least(self, posed: Posed, law: Law, start: Guess, ledger: Ledger, quick: bool) -> Solution:
+        """Least energy from a guess, on few elements if `quick`; worth nothing unless converged."""
+        special = least_energy_of(closed_posed(posed), law, quick=quick)
+        attempt = self._energy(law, quick).attempt(special)
         attempt.run(start, check=False)
         assert attempt.best is not None  # whether converged or not
         (report,) = attempt.ledger.reports
         outcome = "" if report.status.converged else f" ({report.status.name.lower()})"
-        step = f"least energy{_delta(law)}, ipopt{outcome}"
+        step = f"least energy{_delta(law)}{'' if quick else ' on more elements'}, ipopt{outcome}"
         ledger.note(step, report.total, report.iterations)
         return attempt.best
 

@@ -28,17 +28,20 @@ MIDDLE = np.array([0.5])
 SMALL_BOW = 0.3  # radians, for a strip that nothing shortens but a load
 
 
-def shapes_for(posed: Posed, *, wound: bool = True) -> Iterator[Shape]:
+def shapes_for(
+    posed: Posed, ribbon: Ribbon | None = None, *, wound: bool = True
+) -> Iterator[Shape]:
     """Yield shapes that fit the ends of a scene, the likeliest first.
 
-    `wound` as often as the ends say, where they say it; else as if they did not.
+    `ribbon` are mechanics in space of a scene of this structure, built anew if not given; `wound`
+    as often as the ends say, where they say it; else as if they did not.
     """
     loop = loop_of(posed.scene)
     if loop is not None:
         yield loop_shape(posed, loop)
         return
     spatial = posed.under(states="reduced")
-    start, end = place_ends(Ribbon.of(spatial), spatial)
+    start, end = place_ends(ribbon or Ribbon.of(spatial), spatial)
     length = posed.length
     chord = float(np.linalg.norm(end[0] - start[0]))
     # A strip that buckles: chord / length = 1 - bow^2 / 4.

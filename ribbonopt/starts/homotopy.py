@@ -22,6 +22,7 @@ from .loading import bring_followers, bring_loads
 from .tracking import MOST_STEPS, SURE, Tracking, growth
 
 FACTOR, LEAST_FACTOR = 0.33, 0.95  # delta from one step to the next, first and where to give up
+NEARLY = 1.25  # times the last delta: a step that would end short of it by no more goes all the way
 # Of rods: logarithm of the ratio of stiffnesses, steps at first, where to give up, and at most.
 FIRST_STEP, SMALLEST_STEP, LARGEST_STEP = 0.4, 0.04, 1.2
 FEW, MANY = 40, 80  # intervals for layers of twist or bending, and where few are too coarse
@@ -56,7 +57,8 @@ def _bring_down(run: Tracking, target: float) -> bool:
     """Follow the smooth family to a smaller delta; other laws stay as they are."""
     factor = FACTOR
     while isinstance(run.law, Variational) and run.law.delta > target * (1 + 1e-9):
-        law = sharpened(run.law, max(target, run.law.delta * factor))
+        goal = run.law.delta * factor
+        law = sharpened(run.law, target if goal < NEARLY * target else goal)
         if run.step(law, None):
             run.law, factor = law, max(0.1, factor**2)
             run.keep()
