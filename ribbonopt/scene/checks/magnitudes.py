@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import fields, is_dataclass
+from functools import cache
 from typing import Any, NamedTuple
 
 from ribbonopt.scene import limits
@@ -114,11 +115,21 @@ def as_written(value: Any, path: KeyPath = ()) -> Iterator[Problem]:
         pairs = value.items() if isinstance(value, dict) else enumerate(value)
         for key, item in pairs:
             yield from as_written(item, (*path, key))
-    elif is_dataclass(value) and type(value).__module__.startswith(_OURS):
-        for member in fields(value):
-            yield from as_written(getattr(value, member.name), (*path, key_of(member.name)))
+    elif is_dataclass(value):
+        cls: type = type(value)
+        for name, key in _members(cls):
+            part = getattr(value, name)
+            if not (part is None or isinstance(part, str)):  # as most are
+                yield from as_written(part, (*path, key))
     if path == ("interval",) and value[0] < value[1]:
         yield from _interval(*value)
+
+
+@cache
+def _members(cls: type) -> tuple[tuple[str, str], ...]:
+    """Return the fields of one of our dataclasses, each with its key; none of any other class."""
+    ours = is_dataclass(cls) and cls.__module__.startswith(_OURS)
+    return tuple((f.name, key_of(f.name)) for f in fields(cls)) if ours else ()
 
 
 def _size(number: float, path: KeyPath) -> Iterator[Problem]:
@@ -157,8 +168,8 @@ def in_units(scene: Scene, values: Mapping[KeyPath, float]) -> Iterator[Problem]
         yield from _moduli(scene.law)
     yield from check_narrow(scene, units)
     for path, kind in _KINDS.items():
-        unit = kind.unit_of(units)
         for place, value in _at(scene, path):
+            unit = kind.unit_of(units)
             for at, number in _numbers(value, place, values):
                 if abs(number) > kind.limit * unit:
                     yield Problem(at, _message(number, kind, unit, units), f"{number:g}")
@@ -202,15 +213,16 @@ def _message(number: float, kind: _Kind, unit: float, units: Units) -> str:
 
 
 def _at(value: Any, path: KeyPath, before: KeyPath = ()) -> Iterator[tuple[KeyPath, Any]]:
-    """Yield what a path leads to, in each item of a list on the way, with its own path."""
-    if not path:
-        yield before, value
-    elif isinstance(value, tuple):
-        for index, item in enumerate(value):
-            yield from _at(item, path, (*before, index))
-    elif is_dataclass(value):
-        key, *rest = path
-        yield from _at(getattr(value, str(key), None), tuple(rest), (*before, key))
+    """Yield what is at the end of a path, in each item of a list on the way, with its own path."""
+    for depth, key in enumerate(path):
+        if isinstance(value, tuple):
+            for index, item in enumerate(value):
+                yield from _at(item, path[depth:], (*before, *path[:depth], index))
+            return
+        value = getattr(value, str(key), None)
+        if value is None:  # as most are
+            return
+    yield (*before, *path), value
 
 
 def _numbers(
@@ -226,4 +238,6 @@ def _numbers(
             yield from _numbers(item, (*path, index), values)
     elif is_dataclass(value):
         for member in fields(value):
-            yield from _numbers(getattr(value, member.name), (*path, member.name), values)
+            part = getattr(value, member.name)
+            if part is not None:
+                yield from _numbers(part, (*path, member.name), values)

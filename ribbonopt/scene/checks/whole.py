@@ -133,15 +133,17 @@ def _formulas(value: Any, annotation: Any, path: KeyPath) -> Iterator[tuple[KeyP
     """
     if is_along(annotation):
         return
-    options = branches(annotation).values()
     if isinstance(value, str):
-        if str in options:
+        if str in branches(annotation).values():
             yield path, value
     elif is_dataclass(value):
         cls: type = type(value)
         for name, inner in hints(cls).items():
-            yield from _formulas(getattr(value, name), inner, (*path, name))
+            part = getattr(value, name)
+            if not (part is None or isinstance(part, float)):  # as most are
+                yield from _formulas(part, inner, (*path, name))
     elif isinstance(value, tuple):
+        options = branches(annotation).values()
         items = next((some for some in options if get_origin(some) is tuple), annotation)
         for index, item in enumerate(value):
             yield from _formulas(item, inside(items, index), (*path, index))
