@@ -35,7 +35,7 @@ class Document:
 
     def __init__(self, text: str, source: str = "<string>") -> None:
         """Read the text; SceneError if it says no scene."""
-        self.source = source
+        self.text, self.source = text, source
         try:
             self._written = read(text)
         except YamlTextError as error:

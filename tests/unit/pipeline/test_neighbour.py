@@ -8,11 +8,11 @@ import numpy as np
 import pytest
 
 from ribbonopt.accuracy.estimate import analyse, relative_error
+from ribbonopt.pipeline.neighbour import Neighbour
 from ribbonopt.pipeline.prepared import Prepared, prepare
 from ribbonopt.scene import Scene, load_scene, loads_scene
 from ribbonopt.solvers.newton import NewtonSolver
 from ribbonopt.studies.batch.family import solve_beside
-from ribbonopt.studies.batch.neighbour import Neighbour
 
 CONFIGS = Path(__file__).parents[3] / "configs"
 
