@@ -77,13 +77,13 @@ def with_costs(found: Solution, search: Search, prepared: Means, started: float)
         found,
         timings=ledger.timings(prepared.seconds, time.perf_counter() - started),
         iterations=ledger.iterations,
-        given_up=(*ledger.given_up, *_other_phases(search)),
+        given_up=(*ledger.given_up, *other_phases(search)),
         fell_back=tuple(ledger.fell_back.values()),
         skipped=skipped(search.posed, problem, ledger, found.sheets),
     )
 
 
-def _other_phases(search: Search) -> tuple[str, ...]:
+def other_phases(search: Search) -> tuple[str, ...]:
     """Say that the phases which a scene names are not those of the solution."""
     named, best = search.posed.scene.switching, search.best
     if not isinstance(named, tuple) or best is None or not best.verified:

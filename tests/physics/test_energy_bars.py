@@ -32,7 +32,7 @@ from ribbonopt.scene import (
 )
 from ribbonopt.solution.solution import Solution
 from ribbonopt.solvers import Status
-from ribbonopt.studies.batch.neighbour import Neighbour
+from ribbonopt.pipeline.neighbour import Neighbour
 
 sys.path.append(str(Path(__file__).resolve().parents[2] / "scripts"))
 from energy_bars import shares

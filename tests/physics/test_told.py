@@ -21,7 +21,7 @@ from ribbonopt.solvers import Status
 from ribbonopt.starts import automatic
 from ribbonopt.starts.homotopy import HomotopyPath
 from ribbonopt.studies.batch import family
-from ribbonopt.studies.batch.neighbour import Neighbour
+from ribbonopt.pipeline.neighbour import Neighbour
 from ribbonopt.studies.continuation.continuation import Continuation
 
 ARCH = """
