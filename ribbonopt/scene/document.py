@@ -7,21 +7,17 @@ from __future__ import annotations
 
 import os
 from collections.abc import Sequence
-from dataclasses import replace
 from functools import lru_cache
 from typing import TYPE_CHECKING
 
 from ribbonopt.errors import SceneError
 
-from .along import TableFile, numbers_along
-from .checks.whole import check
-from .ends import Boundary
-from .faults import InvalidSceneError, Problem, nearest, report
-from .laws import Sadowsky
+from .faults import InvalidSceneError, nearest, report
 from .model import Scene
 from .schema.annotations import written_keys
-from .schema.validation import validate
 from .text.yamltext import PlainData, YamlTextError, read
+from .validated import validated
+from .varied import Alike
 
 if TYPE_CHECKING:
     from .text.overrides import Overridden
@@ -49,6 +45,7 @@ class Document:
             raise SceneError(f"{source}: is {kind}; expected keys such as name, law, boundary")
         refuse_foreign(self._written, source, written_keys(Scene))
         self._read = lru_cache(REMEMBERED)(read)
+        self._alike: Alike | None = None
 
     def scene(self, overrides: Sequence[str] = ()) -> Scene:
         """Return the scene that it says with some values in place of its own.
@@ -58,11 +55,25 @@ class Document:
         SceneError
             For all problems of the scene together, each with its line or its override.
         """
-        plain: PlainData | Overridden = self._written
-        if overrides:
-            from .text.overrides import override  # only scenes that are overridden pay for it
+        if not overrides:
+            return self._whole(self._written)
+        from .text.overrides import numbers_of, override  # only scenes that are overridden pay
 
-            plain = override(self._written, overrides, self._read)
+        kind, numbers = numbers_of(overrides)
+        alike = self._alike
+        if alike is not None and alike.kind == kind:
+            found = alike.scene(numbers)
+            if found is not None:
+                return found
+        plain = override(self._written, overrides, self._read)
+        scene = self._whole(plain)
+        if alike is None or alike.kind != kind:
+            self._alike = Alike(kind, plain, numbers, scene, os.path.dirname(self.source))
+        else:
+            alike.compare(numbers, scene)
+        return scene
+
+    def _whole(self, plain: PlainData | Overridden) -> Scene:
         try:
             scene = validated(plain.data, os.path.dirname(self.source))
         except InvalidSceneError as error:
@@ -89,55 +100,3 @@ def refuse_foreign(found: PlainData, source: str, known: Sequence[str]) -> None:
             f"{source}: is no scene, none of its keys is one of a scene; expected keys such as "
             "name, law, boundary"
         )
-
-
-def validated(data: object, folder: str = "") -> Scene:
-    """Return a checked scene; `folder` is what the paths of its tables are relative to.
-
-    Parameters
-    ----------
-    data
-        What a file says, as plain data, or a scene built in Python.
-
-    Raises
-    ------
-    InvalidSceneError
-        With all problems of the scene, each at its path.
-    """
-    try:
-        scene = validate(Scene, data)
-    except InvalidSceneError as error:
-        raise InvalidSceneError([*error.problems, *_further(data, error.problems)]) from None
-    if isinstance(data, dict) and "interval" not in data and scene.ribbon is not None:
-        scene = replace(scene, interval=scene.ribbon.interval(scene.boundary.loop))
-    if any(isinstance(value, TableFile) for _, value in numbers_along(scene)):
-        from .tables import embedded  # few scenes have any
-
-        scene, faults = embedded(scene, folder)
-        if faults:
-            raise InvalidSceneError(faults)
-    if problems := check(scene):
-        raise InvalidSceneError(problems)
-    return scene
-
-
-def _further(data: object, problems: Sequence[Problem]) -> list[Problem]:
-    """Return what is wrong with the sound parts of a scene whose other parts are not."""
-    if not isinstance(data, dict):
-        return []
-    faulty = {problem.path[0] for problem in problems}
-    if "parameters" in faulty:
-        faulty |= {"boundary", "guess", "width"}  # their formulas would seem to use unknown names
-    if "interval" in faulty:
-        faulty |= {"ribbon", "width"}  # which would seem not to be as long as the default
-    parts = {"interval", "parameters", "boundary", "guess", "ribbon", "width", "law"} - faulty
-    sound = {key: value for key, value in data.items() if key in parts}
-    blank = {"name": "scene", "law": Sadowsky(), "boundary": Boundary()}
-    found = check(validate(Scene, blank | sound))
-    # Of a law that is not known here, or whose ribbon is not, nothing is said.
-    return [
-        problem
-        for problem in found
-        if not ("law" in faulty and problem.path[-1:] == ("edge",))
-        and not ("ribbon" in faulty and problem.path[:1] == ("law",))
-    ]

@@ -10,11 +10,12 @@ from typing import Any
 from ribbonopt.errors import SceneError
 from ribbonopt.reading import MEGA, Kind, read_text
 
-from .document import Document, refuse_foreign, validated
+from .document import Document, refuse_foreign
 from .faults import InvalidSceneError, report
 from .model import Scene
 from .supports import SUPPORTS
 from .text.yamltext import PlainData, YamlTextError, read
+from .validated import validated
 
 #: what scenes, and studies of them, are read from; a megabyte holds thousands of them
 SCENE = Kind("a scene file", most=10 * MEGA, error=SceneError, piped=True)

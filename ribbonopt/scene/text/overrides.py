@@ -16,6 +16,7 @@ from ribbonopt.scene.faults import KeyPath, Place, Problem, dotted, quotable, sh
 from .yamltext import PlainData, YamlTextError, plain_number, read
 
 Reader = Callable[[str], PlainData]
+Kind = tuple[tuple[str, str | None], ...]
 
 
 @dataclass(frozen=True)
@@ -28,18 +29,20 @@ class Overridden:
         What the scene says now; all that was not on the way to a new value is the file's own.
     problems : list of Problem
         Faults of the file, and of the new values.
+    put : list of tuples
+        The path of each new value, list indices as numbers, and the override that said it.
     """
 
     data: Any
     problems: list[Problem]
+    put: Sequence[tuple[KeyPath, str]]
     _written: Mapping[KeyPath, Place]
-    _put: Sequence[tuple[KeyPath, str]]
 
     @cached_property
     def places(self) -> dict[KeyPath, Place]:
         """Where values were written, by path: only messages ask for that."""
         places = dict(self._written)
-        for steps, text in self._put:
+        for steps, text in self.put:
             count = len(steps)
             places = {known: place for known, place in places.items() if known[:count] != steps}
             for length in range(1, count + 1):
@@ -71,7 +74,20 @@ def override(scene: PlainData, overrides: Sequence[str], read: Reader = read) ->
         data, steps = _with(data, path, value, text)
         put.append((steps, text))
         problems += [fault._replace(path=steps + fault.path) for fault in faults]
-    return Overridden(data, problems, scene.places, put)
+    return Overridden(data, problems, put, scene.places)
+
+
+def numbers_of(overrides: Sequence[str]) -> tuple[Kind, list[int | float]]:
+    """Return the plain numbers among values, and all the rest that overrides say."""
+    kind: list[tuple[str, str | None]] = []
+    numbers: list[int | float] = []
+    for text in overrides:
+        key, equals, value = text.partition("=")
+        number = plain_number(value) if equals else None
+        kind.append((key, None) if number is not None else (key + equals, value))
+        if number is not None:
+            numbers.append(number)
+    return tuple(kind), numbers
 
 
 def _parse(text: str, read: Reader) -> tuple[list[str], Any, Sequence[Problem]]:
