@@ -143,3 +143,45 @@ def test_what_a_later_override_undoes_stays_undone(kind: list[str]) -> None:
     for number in (0.0, 0.0, 0.0, 0.3):
         overrides = [text.format(number) for text in kind]
         assert document.scene(overrides) == loads_scene(SCENE, overrides=overrides)
+
+
+ROD = """\
+name: rod
+law: {type: kirchhoff, B2: 1.0, B3: 2.0}
+parameters: {F: 1.0}
+boundary:
+  start: {position: [0, 0, 0], directors: identity}
+  end: {force: [0, 0, F], moment: [0, 0, 1e4]}
+loads: {pressure: s**20}
+"""
+SIZES = "{length: 0.5, width: 0.02, thickness: 1e-4, youngs_modulus: 2e9, poisson_ratio: 0.3}"
+SHEET = f"""\
+name: sheet
+law: {{type: sadowsky}}
+ribbon: {SIZES}
+boundary: {{start: {{position: [0, 0, 0], directors: identity}}, end: {{}}}}
+"""
+
+
+@pytest.mark.parametrize(
+    ("text", "key", "numbers", "fault"),
+    [
+        (ROD, "parameters.F", (1, 2, 3, 1e13), "boundary.end.force"),  # by its formula
+        (ROD, "interval.1", (1, 2, 3, 9), "loads.pressure"),  # by what it is worth along it
+        (ROD, "law.B2", (1, 2, 3, 1e-5), "boundary.end.moment"),  # by the units that follow
+        (SHEET, "ribbon.length", (0.5, 0.6, 0.7, 0.01), "ribbon.width"),
+    ],
+)
+def test_what_is_the_same_is_looked_at_again_where_it_means_something_else(
+    text: str, key: str, numbers: tuple[float, ...], fault: str
+) -> None:
+    if "interval" in key:
+        text += "interval: [0, 1]\n"
+    document = Document(text, "s.yaml")
+    for number in numbers[:-1]:
+        overrides = [f"{key}={number}"]
+        assert document.scene(overrides) == loads_scene(text, "s.yaml", overrides)
+    overrides = [f"{key}={numbers[-1]}"]
+    words = told(text, overrides)
+    assert isinstance(words, str) and fault in words
+    assert told(text, overrides, document) == words
