@@ -124,32 +124,38 @@ class Neighbour:
 
 
 class Latest:
-    """The solution found last, for whoever goes on from it: only of this one factors are kept."""
+    """The solution found last and the one that it was found from: of these alone factors are kept.
+
+    For whoever goes on from either, from one to the next or from one to many.
+    """
 
     def __init__(self) -> None:
         """Begin without any."""
-        self._kept: Neighbour | None = None
+        self._kept: tuple[Neighbour, ...] = ()
 
-    def keep(self, found: Neighbour) -> Solution:
-        """Keep what was found, if it is a solution, in place of the one before; return that."""
-        self._kept = found if found.solution.verified else None
+    def keep(self, found: Neighbour, origin: Neighbour | None = None) -> Solution:
+        """Keep what was found, if it is a solution, and what it was found from; return that."""
+        if origin is not None and found.before is not None:  # on the same mesh: they serve both
+            origin = replace(origin, factors=found.factors, finer=found.finer)
+        kept = (found, origin) if found.solution.verified else ()
+        self._kept = tuple(each for each in kept if each is not None)
         return found.solution
 
     def beside(self, guess: object, posed: Posed) -> Solution | None:
-        """Return a scene's solution beside the one kept, if that is the guess; None if not.
+        """Return a scene's solution beside one that is kept, if that is the guess; None if not.
 
         Nor without a tolerance: the answer is to be on the mesh that is asked for then.
         """
-        kept = self._kept
-        if kept is None or kept.solution is not guess or posed.scene.tolerance is None:
+        origin = next((each for each in self._kept if each.solution is guess), None)
+        if origin is None or posed.scene.tolerance is None:
             return None
-        started, search = time.perf_counter(), kept.prepared.search(posed)
+        started, search = time.perf_counter(), origin.prepared.search(posed)
         search.ledger.note("guess: given", 0.0)
-        found = kept.beside(search)
+        found = origin.beside(search)
         if found is None:
             return None
-        told = with_costs(found.solution, search, kept.prepared, started)
-        return self.keep(replace(found, solution=told))
+        told = with_costs(found.solution, search, origin.prepared, started)
+        return self.keep(replace(found, solution=told), origin)
 
 
 def _in_order(found: Solution) -> bool:

@@ -87,8 +87,9 @@ class Prepared:
 
         `guess` is where to start, instead of the scene's own guess; `fallback` whether to go on
         from the automatic start where that leads nowhere; `quick` whether to leave it at Newton's
-        method from the guess, where that can be. From the solution found last, of a scene near by
-        that has a tolerance, mesh, phases and factors are kept as in a batch.
+        method from the guess, where that can be. From the solution found last, or the one that
+        it was found from, mesh, phases and factors are kept as in a batch, where a scene near by
+        has a tolerance.
 
         Raises
         ------

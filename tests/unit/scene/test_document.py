@@ -11,9 +11,9 @@ from hypothesis import example, given
 from hypothesis import strategies as st
 
 from ribbonopt.errors import SceneError
+from ribbonopt.scene import document as of_document
 from ribbonopt.scene import loads_scene
 from ribbonopt.scene.document import Document
-from ribbonopt.scene import document as of_document
 from ribbonopt.scene.text.yamltext import YamlTextError, plain_number, read
 
 CONFIGS = Path(__file__).parents[3] / "configs"
