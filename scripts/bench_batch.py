@@ -65,7 +65,7 @@ TARGETS = {"clamps": (2, 60.0), "half": (1, 150.0)}  # workers, ribbons per seco
 RATIO, GROWTH = 1.7, 1.1  # of 2 workers over 1; of memory after the first 100 ribbons
 WATCHED = (
     (worker.Worker, "_solved", "in all"),
-    (worker, "loads_scene", "scene read"),
+    (worker.Worker, "_scene", "scene read"),
     (Posed, "of", "posed"),
     (NewtonSolver, "solve", "Newton's method"),
     (estimate, "_analysed", "estimate"),

@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import dataclass, field, replace
 from functools import cached_property, partial
 from typing import TYPE_CHECKING
 
@@ -24,9 +24,9 @@ from ribbonopt.solution.solution import Solution
 from ribbonopt.solvers import Status
 from ribbonopt.transcription import NLP
 
+from .neighbour import Latest, Neighbour
 from .search import Search
-from .skipped import skipped
-from .told import judged, of_finer_mesh, of_starts, other_phases, regularized
+from .told import judged, of_finer_mesh, of_starts, regularized, with_costs
 
 if TYPE_CHECKING:
     from ribbonopt.solvers import Solver
@@ -43,6 +43,7 @@ class Prepared:
 
     structure: Structure
     seconds: float
+    _latest: Latest = field(default_factory=Latest)
 
     @property
     def scene(self) -> Scene:
@@ -87,7 +88,9 @@ class Prepared:
 
         `guess` is where to start, instead of the scene's own guess; `fallback` whether to go on
         from the automatic start where that leads nowhere; `quick` whether to leave it at Newton's
-        method from the guess, where that can be.
+        method from the guess, where that can be. From the solution found last, or the one that
+        it was found from, mesh, phases and factors are kept as in a batch, where a scene near by
+        has a tolerance.
 
         Raises
         ------
@@ -98,12 +101,14 @@ class Prepared:
         """
         posed = self.posed(scene)
         refuse_unreachable(posed)
+        if not quick and (near := self._latest.beside(guess, posed)) is not None:
+            return near
         found = self._once(posed, guess, fallback, quick)
         if found.status is Status.TOLERANCE_MISSED and guess is None:
             from ribbonopt.pipeline.refinement import on_finer_mesh  # after a failure only
 
             found = of_finer_mesh(found, on_finer_mesh(found, lambda s: prepare(s).solve_once()))
-        return found
+        return self._latest.keep(Neighbour(self, found))
 
     def solve_once(self) -> Solution:
         """Solve the prepared scene on its own number of intervals, and on no finer mesh anew."""
@@ -188,14 +193,7 @@ class Prepared:
             from .sharpening import without_phases  # after a failure only
 
             best = without_phases(search, self, prepare) or best
-        return replace(
-            best,
-            timings=ledger.timings(self.seconds, time.perf_counter() - started),
-            iterations=ledger.iterations,
-            given_up=(*ledger.given_up, *other_phases(search)),
-            fell_back=tuple(ledger.fell_back.values()),
-            skipped=skipped(search.posed, self.problem, ledger, best.sheets),
-        )
+        return with_costs(best, search, self, started)
 
     def _own_guess(self, posed: Posed) -> Guess | None:
         if isinstance(posed.scene.guess, SolutionGuess):

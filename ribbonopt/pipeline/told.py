@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import time
 from collections.abc import Sequence
 from dataclasses import replace
 from typing import TYPE_CHECKING
@@ -10,7 +11,8 @@ from ribbonopt.mechanics.laws.catalogue import capabilities
 from ribbonopt.solution.solution import Solution
 from ribbonopt.solvers import Status
 
-from .means import Prepare
+from .means import Means, Prepare
+from .skipped import skipped
 
 if TYPE_CHECKING:
     from .search import Search
@@ -68,6 +70,19 @@ def judged(best: Solution, search: Search) -> Solution:
     what = f"{switch} changes sign along it, and no phases that end there were found"
     status = Status.WRONG_SOLUTION
     return replace(best, status=status, message=f"{status.value}. {what}")
+
+
+def with_costs(found: Solution, search: Search, prepared: Means, started: float) -> Solution:
+    """Return a solution with what it has cost since a time, and what was given up or not done."""
+    ledger, problem = search.ledger, prepared.problem
+    return replace(
+        found,
+        timings=ledger.timings(prepared.seconds, time.perf_counter() - started),
+        iterations=ledger.iterations,
+        given_up=(*ledger.given_up, *other_phases(search)),
+        fell_back=tuple(ledger.fell_back.values()),
+        skipped=skipped(search.posed, problem, ledger, found.sheets),
+    )
 
 
 def other_phases(search: Search) -> tuple[str, ...]:

@@ -77,8 +77,9 @@ def units_of(scene: Scene) -> Units:
         stiffness = _unit(next(iter(law.stiffnesses.values())), SOFT, STIFF)
     if ribbon is None:
         start, end = scene.interval
-        told = bool(scene.loads.own) or isinstance(law, OwnLaw)
-        length = 1.0 if told else _unit(end - start, SHORT, LONG)
+        length = _unit(end - start, SHORT, LONG)
+        if length != 1 and (scene.loads.own or isinstance(law, OwnLaw)):
+            length = 1.0
         return Units(length, stiffness / length**2, stiffness=stiffness)
     rigidity = ribbon.youngs_modulus * ribbon.thickness**3 / (12 * (1 - ribbon.poisson_ratio**2))
     force = stiffness * rigidity * ribbon.width / ribbon.length**2

@@ -16,17 +16,17 @@ sweep:
 # A module that every process loads first: what some scenes do to their worker.
 ON_PURPOSE = """\
 import os, sys, time
-import ribbonopt.scene as scene
-whole = scene.loads_scene
-def loads_scene(text, source, overrides=()):
+from ribbonopt.scene.document import Document
+whole = Document.scene
+def scene(document, overrides=()):
     if any("name" in o and "crash" in o for o in overrides):
         os._exit(9)
     if any("name" in o and "hang" in o for o in overrides):
         with open("hanging", "a") as file:
             print(os.getpid(), file=file)
         time.sleep(600)
-    return whole(text, source, overrides)
-scene.loads_scene = loads_scene
+    return whole(document, overrides)
+Document.scene = scene
 """
 COMMAND = [sys.executable, "-m", "ribbonopt", "batch"]
 

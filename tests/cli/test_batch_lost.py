@@ -18,6 +18,7 @@ from disks import Full
 
 from ribbonopt.output import staging
 from ribbonopt.output.exports import Fields
+from ribbonopt.scene.document import Document
 from ribbonopt.studies.batch import files as batch_files
 from ribbonopt.studies.batch import worker
 from ribbonopt.studies.batch.batch import run_batch
@@ -213,14 +214,14 @@ def test_full_solutions_that_find_no_room_are_told(
 def test_errors_of_any_kind_spoil_their_own_row(
     study: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    whole = worker.loads_scene
+    whole = Document.scene
 
-    def loads_scene(text: str, source: str, overrides: list[str]) -> Any:
+    def scene(document: Document, overrides: list[str]) -> Any:
         if any("0.05" in override for override in overrides):
             raise ZeroDivisionError("on purpose")
-        return whole(text, source, overrides)
+        return whole(document, overrides)
 
-    monkeypatch.setattr(worker, "loads_scene", loads_scene)
+    monkeypatch.setattr(Document, "scene", scene)
     values = "{law.epsilon: [0.06, 0.05, 0.04]}"
     study.write_text(f"scene: scene.yaml\nsweep: {{grid: {values}}}\n")
     hand = worker.Worker()

@@ -18,6 +18,7 @@ from ribbonopt import solve
 from ribbonopt.accuracy.estimate import estimate_error, relative_error
 from ribbonopt.cli import main
 from ribbonopt.errors import ModelError
+from ribbonopt.pipeline.neighbour import Neighbour
 from ribbonopt.pipeline.prepared import prepare
 from ribbonopt.scene import (
     Boundary,
@@ -32,7 +33,6 @@ from ribbonopt.scene import (
 )
 from ribbonopt.solution.solution import Solution
 from ribbonopt.solvers import Status
-from ribbonopt.studies.batch.neighbour import Neighbour
 
 sys.path.append(str(Path(__file__).resolve().parents[2] / "scripts"))
 from energy_bars import shares

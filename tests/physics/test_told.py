@@ -14,6 +14,7 @@ from ribbonopt.output.report import report
 from ribbonopt.output.results import load_solution, save_solution
 from ribbonopt.output.summary import summarize
 from ribbonopt.pipeline import prepared as path
+from ribbonopt.pipeline.neighbour import Neighbour
 from ribbonopt.pipeline.prepared import prepare, solve
 from ribbonopt.pipeline.told import judged
 from ribbonopt.scene import load_scene, loads_scene
@@ -21,7 +22,6 @@ from ribbonopt.solvers import Status
 from ribbonopt.starts import automatic
 from ribbonopt.starts.homotopy import HomotopyPath
 from ribbonopt.studies.batch import family
-from ribbonopt.studies.batch.neighbour import Neighbour
 from ribbonopt.studies.continuation.continuation import Continuation
 
 ARCH = """

@@ -8,7 +8,8 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from dataclasses import fields, is_dataclass
-from typing import Any, NamedTuple
+from functools import cache
+from typing import Any
 
 from ribbonopt.scene import limits
 from ribbonopt.scene.faults import KeyPath, Problem, dotted
@@ -17,6 +18,7 @@ from ribbonopt.scene.model import Scene
 from ribbonopt.scene.schema.annotations import key_of
 from ribbonopt.scene.units import Units, units_of
 
+from .kinds import KINDS, Kind
 from .sized import check_narrow
 
 _OURS = __name__.partition(".checks")[0]
@@ -35,75 +37,11 @@ _NEVER_ZERO = (
 )
 
 
-class _Kind(NamedTuple):
-    """What numbers at a place are: dimension, limit in units L = 1, Dw = 1, and what sets it."""
+def as_written(value: Any, path: KeyPath = (), like: Any = None) -> Iterator[Problem]:
+    """Yield the numbers whose products would not be finite, and lists that are too long.
 
-    length: int
-    force: int
-    limit: float
-    unit: str
-    reason: str
-
-    def unit_of(self, units: Units) -> float:
-        """Return what 1 of the limit is in the units of the scene."""
-        return units.length**self.length * units.force**self.force
-
-
-_LENGTH = _Kind(1, 0, limits.REACH, "L", "so far away, rounding is seen in the shape")
-_FORCE = _Kind(0, 1, limits.FORCE, "D w / L^2", "it acts on a millionth of the length")
-_MOMENT = _Kind(1, 1, limits.MOMENT, "D w / L", "it bends to a millionth of the length")
-_STRAIN = _Kind(-1, 0, limits.STRAIN, "1 / L", "it bends to a millionth of the length")
-_PER_LENGTH = _Kind(
-    -1, 1, limits.FORCE_PER_LENGTH, "D w / L^3", "it acts on a millionth of the length"
-)
-_COUPLE = _Kind(0, 1, limits.FORCE, "D w / L^2", "it bends to a millionth of the length")
-_ANGLE = _Kind(0, 0, limits.ANGLE, "rad", "angles so large lose their digits")
-_TURNS = _Kind(0, 0, limits.ANGLE / 6, "turns", "angles so large lose their digits")
-_WIDTH = _Kind(0, 0, limits.WIDTH, "", "it is in units of the ribbon's own width")
-_SMOOTHING = _Kind(0, 0, limits.SMOOTHING, "", "nothing is left of the law")
-
-_KINDS: dict[KeyPath, _Kind] = {
-    **{
-        ("boundary", end, *key): kind
-        for end in ("start", "end")
-        for key, kind in {
-            ("position",): _LENGTH,
-            ("distance",): _LENGTH,
-            ("force",): _FORCE,
-            ("moment",): _MOMENT,
-            ("directors", "rotation_vector"): _ANGLE,
-            ("directors", "turns"): _ANGLE,
-        }.items()
-    },
-    ("loads", "force"): _PER_LENGTH,
-    ("loads", "couple"): _COUPLE,
-    ("loads", "pressure"): _PER_LENGTH,
-    ("loads", "points", "at"): _LENGTH,
-    ("loads", "points", "force"): _FORCE,
-    ("loads", "points", "moment"): _MOMENT,
-    ("supports", "at"): _LENGTH,
-    ("supports", "position"): _LENGTH,
-    ("natural", "curvature"): _STRAIN,
-    ("natural", "twist"): _STRAIN,
-    ("natural", "across"): _STRAIN,
-    ("guess", "force"): _FORCE,
-    ("guess", "moment"): _MOMENT,
-    ("guess", "strains"): _STRAIN,
-    ("guess", "arc"): _ANGLE,
-    ("guess", "helix", "turns"): _TURNS,
-    ("reference", "n0"): _FORCE,
-    ("reference", "m0"): _MOMENT,
-    ("law", "epsilon"): _SMOOTHING,
-    ("law", "natural"): _STRAIN,
-    ("law", "width"): _LENGTH,
-    ("law", "thickness"): _LENGTH,
-    ("law", "zeta"): _LENGTH,
-    ("width",): _WIDTH,
-}
-
-
-def as_written(value: Any, path: KeyPath = ()) -> Iterator[Problem]:
-    """Yield the numbers whose products would not be finite, and lists that are too long."""
+    None of the parts that the value shares with a sound one that it is `like`.
+    """
     if isinstance(value, float):
         yield from _size(value, path)
     elif isinstance(value, tuple | dict):
@@ -114,11 +52,21 @@ def as_written(value: Any, path: KeyPath = ()) -> Iterator[Problem]:
         pairs = value.items() if isinstance(value, dict) else enumerate(value)
         for key, item in pairs:
             yield from as_written(item, (*path, key))
-    elif is_dataclass(value) and type(value).__module__.startswith(_OURS):
-        for member in fields(value):
-            yield from as_written(getattr(value, member.name), (*path, key_of(member.name)))
+    elif is_dataclass(value):
+        cls: type = type(value)
+        for name, key in _members(cls):
+            part, known = getattr(value, name), getattr(like, name, None)
+            if part is not known and not isinstance(part, str):
+                yield from as_written(part, (*path, key), known)
     if path == ("interval",) and value[0] < value[1]:
         yield from _interval(*value)
+
+
+@cache
+def _members(cls: type) -> tuple[tuple[str, str], ...]:
+    """Return the fields of one of our dataclasses, each with its key; none of any other class."""
+    ours = is_dataclass(cls) and cls.__module__.startswith(_OURS)
+    return tuple((f.name, key_of(f.name)) for f in fields(cls)) if ours else ()
 
 
 def _size(number: float, path: KeyPath) -> Iterator[Problem]:
@@ -143,12 +91,17 @@ def _interval(start: float, end: float) -> Iterator[Problem]:
         yield Problem(("interval",), message + example, f"[{start:.12g}, {end:.12g}]")
 
 
-def in_units(scene: Scene, values: Mapping[KeyPath, float]) -> Iterator[Problem]:
+def in_units(
+    scene: Scene, values: Mapping[KeyPath, float], like: Scene | None = None
+) -> Iterator[Problem]:
     """Yield what is too large, or too unlike the rest, in units L = 1, Dw = 1.
 
-    `values` are those of the formulas, by path; of what varies along the ribbon, the largest.
+    `values` are those of the formulas, by path; of what varies along the ribbon, the largest. A
+    sound scene that is `like` this one has the same values: in the same units, what both share is
+    not looked at again.
     """
     units = units_of(scene)
+    like = like if like is not None and units_of(like) == units else None
     start, end = scene.interval
     yield from _length(end - start, units)
     if isinstance(scene.law, Stiff):
@@ -156,9 +109,12 @@ def in_units(scene: Scene, values: Mapping[KeyPath, float]) -> Iterator[Problem]
     if isinstance(scene.law, Sano):
         yield from _moduli(scene.law)
     yield from check_narrow(scene, units)
-    for path, kind in _KINDS.items():
-        unit = kind.unit_of(units)
+    for path, kind in KINDS.items():
+        root = str(path[0])
+        if like is not None and getattr(scene, root) is getattr(like, root):
+            continue
         for place, value in _at(scene, path):
+            unit = kind.unit_of(units)
             for at, number in _numbers(value, place, values):
                 if abs(number) > kind.limit * unit:
                     yield Problem(at, _message(number, kind, unit, units), f"{number:g}")
@@ -192,7 +148,7 @@ def _length(length: float, units: Units) -> Iterator[Problem]:
         yield Problem(("interval",), message)
 
 
-def _message(number: float, kind: _Kind, unit: float, units: Units) -> str:
+def _message(number: float, kind: Kind, unit: float, units: Units) -> str:
     # The unit of the stiffness is the law's own where that is far from 1.
     own = kind.unit if units.stiffness == 1 else kind.unit.replace("D w", "law.B2 D w")
     name = f" {own}" if own else ""
@@ -202,15 +158,16 @@ def _message(number: float, kind: _Kind, unit: float, units: Units) -> str:
 
 
 def _at(value: Any, path: KeyPath, before: KeyPath = ()) -> Iterator[tuple[KeyPath, Any]]:
-    """Yield what a path leads to, in each item of a list on the way, with its own path."""
-    if not path:
-        yield before, value
-    elif isinstance(value, tuple):
-        for index, item in enumerate(value):
-            yield from _at(item, path, (*before, index))
-    elif is_dataclass(value):
-        key, *rest = path
-        yield from _at(getattr(value, str(key), None), tuple(rest), (*before, key))
+    """Yield what is at the end of a path, in each item of a list on the way, with its own path."""
+    for depth, key in enumerate(path):
+        if isinstance(value, tuple):
+            for index, item in enumerate(value):
+                yield from _at(item, path[depth:], (*before, *path[:depth], index))
+            return
+        value = getattr(value, str(key), None)
+        if value is None:  # as most are
+            return
+    yield (*before, *path), value
 
 
 def _numbers(
@@ -226,4 +183,6 @@ def _numbers(
             yield from _numbers(item, (*path, index), values)
     elif is_dataclass(value):
         for member in fields(value):
-            yield from _numbers(getattr(value, member.name), (*path, member.name), values)
+            part = getattr(value, member.name)
+            if part is not None:
+                yield from _numbers(part, (*path, member.name), values)

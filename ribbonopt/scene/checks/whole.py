@@ -5,8 +5,8 @@ Each check looks at one matter and returns all problems it finds; none depends o
 
 from __future__ import annotations
 
-from collections.abc import Iterator
-from dataclasses import is_dataclass
+from collections.abc import Iterator, Mapping
+from dataclasses import dataclass, is_dataclass
 from itertools import pairwise
 from typing import Any, get_origin
 
@@ -27,25 +27,42 @@ from .magnitudes import as_written, in_units
 from .supports import check_supports
 
 
-def check(scene: Scene) -> list[Problem]:
-    """Return the problems of a scene whose single values are valid."""
-    boundary = scene.boundary
-    if problems := list(as_written(scene)):
+@dataclass(frozen=True)
+class Sound:
+    """A scene without a fault, and its formulas by path: what another one may be like.
+
+    One that differs from it in some numbers only has the same formulas, and where it holds the very
+    same part, what was found of that holds as well.
+    """
+
+    scene: Scene
+    formulas: Mapping[KeyPath, str]
+
+    @classmethod
+    def of(cls, scene: Scene) -> Sound:
+        """Remember a scene that was checked."""
+        return cls(scene, formulas_of(scene))
+
+
+def check(scene: Scene, like: Sound | None = None) -> list[Problem]:
+    """Return the problems of a scene whose single values are valid.
+
+    `like` is a sound scene that differs in numbers only: what both share is not looked at again.
+    """
+    boundary, before = scene.boundary, None if like is None else like.scene
+    if problems := list(as_written(scene, like=before)):
         return problems  # what follows computes with these numbers
     problems = [*_name(scene.name), *_interval(scene.interval)]
-    formulas = dict(_formulas(boundary, Boundary, ("boundary",)))
-    formulas |= _formulas(scene.loads, Loads, ("loads",))
-    formulas |= _formulas(scene.supports, tuple[InteriorSupport, ...], ("supports",))
-    formulas |= _formulas(scene.guess, Guess, ("guess",))
-    formulas |= _formulas(scene.gravity, hints(Scene)["gravity"], ("gravity",))
+    formulas = formulas_of(scene) if like is None else like.formulas
     values: dict[KeyPath, float] = {}
     if formulas or boundary.also or scene.parameters:
         # Imported late: a scene in plain numbers starts without the grammar of formulas.
         from .formulas import check_equations, check_parameters, values_of
 
         values, found = values_of(formulas, scene.parameters)
-        problems += check_parameters(scene.parameters)
-        problems += [*found, *check_equations(boundary.also, scene.parameters)]
+        problems += [*check_parameters(scene.parameters), *found]
+        if like is None:
+            problems += check_equations(boundary.also, scene.parameters)
     if (along := dict(numbers_along(scene))) and not problems:
         # Imported late, as above.
         from .along import check_along, largest
@@ -57,14 +74,10 @@ def check(scene: Scene) -> list[Problem]:
             from .width import check_width
 
             problems += check_width(samples["width",])
-    for name in ("start", "end"):
-        problems += check_frame(getattr(boundary, name), ("boundary", name), values)
-    if isinstance(scene.guess, MoebiusGuess):
-        problems += check_piece(scene.guess.moebius, ("guess", "moebius"))
-    if boundary.loop is not None:
-        problems += check_loop(boundary.loop, boundary, scene.guess)
-    else:
-        problems += check_supports(boundary, values)
+    if before is not None and _worth(scene) != _worth(before):
+        before = None  # what both share is written in the same way, but may be worth something else
+    if before is None or (boundary, scene.guess) != (before.boundary, before.guess):
+        problems += _ends(scene, values)
     if isinstance(scene.law, Sized):
         from .sized import check_sized  # laws that depend on the sizes of the ribbon
 
@@ -94,13 +107,40 @@ def check(scene: Scene) -> list[Problem]:
 
         problems += check_gravity(scene, values)
     if not problems:
-        problems += in_units(scene, values)
+        problems += in_units(scene, values, before)
     if scene.record or scene.continuation is not None:
         # Imported late: few scenes are continued.
         from .continuation import check_continuation
 
         problems += check_continuation(scene, None if problems else check)
     return problems
+
+
+def formulas_of(scene: Scene) -> dict[KeyPath, str]:
+    """Return the formulas of numbers in a scene, by path; not those along the ribbon."""
+    found = dict(_formulas(scene.boundary, Boundary, ("boundary",)))
+    found |= _formulas(scene.loads, Loads, ("loads",))
+    found |= _formulas(scene.supports, tuple[InteriorSupport, ...], ("supports",))
+    found |= _formulas(scene.guess, Guess, ("guess",))
+    found |= _formulas(scene.gravity, hints(Scene)["gravity"], ("gravity",))
+    return found
+
+
+def _worth(scene: Scene) -> tuple[object, ...]:
+    """Return what decides the values of formulas, and of numbers along the ribbon."""
+    return scene.parameters, scene.interval
+
+
+def _ends(scene: Scene, values: Mapping[KeyPath, float]) -> Iterator[Problem]:
+    boundary = scene.boundary
+    for name in ("start", "end"):
+        yield from check_frame(getattr(boundary, name), ("boundary", name), values)
+    if isinstance(scene.guess, MoebiusGuess):
+        yield from check_piece(scene.guess.moebius, ("guess", "moebius"))
+    if boundary.loop is not None:
+        yield from check_loop(boundary.loop, boundary, scene.guess)
+    else:
+        yield from check_supports(boundary, values)
 
 
 def _name(name: str) -> Iterator[Problem]:
@@ -133,15 +173,17 @@ def _formulas(value: Any, annotation: Any, path: KeyPath) -> Iterator[tuple[KeyP
     """
     if is_along(annotation):
         return
-    options = branches(annotation).values()
     if isinstance(value, str):
-        if str in options:
+        if str in branches(annotation).values():
             yield path, value
     elif is_dataclass(value):
         cls: type = type(value)
         for name, inner in hints(cls).items():
-            yield from _formulas(getattr(value, name), inner, (*path, name))
+            part = getattr(value, name)
+            if not (part is None or isinstance(part, float)):  # as most are
+                yield from _formulas(part, inner, (*path, name))
     elif isinstance(value, tuple):
+        options = branches(annotation).values()
         items = next((some for some in options if get_origin(some) is tuple), annotation)
         for index, item in enumerate(value):
             yield from _formulas(item, inside(items, index), (*path, index))

@@ -81,6 +81,14 @@ def scalar(text: str) -> str | int | float | bool | None:
     return text if number is None else number
 
 
+def plain_number(text: str) -> int | float | None:
+    """Return the number that a text says as YAML where it says one and nothing else.
+
+    None where that is not seen from its characters: it may be a number then, too.
+    """
+    return _number(text) if text and _OF_NUMBERS.issuperset(text) else None
+
+
 def _number(text: str) -> int | float | None:
     digits = text[1:] if text[0] in "+-" else text
     try:

@@ -22,7 +22,8 @@ from ribbonopt.errors import ModelError, RibbonoptError
 from ribbonopt.pipeline.prepared import Prepared, prepare
 from ribbonopt.plain import Row, finite
 from ribbonopt.problem import Posed
-from ribbonopt.scene import Scene, loads_scene
+from ribbonopt.scene import Scene
+from ribbonopt.scene.document import Document
 from ribbonopt.solution.solution import Solution
 from ribbonopt.studies.continuation.recorded import error_of, numbers_of, sampled
 
@@ -35,8 +36,9 @@ class Worker:
     """Solves chunks; keeps what it has built."""
 
     def __init__(self) -> None:
-        """Begin with nothing built."""
+        """Begin with nothing read and nothing built."""
         self._built: dict[tuple[object, ...], Prepared] = {}
+        self._document: Document | None = None
 
     def answers(self, chunk: dict[str, Any]) -> Iterator[dict[str, Any]]:
         """Yield for every ribbon that it begins, and its row; those of `skip` are passed over."""
@@ -66,12 +68,12 @@ class Worker:
 
         def solve(scene: Scene, row: Row) -> None:
             nonlocal found, family
-            number = ribbon["number"]
-            found, start, family = solve_beside(self._prepared(scene), scene, number, before)
+            posed, number = Posed.of(scene), ribbon["number"]
+            found, start, family = solve_beside(self._of(posed), posed, number, before)
             row |= _outcome(found, start)
             row |= _recorded(found, row)
 
-        return _row(ribbon, solve), found, family
+        return self._row(ribbon, solve), found, family
 
     def _followed(self, ribbon: dict[str, Any], chunk: dict[str, Any]) -> Row:
         """Return the row of a ribbon that is continued."""
@@ -79,34 +81,44 @@ class Worker:
 
         def answer(scene: Scene, row: Row) -> None:
             place = _place(chunk, ribbon)
-            row |= follow(scene, self._prepared, chunk["save"], place, 2 * WATCH)
 
-        return _row(ribbon, answer)
+            def prepared(scene: Scene) -> Prepared:
+                return self._of(Posed.of(scene))
 
-    def _prepared(self, scene: Scene) -> Prepared:
+            row |= follow(scene, prepared, chunk["save"], place, 2 * WATCH)
+
+        return self._row(ribbon, answer)
+
+    def _of(self, posed: Posed) -> Prepared:
         """Return the structure of a scene, built once."""
-        structure = Posed.of(scene).structure
+        structure = posed.structure
         if structure not in self._built:
-            self._built[structure] = prepare(replace(scene, continuation=None))
+            self._built[structure] = prepare(replace(posed.given, continuation=None))
         return self._built[structure]
 
+    def _row(self, ribbon: dict[str, Any], answer: Callable[[Scene, Row], None]) -> Row:
+        """Return the row of a ribbon, to which `answer` adds, or which says why that failed."""
+        started = time.perf_counter()
+        row: Row = {"number": ribbon["number"], "scene": ribbon["source"], **ribbon["inputs"]}
+        try:
+            scene = self._scene(ribbon)
+            row["scene"] = scene.name
+            answer(scene, row)
+        except RibbonoptError as error:
+            status = getattr(error, "status", "bad_input")
+            row |= {"status": status, "verified": False, "message": str(error)}
+        except Exception as error:  # whatever it is, the other ribbons go on
+            message = f"{type(error).__name__}: {error}"
+            row |= {"status": "error", "verified": False, "message": message}
+        row["seconds"] = time.perf_counter() - started
+        return finite(row)  # type: ignore[no-any-return]
 
-def _row(ribbon: dict[str, Any], answer: Callable[[Scene, Row], None]) -> Row:
-    """Return the row of a ribbon, to which `answer` adds, or which says why that failed."""
-    started = time.perf_counter()
-    row: Row = {"number": ribbon["number"], "scene": ribbon["source"], **ribbon["inputs"]}
-    try:
-        scene = loads_scene(ribbon["text"], ribbon["source"], ribbon["set"])
-        row["scene"] = scene.name
-        answer(scene, row)
-    except RibbonoptError as error:
-        status = getattr(error, "status", "bad_input")
-        row |= {"status": status, "verified": False, "message": str(error)}
-    except Exception as error:  # whatever it is, the other ribbons go on
-        message = f"{type(error).__name__}: {error}"
-        row |= {"status": "error", "verified": False, "message": message}
-    row["seconds"] = time.perf_counter() - started
-    return finite(row)  # type: ignore[no-any-return]
+    def _scene(self, ribbon: dict[str, Any]) -> Scene:
+        """Return the scene of a ribbon; a text is read once for those that follow one another."""
+        text = ribbon["text"], ribbon["source"]
+        if self._document is None or (self._document.text, self._document.source) != text:
+            self._document = Document(*text)
+        return self._document.scene(ribbon["set"])
 
 
 def _outcome(found: Solution, start: str) -> Row:

@@ -10,9 +10,9 @@ import numpy as np
 from ribbonopt.accuracy.estimate import relative_error
 from ribbonopt.attempt.attempt import verified
 from ribbonopt.checks.phase_words import changed_phases
+from ribbonopt.pipeline.spare import SPARE
 from ribbonopt.solution.solution import Solution
 from ribbonopt.solvers import Status
-from ribbonopt.studies.spare import SPARE
 
 from .along import NEXT_TO_FOLD, error_along
 from .coordinates import row_of

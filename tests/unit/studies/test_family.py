@@ -6,10 +6,10 @@ from typing import Any
 import numpy as np
 import pytest
 
+from ribbonopt.pipeline.neighbour import Neighbour
 from ribbonopt.pipeline.prepared import Prepared, solve
 from ribbonopt.scene import Scene, loads_scene
 from ribbonopt.studies.batch import family
-from ribbonopt.studies.batch.neighbour import Neighbour
 from ribbonopt.studies.batch.processes import message
 from ribbonopt.studies.batch.study import Source, StudyRibbon
 from ribbonopt.studies.batch.worker import Worker

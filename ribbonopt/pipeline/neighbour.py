@@ -7,7 +7,8 @@ few evaluations of its equations.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+import time
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -15,12 +16,15 @@ from ribbonopt.accuracy.compared import mesh_to_begin
 from ribbonopt.accuracy.estimate import analyse
 from ribbonopt.arrays import Array
 from ribbonopt.attempt.attempt import Attempt
-from ribbonopt.pipeline.prepared import Prepared
 from ribbonopt.problem import Posed
 from ribbonopt.scene import Scene
 from ribbonopt.solution.solution import Solution
 from ribbonopt.solvers.protocols import Factors
-from ribbonopt.studies.spare import SPARE
+
+from .means import Means
+from .search import Search
+from .spare import SPARE
+from .told import with_costs
 
 FARTHEST = 2.0  # times the step before, that it is continued
 
@@ -31,8 +35,8 @@ class Neighbour:
 
     Attributes
     ----------
-    prepared : Prepared
-        The structure.
+    prepared : Means
+        The structure, built.
     solution : Solution
         The ribbon, verified.
     factors, finer : factors or None
@@ -41,7 +45,7 @@ class Neighbour:
         The ribbon that it was solved from, if that is on the same mesh.
     """
 
-    prepared: Prepared
+    prepared: Means
     solution: Solution
     factors: Factors | None = None
     finer: Factors | None = None
@@ -52,23 +56,36 @@ class Neighbour:
 
         Where the mesh or the phases do not do, they are made anew from the shape.
         """
-        posed, old = self.prepared.posed(scene), self.solution
-        search = self.prepared.search(posed)
-        attempts = search.on_mesh(old.sheets, mesh_to_begin(old), old.trajectory.ends[1:-1])
-        if self._run(attempts) and attempts.best is not None and _in_order(attempts.best):
-            found = attempts.best
-            if found.sheets or not (search.phases_help and search.better_in_phases(found)):
-                finer = self._finer(found, served=attempts.factorizations == 0)
-                refined = self.prepared.refined(found, SPARE, search)
-                on_new_mesh = refined.trajectory is not found.trajectory
-                if refined.verified and on_new_mesh:
-                    factors = None if search.last is None else search.last.factors
-                    return Neighbour(self.prepared, refined, factors)
-                if refined.verified and attempts.check():
-                    kept = attempts.best, attempts.factors, finer, old
-                    return Neighbour(self.prepared, *kept)
-        anew = self.prepared.solve(posed, guess=old, fallback=False, quick=True)
+        posed = self.prepared.posed(scene)
+        beside = self.beside(self.prepared.search(posed))
+        if beside is not None:
+            return beside
+        anew = self.prepared.solve(posed, self.solution, fallback=False, quick=True)
         return Neighbour(self.prepared, anew) if anew.verified else None
+
+    def beside(self, search: Search) -> Neighbour | None:
+        """Return what a search for another scene of this structure finds in these phases.
+
+        On this mesh, or from it on a finer one; None if there is none so near.
+        """
+        old = self.solution
+        attempts = search.on_mesh(old.sheets, mesh_to_begin(old), old.trajectory.ends[1:-1])
+        if not self._run(attempts) or attempts.best is None or not _in_order(attempts.best):
+            return None
+        found = attempts.best
+        if not found.sheets and search.phases_help and search.better_in_phases(found):
+            return None
+        steps = tuple(search.ledger.steps)
+        finer = self._finer(found, served=attempts.factorizations == 0)
+        refined = self.prepared.refined(found, SPARE, search)
+        if refined.verified and refined.trajectory is not found.trajectory:
+            factors = None if search.last is None else search.last.factors
+            told = replace(refined, steps=(*steps, *refined.steps))
+            return Neighbour(self.prepared, told, factors)
+        if refined.verified and attempts.check():
+            told = replace(attempts.best, steps=steps)
+            return Neighbour(self.prepared, told, attempts.factors, finer, old)
+        return None
 
     def solve_at_any_cost(self, scene: Scene | Posed) -> Solution:
         """Return a solution of another scene of this structure, by all that a guess may lead to."""
@@ -104,6 +121,41 @@ class Neighbour:
             return analyse(found, self.finer if served else None, keep=served).factors
         except np.linalg.LinAlgError:
             return None
+
+
+class Latest:
+    """The solution found last and the one that it was found from: of these alone factors are kept.
+
+    For whoever goes on from either, from one to the next or from one to many.
+    """
+
+    def __init__(self) -> None:
+        """Begin without any."""
+        self._kept: tuple[Neighbour, ...] = ()
+
+    def keep(self, found: Neighbour, origin: Neighbour | None = None) -> Solution:
+        """Keep what was found, if it is a solution, and what it was found from; return that."""
+        if origin is not None and found.before is not None:  # on the same mesh: they serve both
+            origin = replace(origin, factors=found.factors, finer=found.finer)
+        kept = (found, origin) if found.solution.verified else ()
+        self._kept = tuple(each for each in kept if each is not None)
+        return found.solution
+
+    def beside(self, guess: object, posed: Posed) -> Solution | None:
+        """Return a scene's solution beside one that is kept, if that is the guess; None if not.
+
+        Nor without a tolerance: the answer is to be on the mesh that is asked for then.
+        """
+        origin = next((each for each in self._kept if each.solution is guess), None)
+        if origin is None or posed.scene.tolerance is None:
+            return None
+        started, search = time.perf_counter(), origin.prepared.search(posed)
+        search.ledger.note("guess: given", 0.0)
+        found = origin.beside(search)
+        if found is None:
+            return None
+        told = with_costs(found.solution, search, origin.prepared, started)
+        return self.keep(replace(found, solution=told), origin)
 
 
 def _in_order(found: Solution) -> bool:

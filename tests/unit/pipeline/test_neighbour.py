@@ -8,13 +8,23 @@ import numpy as np
 import pytest
 
 from ribbonopt.accuracy.estimate import analyse, relative_error
+from ribbonopt.pipeline.neighbour import Neighbour
 from ribbonopt.pipeline.prepared import Prepared, prepare
+from ribbonopt.pipeline.search import Search
 from ribbonopt.scene import Scene, load_scene, loads_scene
 from ribbonopt.solvers.newton import NewtonSolver
 from ribbonopt.studies.batch.family import solve_beside
-from ribbonopt.studies.batch.neighbour import Neighbour
 
 CONFIGS = Path(__file__).parents[3] / "configs"
+ARCH = """
+name: arch
+law: {type: sadowsky}
+parameters: {turn: 1.0}
+boundary:
+  start: {support: clamped, position: [0, 0, 0], directors: identity}
+  end: {support: clamped, position: [0, 0.05, 0.8], directors: {turns: [{z: turn}]}}
+tolerance: 1e-6
+"""
 
 
 def half(epsilon: float, *more: str) -> Scene:
@@ -54,18 +64,9 @@ def walk(prepared: Prepared, epsilons: list[float], *more: str) -> list[Neighbou
 
 def test_a_phase_without_length_is_no_neighbour() -> None:
     """From one arch to the next a phase of Sadowsky's ribbon shrinks beyond nothing."""
-    text = """
-name: arch
-law: {type: sadowsky}
-parameters: {turn: 1.0}
-boundary:
-  start: {support: clamped, position: [0, 0, 0], directors: identity}
-  end: {support: clamped, position: [0, 0.05, 0.8], directors: {turns: [{z: turn}]}}
-tolerance: 1e-6
-"""
-    built, family, phases = prepare(loads_scene(text)), None, []
+    built, family, phases = prepare(loads_scene(ARCH)), None, []
     for number, turn in enumerate((1.5, 1.0, 0.2)):
-        scene = loads_scene(text, overrides=[f"parameters.turn={turn}"])
+        scene = loads_scene(ARCH, overrides=[f"parameters.turn={turn}"])
         found, _, family = solve_beside(built, scene, number, family)
         assert found.verified
         phases.append(len(found.sheets))
@@ -157,3 +158,59 @@ def test_factors_that_do_not_fit_are_given_up(prepared: Prepared) -> None:
     assert again.status.converged
     assert again.factorizations == 0
     assert np.allclose(again.w, good.w, rtol=0, atol=1e-9)
+
+
+@pytest.mark.parametrize("star", [False, True], ids=["chain", "star"])
+def test_a_loop_of_ones_own_keeps_factors_too(
+    prepared: Prepared, counted: list[tuple[int, int]], star: bool
+) -> None:
+    epsilons = np.linspace(0.05, 0.045, 12).tolist()
+    guess = first = prepared.solve(half(epsilons[0]))
+    begun, found = len(counted), []
+    for epsilon in epsilons[1:]:
+        found.append(prepared.solve(half(epsilon), guess=first if star else guess))
+        guess = found[-1]
+    assert len(counted) - begun == len(found)
+    assert sum(factorizations for _, factorizations in counted[begun:]) <= 2
+    assert all(each.verified and relative_error(each)[0] <= 1e-9 for each in found)
+    alone = prepared.solve(half(epsilons[-1], "tolerance=1e-12"))
+    np.testing.assert_allclose(found[-1].n0, alone.n0, rtol=1e-9)
+
+
+def test_a_loop_of_ones_own_says_what_it_did(prepared: Prepared) -> None:
+    first = prepared.solve(half(0.05))
+    found = prepared.solve(half(0.049), guess=first)
+    assert found.steps[0]["step"] == "guess: given"
+    assert len(found.steps) == 2 and found.iterations == found.steps[1]["iterations"] > 0
+    assert found.timings["total"] >= found.timings["evaluate"] > 0
+    assert any("guess is given" in words for words in found.skipped)
+    assert not found.given_up
+
+
+def test_without_a_tolerance_the_mesh_is_the_scenes_own() -> None:
+    path = CONFIGS / "moebius_half.yaml"
+    law = "law={type: regularized, epsilon: 0.01}"
+    fine = load_scene(path, [law, "tolerance=1e-12"])
+    built = prepare(fine)
+    found = built.solve(fine)
+    assert sum(found.mesh.elements) > fine.transcription.intervals
+    plain = built.solve(replace(fine, tolerance=None), guess=found)
+    assert plain.verified
+    assert plain.mesh.elements == (fine.transcription.intervals,)
+
+
+def test_where_nothing_is_near_the_whole_search_goes_on(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Phases of Sadowsky's ribbon that shrink beyond nothing, in a loop of one's own."""
+    whole, found = Neighbour.beside, []
+
+    def beside(self: Neighbour, search: Search) -> Neighbour | None:
+        found.append(whole(self, search))
+        return found[-1]
+
+    monkeypatch.setattr(Neighbour, "beside", beside)
+    built, solution = prepare(loads_scene(ARCH)), None
+    for turn in (1.5, 1.0, 0.2):
+        scene = loads_scene(ARCH, overrides=[f"parameters.turn={turn}"])
+        solution = built.solve(scene, guess=solution)
+        assert solution.verified and solution.posed.theta["parameters.turn"] == turn
+    assert len(found) == 2 and None in found
