@@ -25,11 +25,11 @@ from peer_states import compile_with, length, write_guess, write_source
 HERE = Path(__file__).resolve().parent
 # name: whole, epsilons, stages, intervals of the first mesh, tolerance
 CASES: dict[str, tuple[bool, list[float], int, int, float]] = {
-    "half 1e-6": (False, [0.0], 5, 4, 1e-6),
-    "half 1e-9": (False, [0.0], 7, 4, 1e-8),
-    "half 1e-12": (False, [0.0], 7, 6, 1e-11),
-    "whole 1e-9": (True, [0.01], 7, 10, 1e-9),
-    "branch": (False, np.logspace(-1, -4, 21).tolist(), 7, 6, 1e-9),
+    "half 1e-6": (False, [0.0], 4, 4, 1e-4),
+    "half 1e-9": (False, [0.0], 5, 2, 1e-6),
+    "half 1e-12": (False, [0.0], 7, 4, 1e-4),
+    "whole 1e-9": (True, [0.01], 5, 8, 1e-8),
+    "branch": (False, np.logspace(-1, -4, 21).tolist(), 7, 8, 1e-8),
 }
 
 
