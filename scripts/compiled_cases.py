@@ -16,6 +16,7 @@ import os
 import sys
 import time
 from collections.abc import Callable
+from importlib import import_module
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
@@ -179,11 +180,19 @@ def built(name: str) -> Work:
     return {"branch": branch, "clamp from nothing": clamps}[name](name)
 
 
+def kernel() -> str:
+    """Return what this package says of its kernel; checkouts from before it have none."""
+    try:
+        return str(import_module("ribbonopt.kernel").STATE)
+    except ImportError:
+        return "none"
+
+
 def main() -> None:
     """Answer line by line; the first line asks for nothing but the versions."""
     from ribbonopt.output.summary import versions
 
-    print(json.dumps(versions()), flush=True)
+    print(json.dumps({"kernel": kernel()} | versions()), flush=True)
     works: dict[str, Work] = {}
     for line in sys.stdin:
         name, count, turn = json.loads(line)
