@@ -169,7 +169,7 @@ def summary(name: str, runs: dict[str, list[Found]]) -> Found:
             "ms_least": 1e3 * min(run["cpu_s"] for run in found),
             "verified": all(run.get("verified", True) for run in found),
         }
-        one |= {key: found[-1][key] for key in ("bar", "points", "starting_s") if key in found[-1]}
+        one |= {key: found[-1][key] for key in ("bar", "points") if key in found[-1]}
         if truth is not None:
             one["error"] = max(apart(run["numbers"], truth) for run in found)
         if BEFORE in runs and label != BEFORE:
@@ -205,6 +205,8 @@ def report(name: str, row: Found) -> None:
             text += f"  {one['ratio']:.2f} x as fast as before [{low:.2f}, {high:.2f}]"
         if label in row["wanted"]:
             text += f", wanted {row['wanted'][label]:g}"
+        if name.startswith("batch"):
+            text += f"; {1e3 / one['ms']:.0f} ribbons/s a core"
         text += "".join(f"; {k} {one[k]:.1e}" for k in ("error", "bar") if k in one)
         print(text + ("" if one["verified"] else "; NOT VERIFIED"), flush=True)
 
