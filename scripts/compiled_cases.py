@@ -54,8 +54,8 @@ scene:
   tolerance: 1e-6
 sweep:
   grid:
-    parameters.distance: {{from: 0.95, to: 0.5, count: 5}}
-    parameters.turn: {{from: -1.5, to: 1.5, count: 25}}
+    parameters.distance: {{from: 0.5, to: 0.95, count: 40}}
+    parameters.turn: {{from: -1.5, to: 1.5, count: 5}}
 """,
 }
 
@@ -185,10 +185,10 @@ def built(name: str) -> Work:
 
 def kernel() -> str:
     """Return what this package says of its kernel; checkouts from before it have none."""
-    try:
-        return str(import_module("ribbonopt.kernel").STATE)
-    except ImportError:
+    home = import_module("ribbonopt").__file__ or ""
+    if not Path(home).with_name("kernel").is_dir():  # another one may be installed
         return "none"
+    return str(import_module("ribbonopt.kernel").STATE)
 
 
 def main() -> None:
