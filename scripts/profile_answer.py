@@ -1,4 +1,4 @@
-"""Where the CPU of a warm answer goes: interpreter, numpy, CasADi, LAPACK, kernel, memory.
+"""Where the CPU of a warm answer goes: interpreter, numpy, CasADi, LAPACK, kernel, IPOPT.
 
     python scripts/profile_answer.py [--before CHECKOUT] [--case half 1e-9] [--seconds 5]
         [--rounds 3] [--symbols 12] [--out results/profile]
@@ -36,6 +36,7 @@ from ribbonopt.studies.machine import machine
 # group: what the names of its libraries hold; the first that fits
 GROUPS = {
     "kernel": r"_compiled\.",
+    "IPOPT": r"ipopt|mumps|coin|metis|casadi-tp|gfortran|quadmath",  # its BLAS is CasADi's
     "LAPACK": r"openblas|lapack|blas|mkl",
     "CasADi": r"casadi",
     "numpy": r"multiarray|umath|numpy|pocketfft",
