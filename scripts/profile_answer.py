@@ -53,7 +53,9 @@ def main() -> None:
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--before", type=Path, help="an older checkout of this package")
     parser.add_argument("--case", default="half 1e-9", choices=CASES)
-    parser.add_argument("--seconds", type=float, default=5, help="of a round of each contender")
+    parser.add_argument(
+        "--seconds", type=float, default=5, help="of a round of the slowest contender"
+    )
     parser.add_argument("--rounds", type=int, default=3)
     parser.add_argument("--symbols", type=int, default=0, help="so many functions of each too")
     parser.add_argument("--out", type=Path, default=Path("results") / "profile")
@@ -67,11 +69,11 @@ def main() -> None:
     samples: dict[str, Counter[tuple[str, str]]] = {label: Counter() for label in checkouts}
     spent: dict[str, list[float]] = {label: [] for label in checkouts}
     for checkout in checkouts.values():
-        checkout.ask(options.case, 1, 0)
+        checkout.ask(options.case, 1, 0)  # builds
+    once = max(checkout.ask(options.case, 1, 0)["cpu_s"] for checkout in checkouts.values())
+    count = max(1, round(options.seconds / once))  # of the same answers for all
     for turn in range(1, options.rounds + 1):
         for label, checkout in checkouts.items():
-            once = checkout.ask(options.case, 1, turn)["cpu_s"]
-            count = max(1, round(options.seconds / once))
             found, sampled = sample(checkout, options.case, count, turn)
             spent[label].append(found)
             samples[label] += sampled
