@@ -1,0 +1,94 @@
+"""Benchmarks compare what they say: peers solve our problem, and numbers are what they mean."""
+
+import sys
+from pathlib import Path
+
+import numpy as np
+import pytest
+from scipy.integrate import solve_ivp
+
+sys.path.append(str(Path(__file__).resolve().parents[2] / "scripts"))
+
+import bench_compiled
+import bench_growth
+import compiled_cases
+import peer_rootfinder
+import peer_states
+from profile_answer import group_of
+
+
+@pytest.mark.parametrize(
+    ("whole", "epsilon", "loads"),
+    [(False, 0.0, bench_compiled.HALF), (True, 0.01, bench_compiled.WHOLE)],
+)
+def test_the_states_of_peers_meet_the_end_from_the_known_loads(
+    whole: bool, epsilon: float, loads: list[float]
+) -> None:
+    """Loads known from elsewhere, integrated, hold start and end; loads a bit off do not."""
+    parts = peer_states.equations(whole)
+
+    def missed(changed: float) -> float:
+        first = np.array([0, 0, 0, 1, 0, 0, 0, *loads])
+        first[8] += changed
+        assert np.abs(np.array(parts["start"](first))).max() == 0
+        ends = (0, peer_states.length(whole))
+
+        def slope(_: float, x: np.ndarray) -> np.ndarray:
+            return np.array(parts["rates"](x, epsilon)).ravel()
+
+        last = solve_ivp(slope, ends, first, rtol=1e-11, atol=1e-12, method="DOP853").y[:, -1]
+        return float(np.abs(np.array(parts["end"](last))).max())
+
+    assert missed(0.0) < 1e-8
+    assert missed(1e-5) > 1e-7
+
+
+@pytest.mark.parametrize("whole", [False, True])
+def test_the_jacobians_of_peers_are_slopes(whole: bool) -> None:
+    parts, rng = peer_states.equations(whole), np.random.default_rng(3)
+    x, dx, step = rng.normal(size=13), rng.normal(size=13), 1e-6
+    for name, more in (("rates", [0.02]), ("start", []), ("end", [])):
+        ahead, behind = (np.array(parts[name](x + k * step * dx, *more)) for k in (1, -1))
+        slope = np.array(parts[f"{name}_x"](x, *more)) @ dx
+        assert np.allclose((ahead - behind).ravel() / (2 * step), slope, rtol=1e-7, atol=1e-7)
+
+
+def test_the_rootfinder_finds_the_half_ribbon() -> None:
+    found = peer_rootfinder.HalfMoebius(6, 6, 1e-9).solve()
+    assert bench_compiled.apart(found, bench_compiled.HALF) < 1e-9
+
+
+@pytest.mark.parametrize("name", ["half 1e-9", "whole 1e-9"])
+def test_an_answer_that_is_timed_is_right(name: str) -> None:
+    found = compiled_cases.built(name)(1, 0)
+    truth = bench_compiled.ROWS[name][4]
+    assert truth is not None
+    assert found["verified"]
+    assert found["cpu_s"] > 0
+    assert bench_compiled.apart(found["numbers"], truth) <= found["bar"] <= 1e-9
+
+
+def test_growth_is_told_without_what_every_process_takes() -> None:
+    counts = (10, 100, 1000, 10_000)
+    runs = {n: [[1e-4 * n**1.2, 50_000 + 40.0 * n, 1, 0.0]] for n in counts}
+    found = bench_growth.summary(runs)
+    assert found["exponent"] == pytest.approx(1.2)
+    assert found["kb_an_interval"] == pytest.approx(40)
+
+
+def test_samples_belong_to_the_library_that_ran() -> None:
+    assert [group_of(name) for name in LIBRARIES] == list(LIBRARIES.values())
+
+
+LIBRARIES = {
+    "libpython3.11.so.1.0": "interpreter",
+    "_compiled.cpython-311-x86_64-linux-gnu.so": "kernel",
+    "_multiarray_umath.cpython-311-x86_64-linux-gnu.so": "numpy",
+    "libscipy_openblas64_-32a4b2a6.so": "LAPACK",
+    "libcasadi-tp-openblas.so.0": "IPOPT",
+    "libcoinmumps.so.3": "IPOPT",
+    "libcasadi.so.3.7": "CasADi",
+    "_casadi.so": "CasADi",
+    "libc.so.6": "libc",
+    "[kernel.kallsyms]": "system",
+}
