@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import math
-from bisect import bisect_left
 from dataclasses import dataclass
 
 import casadi as ca
@@ -14,9 +13,8 @@ from ribbonopt.mechanics.laws.catalogue import fields_of
 from ribbonopt.mechanics.section import RodFields
 from ribbonopt.problem import BoundaryValueProblem, Posed, Ribbon
 from ribbonopt.scene import LoadGuess
-from ribbonopt.transcription.buffered import Buffered, Mapped
+from ribbonopt.transcription.buffered import Accumulated, Mapped
 
-STEPS = (8, 16, 24, 32)  # of one call
 POINTS = 33  # at which natural strains are looked at
 CURVATURES = ("natural.curvature", "natural.twist", "natural.across")
 
@@ -74,18 +72,13 @@ class IntegratedLoads:
         substeps = int(min(max(wanted, 1), 100))
         if substeps > 1:
             widths = np.repeat(widths / substeps, substeps)
-        size, steps = self.ribbon.kept(_Steps).of(len(widths))
-        shared = c[None].repeat(size, axis=0), self.posed.values[None].repeat(size, axis=0)
-        count = len(widths)
-        h = np.zeros(-(-count // size) * size)  # steps of no width go nowhere
-        h[:count] = widths
-        at = self.posed.scene.interval[0] + (length if self.backwards else 0.0) + np.cumsum(h) - h
-        states = np.zeros((len(h) + 1, len(self.ribbon.states)))
+        first = self.posed.scene.interval[0] + (length if self.backwards else 0.0)
+        at = first + np.cumsum(widths) - widths
+        states = np.zeros((len(widths) + 1, len(self.ribbon.states)))
         states[0, : len(state)] = state
-        for i in range(0, len(h), size):
-            (after,) = steps(states[i], *shared, h[i : i + size], at[i : i + size])
-            states[i + 1 : i + 1 + size] = after.reshape(size, -1)
-        return states[: count + 1 : substeps], c
+        steps = self.ribbon.kept(_steps)
+        states[1:] = steps(states[0], c, self.posed.values, widths, at)
+        return states[::substeps], c
 
 
 def _bounded_strain(posed: Posed, loads: LoadGuess) -> float:
@@ -110,27 +103,8 @@ def _sections(ribbon: Ribbon) -> Mapped:
     return Mapped(ribbon.section_function)
 
 
-class _Steps:
-    """States after each of many steps, from the first state and all c, theta, h and s.
-
-    Of few numbers of steps in one call, so that few functions are built.
-    """
-
-    def __init__(self, ribbon: Ribbon) -> None:
-        self._step = _step(ribbon)
-        self._built: dict[int, Buffered] = {}
-
-    def of(self, count: int) -> tuple[int, Buffered]:
-        """Return the number of steps in one call, and the function: little more than `count`."""
-        calls = -(-count // STEPS[-1])
-        size = STEPS[bisect_left(STEPS, -(-count // calls))]
-        if size not in self._built:
-            self._built[size] = Buffered(self._step.mapaccum("steps", size))
-        return size, self._built[size]
-
-
-def _step(ribbon: Ribbon) -> ca.Function:
-    """One Runge-Kutta step (x, c, theta, h, s) -> x."""
+def _steps(ribbon: Ribbon) -> Accumulated:
+    """States after each of many Runge-Kutta steps (x, c, theta, h, s) -> x."""
     x = ca.SX.sym("x", len(ribbon.states))
     c = ca.SX.sym("c", len(ribbon.constants))
     theta, s, h = ribbon.parameters, ribbon.position, ca.SX.sym("h")
@@ -141,7 +115,7 @@ def _step(ribbon: Ribbon) -> ca.Function:
     k3 = rates(x + h / 2 * k2, c, theta, s + h / 2)
     k4 = rates(x + h * k3, c, theta, s + h)
     after = x + h / 6 * (k1 + 2 * k2 + 2 * k3 + k4)
-    return ca.Function("step", [x, c, theta, h, s], [after])
+    return Accumulated(ca.Function("step", [x, c, theta, h, s], [after]), shared=2)
 
 
 @dataclass(frozen=True, eq=False)

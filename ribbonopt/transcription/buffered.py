@@ -15,6 +15,7 @@ SHARED = (1, 2)  # inputs of a stage function that all stages have in common
 SHARED_MASK = sum(1 << i for i in SHARED)
 SIZES = (1, 2, *range(4, 65, 4))  # stages of blocks
 LARGEST = SIZES[-1]
+STEPS = (8, 16, 24, 32)  # of one call that takes one step after another
 
 
 class Buffered:
@@ -81,9 +82,10 @@ class Accumulated:
         if self.program is not None:
             self.program.accumulate(count, self._mask, *arguments, states)
             return states
-        for at in range(0, count, LARGEST):
-            taken = min(count - at, LARGEST)
-            size = SIZES[bisect_left(SIZES, taken)]
+        calls = max(1, -(-count // STEPS[-1]))
+        size = STEPS[bisect_left(STEPS, -(-count // calls))]
+        for at in range(0, count, size):
+            taken = min(count - at, size)
             if size not in self._blocks:
                 self._blocks[size] = Buffered(self._step.mapaccum("steps", size))
             block = [state]
