@@ -76,7 +76,8 @@ class Automatic:
         last = slice(-1, None) if in_family(posed.scene.law) else slice(None)
         straight: list[Solution] = []
         met: list[float] = []
-        for number, start in enumerate([shape] if shape else shapes_for(posed, self._spatial)):
+        ribbon = self._spatial if posed.structure == self.posed.structure else None
+        for number, start in enumerate([shape] if shape else shapes_for(posed, ribbon)):
             if number:
                 what = "shape that fits the ends" if number == 1 else "shapes that fit the ends"
                 first = f"the first {'' if number == 1 else f'{number} '}{what} led nowhere"
