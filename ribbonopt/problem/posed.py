@@ -52,6 +52,8 @@ class Posed:
         Units of the scene as it was given, in units Dw = L = 1.
     stations : tuple of Station
         What acts, and holds, at single places between the ends.
+    like : Posed or None
+        The same but for the numbers of its law: what does not depend on these is taken from there.
     """
 
     given: Scene
@@ -60,6 +62,7 @@ class Posed:
     loads: tuple[Load, ...]
     units: Units = SPECIAL
     stations: tuple[Station, ...] = ()
+    like: Posed | None = None
 
     @classmethod
     def of(cls, scene: Scene, units: Units | None = None) -> Posed:
@@ -78,6 +81,23 @@ class Posed:
             stations = stations_of(special)
         return cls(scene, special, conditions_of(special), loads, units, stations)
 
+    def moved(self, scene: Scene, units: Units | None = None) -> Posed:
+        """Pose a scene that has come from this one by other numbers, in its units unless given.
+
+        Where the law alone has others, its ends and loads are not evaluated again.
+        """
+        units = units or units_of(scene)
+        special, before = in_special_units(scene, units), self.scene
+        kept = (
+            value is vars(before)[name] for name, value in vars(special).items() if name != "law"
+        )
+        # How a loop closes, and what edges there are, depends on the numbers of a law.
+        own = isinstance(special.law, OfWidth) or special.boundary.loop is not None
+        if own or type(special.law) is not type(before.law) or not all(kept):
+            return Posed.of(scene, units)
+        first = self.like or self
+        return Posed(scene, special, self.conditions, self.loads, units, self.stations, first)
+
     def under(self, **changes: Any) -> Posed:
         """Return the same ribbon, at the same ends, under other settings of the special scene.
 
@@ -95,8 +115,10 @@ class Posed:
     @cached_property
     def theta(self) -> dict[str, float]:
         """Every number of the scene, in units Dw = L = 1, by name and in order."""
+        values = {f"law.{name}": value for name, value in numbers_of(self.scene.law).items()}
+        if self.like is not None and values.keys() <= self.like.theta.keys():
+            return {**self.like.theta, **values}
         scene, (position, _) = self.scene, self.start
-        values = {f"law.{name}": value for name, value in numbers_of(scene.law).items()}
         for along in fields_of(scene):
             values |= along.numbers()
         values |= membrane_numbers(scene)
@@ -139,7 +161,10 @@ class Posed:
     @cached_property
     def structure(self) -> tuple[object, ...]:
         """What scenes share that differ in numbers only, which serve one built problem."""
-        scene = self.scene
+        scene, like = self.scene, self.like
+        # In a plane natural strains of a law may take it out of that.
+        if like is not None and scene.states != "planar" and self.theta.keys() == like.theta.keys():
+            return like.structure
         conditions = tuple(
             (type(c).__name__, *(v for v in vars(c).values() if isinstance(v, str)))
             for c in self.conditions
