@@ -25,7 +25,6 @@ from stopwatches import stopwatches
 
 from ribbonopt.accuracy import estimate
 from ribbonopt.attempt import attempt
-from ribbonopt.problem import Posed
 from ribbonopt.solvers.condense import CondensedSystem
 from ribbonopt.solvers.newton import NewtonSolver
 from ribbonopt.studies.batch import worker
@@ -66,7 +65,7 @@ RATIO, GROWTH = 1.7, 1.1  # of 2 workers over 1; of memory after the first 100 r
 WATCHED = (
     (worker.Worker, "_solved", "in all"),
     (worker.Worker, "_scene", "scene read"),
-    (Posed, "of", "posed"),
+    (worker.Worker, "_pose", "posed"),
     (NewtonSolver, "solve", "Newton's method"),
     (estimate, "_analysed", "estimate"),
     (attempt, "verify", "verification"),

@@ -74,7 +74,7 @@ class Prepared:
         """Return a scene (default: the prepared one) posed."""
         if scene is None or scene is self.scene:
             return self.structure.posed
-        return scene if isinstance(scene, Posed) else Posed.of(scene)
+        return scene if isinstance(scene, Posed) else self.structure.posed.moved(scene)
 
     def solve(
         self,

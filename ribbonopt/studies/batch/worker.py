@@ -39,6 +39,7 @@ class Worker:
         """Begin with nothing read and nothing built."""
         self._built: dict[tuple[object, ...], Prepared] = {}
         self._document: Document | None = None
+        self._posed: Posed | None = None
 
     def answers(self, chunk: dict[str, Any]) -> Iterator[dict[str, Any]]:
         """Yield for every ribbon that it begins, and its row; those of `skip` are passed over."""
@@ -68,7 +69,7 @@ class Worker:
 
         def solve(scene: Scene, row: Row) -> None:
             nonlocal found, family
-            posed, number = Posed.of(scene), ribbon["number"]
+            posed, number = self._pose(scene), ribbon["number"]
             found, start, family = solve_beside(self._of(posed), posed, number, before)
             row |= _outcome(found, start)
             row |= _recorded(found, row)
@@ -88,6 +89,12 @@ class Worker:
             row |= follow(scene, prepared, chunk["save"], place, 2 * WATCH)
 
         return self._row(ribbon, answer)
+
+    def _pose(self, scene: Scene) -> Posed:
+        """Return a scene posed: what it shares with the one before is not evaluated again."""
+        before = self._posed
+        self._posed = Posed.of(scene) if before is None else before.moved(scene)
+        return self._posed
 
     def _of(self, posed: Posed) -> Prepared:
         """Return the structure of a scene, built once."""

@@ -90,6 +90,33 @@ def test_where_the_law_moves_the_ends_stay(configs: Path, monkeypatch: pytest.Mo
     assert len(calls) == 1
 
 
+def test_from_a_scene_to_one_with_other_numbers_of_its_law(
+    configs: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """It is posed as if it stood alone, whatever is different, and ends once for all alike."""
+    first = Posed.of(load_scene(configs / "moebius_regularized.yaml"))
+    scene = first.given
+    law = replace(scene.law, epsilon=0.2)  # type: ignore[arg-type]
+    others = [
+        replace(scene, law=law),
+        replace(scene, law=Variational(delta=0.3)),
+        replace(scene, law=law, tolerance=1e-5),
+        replace(scene, law=law, interval=(0.0, 0.51)),
+        replace(scene, law=law, formulation="energy"),
+    ]
+    calls = counted(monkeypatch)
+    for other in others:
+        count = len(calls)
+        moved = first.moved(other)
+        assert (len(calls) == count) == (other is others[0])
+        alone = Posed.of(other)
+        assert moved.theta == alone.theta and list(moved.theta) == list(alone.theta)
+        assert moved.structure == alone.structure
+        assert moved.given is other and moved.scene.law == other.law
+    again = first.moved(others[0]).moved(scene)
+    assert again.theta == first.theta and again.like is first
+
+
 STRIP = """
 name: strip
 law: {type: kirchhoff, B2: 1, B3: 2}
