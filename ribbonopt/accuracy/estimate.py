@@ -16,12 +16,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from ribbonopt.arrays import Array
 from ribbonopt.errors import ModelError
+from ribbonopt.frozen import dataclass
 from ribbonopt.scene import Ipopt
 from ribbonopt.solution.potential import dead_force_of
 from ribbonopt.solution.solution import Solution

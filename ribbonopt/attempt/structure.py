@@ -2,13 +2,14 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, fields
+from dataclasses import field, fields
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ribbonopt.arrays import Array
 from ribbonopt.errors import ModelError
+from ribbonopt.frozen import dataclass
 from ribbonopt.problem import BoundaryValueProblem, Posed, Ribbon, formulate
 from ribbonopt.scene import Ipopt
 from ribbonopt.solvers import solver_named

@@ -8,11 +8,12 @@ with dihedral symmetry (a flip at each end; the two together are a turn by 2 pi 
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 
 import numpy as np
 
 from ribbonopt.arrays import Array
+from ribbonopt.frozen import dataclass
 from ribbonopt.scene import Loop
 from ribbonopt.solution.solution import Solution
 

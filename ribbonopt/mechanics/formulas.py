@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from typing import Literal, NoReturn
 
 import casadi as ca
 
+from ribbonopt.frozen import dataclass
 from ribbonopt.scene.formulas.expressions import EndName
 
 

@@ -3,11 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 
 import casadi as ca
 
 from ribbonopt.arrays import Array
+from ribbonopt.frozen import dataclass
 
 from .laws.law import Stress
 

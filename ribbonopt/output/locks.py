@@ -13,10 +13,10 @@ import socket
 import stat
 import time
 from contextlib import suppress
-from dataclasses import dataclass
 from pathlib import Path
 
 from ribbonopt.errors import OutputError
+from ribbonopt.frozen import dataclass
 
 NO_LOCKS = (errno.ENOLCK, errno.ENOSYS, errno.EOPNOTSUPP, errno.EINVAL, errno.EBADF)
 TAKEN = (errno.EAGAIN, errno.EACCES, errno.EDEADLK)

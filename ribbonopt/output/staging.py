@@ -11,11 +11,11 @@ from __future__ import annotations
 import os
 from collections.abc import Collection, Iterator
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass
 from pathlib import Path
 from typing import IO
 
 from ribbonopt.errors import OutputError
+from ribbonopt.frozen import dataclass
 
 from .declared import PICTURES
 from .disk import sync

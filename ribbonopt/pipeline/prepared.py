@@ -7,7 +7,7 @@ so that other numbers (epsilon, loads, prescribed values, meshes) are solved wit
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property, partial
 from typing import TYPE_CHECKING
 
@@ -15,6 +15,7 @@ from ribbonopt.arrays import Array
 from ribbonopt.attempt.structure import Structure
 from ribbonopt.checks.zero_moment import unbent_share
 from ribbonopt.errors import ConvergenceError
+from ribbonopt.frozen import dataclass
 from ribbonopt.guess import Guess, guess_of, words
 from ribbonopt.problem import BoundaryValueProblem, Posed, Ribbon
 from ribbonopt.problem.wellposed.examine import examine, refuse_idle_settings, refuse_unreachable

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ribbonopt.arrays import Array
+from ribbonopt.frozen import dataclass
 from ribbonopt.mechanics.section import RodFields
 from ribbonopt.problem import BoundaryValueProblem, Posed
 from ribbonopt.scene import Scene

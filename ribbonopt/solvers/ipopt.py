@@ -7,7 +7,6 @@ means the residual; MUMPS with the minimum-degree ordering; for square programs 
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
@@ -15,6 +14,7 @@ import casadi as ca
 import numpy as np
 
 from ribbonopt.arrays import Array
+from ribbonopt.frozen import dataclass
 from ribbonopt.transcription import NLP
 
 from .status import SolveReport, Status

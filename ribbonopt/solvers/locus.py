@@ -14,12 +14,13 @@ and the k derivatives of g along T are differences. At a fold B is regular, as o
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
 
 from ribbonopt.arrays import Array
+from ribbonopt.frozen import dataclass
 from ribbonopt.transcription.residuals import Derivatives, Residuals
 
 from .condense import CondensedSystem

@@ -10,13 +10,14 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from functools import cached_property
 
 import numpy as np
 
 from ribbonopt.attempt.ledger import Ledger
 from ribbonopt.attempt.structure import Structure
+from ribbonopt.frozen import dataclass
 from ribbonopt.guess import Guess, ShapeGuess
 from ribbonopt.guess.shapes import Chord, Shape
 from ribbonopt.mechanics.laws.catalogue import capabilities

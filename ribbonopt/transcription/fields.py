@@ -12,7 +12,6 @@ costs every scheme its order.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import cached_property
 
 import casadi as ca
@@ -20,6 +19,7 @@ import numpy as np
 
 from ribbonopt.arrays import Array
 from ribbonopt.errors import TranscriptionError
+from ribbonopt.frozen import dataclass
 from ribbonopt.problem.contract import BoundaryValueProblem
 
 from .known import Known

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
 
 from ribbonopt.arrays import Array
 from ribbonopt.errors import TranscriptionError
+from ribbonopt.frozen import dataclass
 
 
 @dataclass(frozen=True, eq=False)

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 
 from ribbonopt.checks.topology import closure
 from ribbonopt.errors import ViewError
+from ribbonopt.frozen import dataclass
 from ribbonopt.mechanics.laws.catalogue import curvature_across
 from ribbonopt.mechanics.widths import own_width
 from ribbonopt.scene.units import Units

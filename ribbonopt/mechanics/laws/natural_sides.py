@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 import casadi as ca
+
+from ribbonopt.frozen import dataclass
 
 from .law import Stress
 from .natural import NaturalStrains

@@ -7,12 +7,13 @@ Where something acts or holds between the ends, the states there stand between x
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import casadi as ca
 import numpy as np
 
 from ribbonopt.arrays import Array
+from ribbonopt.frozen import dataclass
 from ribbonopt.mechanics.section import RodFields
 from ribbonopt.problem.imposed import residuals
 from ribbonopt.problem.posed import Posed

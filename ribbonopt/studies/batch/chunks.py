@@ -7,11 +7,11 @@ the same however many there are.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 
 from ribbonopt.errors import RibbonoptError
+from ribbonopt.frozen import dataclass
 from ribbonopt.plain import is_number
 from ribbonopt.scene.yamlio import loads_scene
 

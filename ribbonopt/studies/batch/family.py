@@ -8,10 +8,11 @@ the equilibrium of least energy. Where that is lost, N starts look for others.
 from __future__ import annotations
 
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 
 from ribbonopt.errors import ConvergenceError
+from ribbonopt.frozen import dataclass
 from ribbonopt.pipeline.prepared import Prepared
 from ribbonopt.scene import Scene
 from ribbonopt.solution.potential import known_potential

@@ -6,10 +6,11 @@ import hashlib
 import itertools
 import json
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Literal
 
 from ribbonopt.errors import SceneError
+from ribbonopt.frozen import dataclass
 from ribbonopt.scene import Scene
 from ribbonopt.scene.limits import RIBBONS
 from ribbonopt.scene.quantities import ANSWERS

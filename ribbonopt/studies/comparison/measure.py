@@ -6,7 +6,7 @@ What is refused or does not converge is a measurement too, with the message that
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from statistics import median
 from typing import Any
@@ -19,6 +19,7 @@ from ribbonopt.accuracy.estimate import analyse
 from ribbonopt.accuracy.gaps import ROUNDING
 from ribbonopt.arrays import Array
 from ribbonopt.errors import ConvergenceError, RibbonoptError
+from ribbonopt.frozen import dataclass
 from ribbonopt.guess import Guess
 from ribbonopt.mechanics.laws.catalogue import capabilities
 from ribbonopt.mechanics.laws.law import Stress

@@ -11,12 +11,12 @@ import math
 import time
 from collections import Counter
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
 
 from ribbonopt.errors import ConvergenceError, RibbonoptError
+from ribbonopt.frozen import dataclass
 from ribbonopt.output.summary import versions
 from ribbonopt.plain import Row, finite
 from ribbonopt.scene import Scene

@@ -8,11 +8,12 @@ they lead to two equilibria the one nearer to the known shape is taken, and the 
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from ribbonopt.errors import ConvergenceError, RibbonoptError
+from ribbonopt.frozen import dataclass
 from ribbonopt.pipeline.prepared import Prepared, prepare, solve
 from ribbonopt.scene import Scene
 from ribbonopt.solution.potential import known_potential
