@@ -16,7 +16,7 @@ from ribbonopt.scene.faults import KeyPath, Problem, shown
 from ribbonopt.scene.laws import OfWidth, Sized
 from ribbonopt.scene.loads import Loads
 from ribbonopt.scene.model import Guess, MoebiusGuess, RibbonSizes, Scene
-from ribbonopt.scene.schema.annotations import branches, hints, inside
+from ribbonopt.scene.schema.annotations import branches, hint, hints, inside
 from ribbonopt.scene.stations import InteriorSupport
 from ribbonopt.scene.wording import written
 from ribbonopt.text import name_fault
@@ -37,7 +37,7 @@ def check(scene: Scene) -> list[Problem]:
     formulas |= _formulas(scene.loads, Loads, ("loads",))
     formulas |= _formulas(scene.supports, tuple[InteriorSupport, ...], ("supports",))
     formulas |= _formulas(scene.guess, Guess, ("guess",))
-    formulas |= _formulas(scene.gravity, hints(Scene)["gravity"], ("gravity",))
+    formulas |= _formulas(scene.gravity, hint(Scene, "gravity"), ("gravity",))
     values: dict[KeyPath, float] = {}
     if formulas or boundary.also or scene.parameters:
         # Imported late: a scene in plain numbers starts without the grammar of formulas.

@@ -5,11 +5,12 @@ Every branch of a union has a tag: the name of a dataclass, or the shape a value
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Callable, Mapping
-from dataclasses import is_dataclass
+from dataclasses import fields, is_dataclass
 from functools import cache
 from numbers import Real
-from types import NoneType, UnionType
+from types import NoneType, SimpleNamespace, UnionType
 from typing import Annotated, Any, Literal, Union, get_args, get_origin, get_type_hints
 
 from ribbonopt.scene.faults import nearest
@@ -23,10 +24,31 @@ def key_of(name: str) -> str:
 
 
 @cache
+def hint(cls: type, key: str) -> Any:
+    """Return what a key of a dataclass may hold, as its annotation says.
+
+    One by one: a scene has few of the keys that it might have.
+    """
+    member = next(some for some in fields(cls) if key_of(some.name) == key)
+    # Where it stands in the code decides what its words mean.
+    owners = [base for base in cls.__mro__ if _own_field(base, member.name) is member]
+    one = SimpleNamespace(__annotations__={key: member.type})
+    return get_type_hints(one, vars(sys.modules[owners[-1].__module__]), include_extras=True)[key]
+
+
+def _own_field(cls: type, name: str) -> Any:
+    return vars(cls).get("__dataclass_fields__", {}).get(name)
+
+
+@cache
 def hints(cls: type) -> dict[str, Any]:
     """Return the annotations of a dataclass, by the key of the field."""
-    members = get_type_hints(cls, include_extras=True).items()
-    return {key_of(name): annotation for name, annotation in members}
+    return {key: hint(cls, key) for key in keys_of(cls)}
+
+
+def keys_of(cls: type) -> list[str]:
+    """Return the keys of a dataclass."""
+    return [key_of(member.name) for member in fields(cls)]
 
 
 def only_in_python(annotation: Any) -> bool:
@@ -67,8 +89,8 @@ def types_of(annotation: Any) -> dict[str, str]:
     return {
         name: tag
         for tag, cls in classes_of(annotation).items()
-        if "type" in hints(cls)
-        for name in get_args(hints(cls)["type"])
+        if "type" in keys_of(cls)
+        for name in get_args(hint(cls, "type"))
     }
 
 
@@ -79,7 +101,7 @@ def tag_chooser(annotation: Any) -> Callable[[Any], str | None]:
     the one that owns most of its keys, or else names like them. No branch may exist for the tag
     that is returned.
     """
-    classes = {tag: hints(cls) for tag, cls in classes_of(annotation).items()}
+    classes = {tag: keys_of(cls) for tag, cls in classes_of(annotation).items()}
     types, known = types_of(annotation), branches(annotation)
     own = {tag: get_args(some)[0] for tag, some in known.items() if only_in_python(some)}
 
@@ -112,7 +134,7 @@ def inside(annotation: Any, step: str | int) -> Any:
     """Return the annotation of what a key or an index leads to; None where nothing is."""
     origin, arguments = get_origin(annotation), get_args(annotation)
     if is_dataclass(annotation) and isinstance(annotation, type):
-        return hints(annotation).get(str(step))
+        return hint(annotation, str(step)) if str(step) in keys_of(annotation) else None
     if origin is dict:
         return arguments[1]
     if origin is tuple and isinstance(step, int):

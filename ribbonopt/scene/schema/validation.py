@@ -15,7 +15,7 @@ from typing import Annotated, Any, Literal, TypeVar, Union, get_args, get_origin
 
 from ribbonopt.scene.faults import InvalidSceneError
 
-from .annotations import branches, classes_of, hints, key_of, tag_chooser, types_of
+from .annotations import branches, classes_of, hint, key_of, keys_of, tag_chooser, types_of
 from .bounds import Bounds, InPython
 from .found import Fault, Kind, Loc
 from .values import Check, fixed, items, literal, mapping, number, plain, step, text
@@ -94,26 +94,29 @@ def check_of(annotation: Any) -> Check:
 def _dataclass(cls: type, *, type_required: bool = False) -> Check:
     """Return the check of a class; `type` must be given where it has picked the class."""
     members = [
-        (member.name, key_of(member.name), _default(member, type_required))
+        (member.name, key_of(member.name), member.default, _made(member, type_required))
         for member in fields(cls)
     ]
-    keys = {key for _, key, _ in members}
-    check_of_key = cache(lambda key: check_of(hints(cls)[key]))  # of those keys only that occur
+    keys = set(keys_of(cls))
+    check_of_key = cache(lambda key: check_of(hint(cls, key)))  # of those keys only that occur
 
     def check(value: Any, loc: Loc, faults: list[Fault]) -> Any:
         if isinstance(value, cls):
-            value = {key: getattr(value, name) for name, key, _ in members}
+            value = {key: getattr(value, name) for name, key, _, _ in members}
         elif not isinstance(value, dict):
             faults.append(Fault(Kind.VALUE, loc, value))
             return None
         before, built = len(faults), {}
-        for name, key, default in members:
-            if key in value:
-                built[name] = check_of_key(key)(value[key], (*loc, key), faults)
-            elif default is None:
-                faults.append(Fault(Kind.MISSING, (*loc, key), value))
+        for name, key, default, made in members:
+            if key not in value:
+                if made is None:
+                    faults.append(Fault(Kind.MISSING, (*loc, key), value))
+                else:
+                    built[name] = made()
+            elif value[key] is default:  # sound, as the class says
+                built[name] = default
             else:
-                built[name] = default()
+                built[name] = check_of_key(key)(value[key], (*loc, key), faults)
         if len(value) > len(keys) or not keys.issuperset(value):
             faults.extend(_foreign(value, keys, loc))
         return cls(**built) if len(faults) == before else None
@@ -132,7 +135,7 @@ def _foreign(value: dict[Any, Any], keys: set[str], loc: Loc) -> list[Fault]:
     ]
 
 
-def _default(member: Field[Any], type_required: bool) -> Callable[[], Any] | None:
+def _made(member: Field[Any], type_required: bool) -> Callable[[], Any] | None:
     if type_required and member.name == "type":
         return None
     if member.default is not MISSING:
