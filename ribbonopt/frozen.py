@@ -2,9 +2,9 @@
 
 The standard decorator writes and compiles six methods a class, half a millisecond: for the 130
 classes that a command imports, of which it makes every other, a quarter of all its time. Here
-fields are declared as ever (`dataclasses.fields`, `replace`, `is_dataclass` know them), methods
-that read are functions of the fields, and `__init__` is compiled at its first call. Classes that
-change, or inherit fields, use the standard decorator.
+fields are declared as ever (`dataclasses.fields`, `replace`, `is_dataclass` know them), methods are
+functions of the fields, and `__init__` is compiled for classes of which there are more than a few
+instances. Classes that change, or inherit fields, use the standard decorator.
 """
 
 from __future__ import annotations
@@ -16,6 +16,8 @@ from reprlib import recursive_repr
 from typing import TYPE_CHECKING, Any, TypeVar
 
 C = TypeVar("C", bound=type)
+Fields = tuple[dataclasses.Field[Any], ...]
+EARLY = 3  # instances of a class that are made without a constructor of its own: most have no more
 
 if TYPE_CHECKING:
     from dataclasses import dataclass as dataclass  # to readers of types it is the same
@@ -50,7 +52,7 @@ def _frozen(cls: Any, eq: bool) -> Any:
     like: Any = _Equal if eq else _Unequal
     cls.__dataclass_params__ = like.__dataclass_params__
     own = vars(cls)
-    methods: dict[str, Any] = {"__repr__": _repr, **_guards(cls)}
+    methods: dict[str, Any] = {"__repr__": _repr, "__setattr__": _set_one, "__delattr__": _delete}
     if "__init__" not in own:
         methods |= {"__init__": _first_init(cls), "__signature__": _Signature(cls)}
     if eq:
@@ -64,16 +66,44 @@ def _frozen(cls: Any, eq: bool) -> Any:
 
 
 def _first_init(cls: Any) -> Callable[..., None]:
-    def first(self: Any, *values: Any, **named: Any) -> None:
-        cls.__init__ = _init(cls)
-        cls.__init__(self, *values, **named)
+    left = EARLY
+
+    def first(self: Any, /, *values: Any, **named: Any) -> None:
+        nonlocal left
+        left -= 1
+        if left < 0 or not _bound(self, dataclasses.fields(cls), values, named):
+            cls.__init__ = _init(cls)
+            cls.__init__(self, *values, **named)
 
     return first
 
 
+def _bound(self: Any, fields: Fields, values: tuple[Any, ...], named: dict[str, Any]) -> bool:
+    """Do what a constructor does, but tell of arguments that do not fit by False."""
+    names = [field.name for field in fields if field.init]
+    given = dict(zip(names, values, strict=False)) | named
+    if len(given) < len(values) + len(named):  # too many, or one given twice
+        return False
+    for field in fields:
+        if field.init and field.name in given:
+            value = given.pop(field.name)
+        elif field.default_factory is not dataclasses.MISSING:
+            value = field.default_factory()
+        elif not field.init:
+            continue
+        elif (value := field.default) is dataclasses.MISSING:
+            return False
+        object.__setattr__(self, field.name, value)
+    if given:  # unknown
+        return False
+    if hasattr(self, "__post_init__"):
+        self.__post_init__()
+    return True
+
+
 def _init(cls: Any) -> Callable[..., None]:
     """Write and compile the constructor of a class."""
-    fields: tuple[dataclasses.Field[Any], ...] = dataclasses.fields(cls)
+    fields: Fields = dataclasses.fields(cls)
     outside: dict[str, Any] = {
         "__set_field__": object.__setattr__,
         "__not_given__": dataclasses.MISSING,
@@ -149,17 +179,19 @@ def _values(names: list[str]) -> Callable[[Any], tuple[Any, ...]]:
     return lambda instance: tuple(getattr(instance, name) for name in names)
 
 
-def _guards(cls: Any) -> dict[str, Callable[..., None]]:
-    names = frozenset(field.name for field in dataclasses.fields(cls))
+def _set_one(self: Any, name: str, value: Any) -> None:
+    if _is_field(self, name):
+        raise dataclasses.FrozenInstanceError(f"cannot assign to field {name!r}")
+    object.__setattr__(self, name, value)
 
-    def set_one(self: Any, name: str, value: Any) -> None:
-        if type(self) is cls or name in names:
-            raise dataclasses.FrozenInstanceError(f"cannot assign to field {name!r}")
-        super(cls, self).__setattr__(name, value)
 
-    def delete(self: Any, name: str) -> None:
-        if type(self) is cls or name in names:
-            raise dataclasses.FrozenInstanceError(f"cannot delete field {name!r}")
-        super(cls, self).__delattr__(name)
+def _delete(self: Any, name: str) -> None:
+    if _is_field(self, name):
+        raise dataclasses.FrozenInstanceError(f"cannot delete field {name!r}")
+    object.__delattr__(self, name)
 
-    return {"__setattr__": set_one, "__delattr__": delete}
+
+def _is_field(self: Any, name: str) -> bool:
+    """Whether an attribute is frozen: all but those that a class of one's own adds to a field's."""
+    cls = type(self)
+    return "__dataclass_fields__" in vars(cls) or name in cls.__dataclass_fields__

@@ -17,7 +17,6 @@ from ribbonopt.solvers.newton import NewtonSolver
 from ribbonopt.transcription import NLP
 
 from .ledger import Ledger
-from .resistance import where_it_resists
 
 if TYPE_CHECKING:
     from ribbonopt.solvers import Solver
@@ -139,6 +138,8 @@ class Attempt:
         parts = self.posed, self.problem, self.nlp, report, self.p, self.sheets
         solution = solution_of(*parts)
         if not report.status.converged:
+            from .resistance import where_it_resists  # only a failure pays for it
+
             where = where_it_resists(report.residuals, self.nlp.layout, solution)
             return replace(solution, message=f"{report.status.value}. {where}")
         return verified(solution, self.ribbon) if check else solution

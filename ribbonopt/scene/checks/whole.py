@@ -22,7 +22,6 @@ from ribbonopt.scene.wording import written
 from ribbonopt.text import name_fault
 
 from .frames import check_frame
-from .loops import check_loop, check_piece
 from .magnitudes import as_written, in_units
 from .supports import check_supports
 
@@ -60,8 +59,12 @@ def check(scene: Scene) -> list[Problem]:
     for name in ("start", "end"):
         problems += check_frame(getattr(boundary, name), ("boundary", name), values)
     if isinstance(scene.guess, MoebiusGuess):
+        from .loops import check_piece
+
         problems += check_piece(scene.guess.moebius, ("guess", "moebius"))
     if boundary.loop is not None:
+        from .loops import check_loop
+
         problems += check_loop(boundary.loop, boundary, scene.guess)
     else:
         problems += check_supports(boundary, values)
