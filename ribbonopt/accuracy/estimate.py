@@ -27,7 +27,7 @@ from ribbonopt.scene import Ipopt
 from ribbonopt.solution.potential import dead_force_of
 from ribbonopt.solution.solution import Solution
 from ribbonopt.solution.trajectory import Trajectory
-from ribbonopt.solvers.condense import CondensedSystem
+from ribbonopt.solvers.condense import factored
 from ribbonopt.solvers.protocols import Factors
 
 from .compared import compared
@@ -158,7 +158,7 @@ def _analysed(solution: Solution, near: Factors | None, keep: bool) -> Analysis:
     if near is None:
         residuals, derivatives = blocks.linearize(w, p)
         only, neutral = None if keep else residuals, spins(solution)
-        factors: Factors = CondensedSystem(blocks, derivatives, p, only, neutral)
+        factors: Factors = factored(blocks, derivatives, p, only, neutral)
         growth = blocks.growth(derivatives, p).reshape(-1, split).sum(axis=1)
     else:
         residuals, factors, keep, growth = blocks.residuals(w, p), near, True, dense.growth

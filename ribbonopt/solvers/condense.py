@@ -25,6 +25,8 @@ from ribbonopt.transcription.residuals import Derivatives, Residuals
 if TYPE_CHECKING:
     from ribbonopt.transcription.structure import Blocks
 
+    from .protocols import Condensed
+
 DENSE = 80  # nodes of a phase are no longer reduced when their unknowns number less than this
 NEUTRAL, NEARLY = 1e-8, 1e-4  # singular value that counts as none, over the largest and the next
 
@@ -72,6 +74,23 @@ class _Chain:
             wider[2 * pairs :] = nodes[pairs:]
             nodes = wider
         return nodes
+
+
+def factored(
+    blocks: Blocks,
+    derivatives: Derivatives,
+    p: Array,
+    only: Residuals | None = None,
+    neutral: bool = False,
+) -> Condensed:
+    """Factor the Newton matrix of a square problem, by the compiled kernel where it can.
+
+    Quicker if it is for the stages' part of the residuals `only`. Where one `neutral` direction may
+    change nothing, and does, steps leave it alone. LinAlgError where the matrix is singular.
+    """
+    if blocks.compiled is not None and not neutral:
+        return blocks.compiled.factor(derivatives, p, only)
+    return CondensedSystem(blocks, derivatives, p, only, neutral)
 
 
 class CondensedSystem:

@@ -22,10 +22,12 @@ from ribbonopt.arrays import Array
 from ribbonopt.frozen import dataclass
 from ribbonopt.transcription.residuals import Derivatives, Residuals
 
-from .condense import CondensedSystem
+from .condense import factored
 
 if TYPE_CHECKING:
     from ribbonopt.transcription.structure import Blocks
+
+    from .protocols import Condensed
 
 
 @dataclass(frozen=True, eq=False)
@@ -151,10 +153,10 @@ class ExtendedSystem:
         stages = np.concatenate(wider, axis=-1)
         return self._with_rows(residuals, w), Derivatives(stages, border)
 
-    def factor(self, derivatives: Derivatives, p: Array) -> CondensedSystem:
+    def factor(self, derivatives: Derivatives, p: Array) -> Condensed:
         """Factors of the Jacobian; LinAlgError where it is singular."""
         # Of p the elimination reads the widths, which do not depend on l.
-        return CondensedSystem(self.line.bordered, derivatives, p, neutral=self.line.neutral)
+        return factored(self.line.bordered, derivatives, p, neutral=self.line.neutral)
 
     def vector(self, w: Array, p: Array) -> Array:
         """Residuals in the order of the program's constraints, the row's last."""
@@ -180,7 +182,7 @@ class Local:
         that point the same way along the branch: it vanishes at branch points, not at folds.
     """
 
-    factors: CondensedSystem
+    factors: Condensed
     residuals: Residuals
     direction: Array
     sign: float
@@ -216,7 +218,7 @@ def local(
         np.zeros_like(residuals.conditions),
     )
     # Whatever is solved for later has its right-hand side in the conditions alone.
-    factors = CondensedSystem(line.bordered, derivatives, p, none, line.neutral)
+    factors = factored(line.bordered, derivatives, p, none, line.neutral)
     last = none.conditions.copy()
     last[-1] = 1.0
     direction = factors.solve(replace(none, conditions=-last))

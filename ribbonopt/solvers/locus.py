@@ -16,6 +16,7 @@ from __future__ import annotations
 from collections.abc import Callable
 from dataclasses import replace
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -23,8 +24,10 @@ from ribbonopt.arrays import Array
 from ribbonopt.frozen import dataclass
 from ribbonopt.transcription.residuals import Derivatives, Residuals
 
-from .condense import CondensedSystem
 from .extended import ExtendedSystem, Line, local
+
+if TYPE_CHECKING:
+    from .protocols import Condensed
 
 STEP = 1e-5  # half the largest change of an unknown that derivatives of conditions are taken over
 
@@ -128,7 +131,7 @@ class LocusFactors:
     ----------
     system : LocusSystem
         What is factored.
-    factors : CondensedSystem
+    factors : Condensed
         Of B.
     tangents : (nw + k, k) array
         T: how unknowns answer to the rows of the border.
@@ -137,13 +140,13 @@ class LocusFactors:
     """
 
     system: LocusSystem
-    factors: CondensedSystem
+    factors: Condensed
     tangents: Array
     small: Array
 
     @classmethod
     def at(
-        cls, system: LocusSystem, factors: CondensedSystem, like: Residuals, extended: Array
+        cls, system: LocusSystem, factors: Condensed, like: Residuals, extended: Array
     ) -> LocusFactors:
         """Solve for the tangents and differentiate the conditions; `like` has the sizes."""
         k, count = system.line.count, len(like.conditions)

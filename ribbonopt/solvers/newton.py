@@ -17,6 +17,7 @@ import numpy as np
 from ribbonopt.arrays import Array
 from ribbonopt.frozen import dataclass
 from ribbonopt.transcription import NLP
+from ribbonopt.transcription.collocation.compiled import CompiledChain, CompiledFactors
 
 from .status import SolveReport, Status
 from .systems import ElementSystem, RelaxedSystem, SparseSystem
@@ -28,6 +29,14 @@ KEEP = 0.1
 INHERIT = 0.3  # contraction with which factors of other equations are kept: they cost nothing
 SMALLEST_DAMPING = 1e-4
 ROUNDING = 1e3 * np.finfo(float).eps
+#: what the kernel's Newton method ended with, in the order of its numbers
+COMPILED_STATUS = (
+    Status.CONVERGED,
+    Status.MAX_ITERATIONS,
+    Status.SINGULAR,
+    Status.INVALID_NUMBER,
+    Status.STALLED,
+)
 
 
 @dataclass(frozen=True, eq=False)
@@ -94,6 +103,7 @@ class _Run:
         self.most = settings.max_iterations
         self.system: System = settings.system
         self.factors: Factors | None = None
+        self.residuals: Array | None = None
         self.tolerance = settings.tolerance
         self.iterations = self.factorizations = 0
         self.evaluate = self.linear = 0.0
@@ -101,6 +111,10 @@ class _Run:
 
     def iterate(self) -> Status:
         """Iterate until an end is reached."""
+        if isinstance(self.system, ElementSystem | RelaxedSystem) and self.system.compiled:
+            given = self.factors
+            if given is None or isinstance(given, CompiledFactors):
+                return self._compiled(self.system.compiled, given)
         if self.factors is not None and self._with_inherited_factors():
             return Status.CONVERGED
         damping = 1.0
@@ -116,6 +130,16 @@ class _Run:
             if status is not None:
                 return status
         return Status.MAX_ITERATIONS
+
+    def _compiled(self, chain: CompiledChain, given: CompiledFactors | None) -> Status:
+        """Iterate in the compiled kernel: the same steps."""
+        relaxed = self.system.conditions if isinstance(self.system, RelaxedSystem) else None
+        settings = self.tolerance, KEEP, INHERIT, SMALLEST_DAMPING, ROUNDING, self.most
+        counts, self.residuals, self.factors = chain.newton(
+            self.w, self.p, relaxed, given, settings
+        )
+        status, self.iterations, self.factorizations, self.evaluate, self.linear = counts
+        return COMPILED_STATUS[status]
 
     def _with_inherited_factors(self) -> bool:
         """Iterate as long as factors of other equations contract; whether that was enough."""
@@ -192,11 +216,12 @@ class _Run:
 
     def report(self, status: Status) -> SolveReport:
         """Return what happened."""
+        own = self.residuals
         return SolveReport(
             status=status,
             w=self.w,
             multipliers=np.zeros(len(self.w)),
-            residuals=self.system.vector(self.w, self.p),
+            residuals=self.system.vector(self.w, self.p) if own is None else own,
             iterations=self.iterations,
             factorizations=self.factorizations,
             evaluate=self.evaluate,

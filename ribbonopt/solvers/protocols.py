@@ -14,6 +14,14 @@ class Factors(Protocol):
         """Return the Newton step (nw,)."""
 
 
+class Condensed(Factors, Protocol):
+    """Factors of a chain of elements."""
+
+    @property
+    def determinant(self) -> tuple[float, float]:
+        """Sign and logarithm of the determinant, see `ribbonopt.solvers.condense`."""
+
+
 class System(Protocol):
     """A square system: what it calls residuals and derivatives is its own business."""
 

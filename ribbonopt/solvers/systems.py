@@ -13,10 +13,13 @@ from ribbonopt.frozen import dataclass
 from ribbonopt.transcription import NLP
 from ribbonopt.transcription.residuals import Derivatives, Residuals
 
-from .condense import CondensedSystem
+from .condense import factored
 
 if TYPE_CHECKING:
+    from ribbonopt.transcription.collocation.compiled import CompiledChain
     from ribbonopt.transcription.structure import Blocks
+
+    from .protocols import Factors
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,9 +41,14 @@ class ElementSystem:
         """Residuals and derivatives at w."""
         return self.blocks.linearize(w, p)
 
-    def factor(self, derivatives: Derivatives, p: Array) -> CondensedSystem:
+    @property
+    def compiled(self) -> CompiledChain | None:
+        """The same in the compiled kernel; with a neutral direction numpy does it."""
+        return None if self.neutral else self.blocks.compiled
+
+    def factor(self, derivatives: Derivatives, p: Array) -> Factors:
         """Factors of the Jacobian; LinAlgError where it is singular."""
-        return CondensedSystem(self.blocks, derivatives, p, neutral=self.neutral)
+        return factored(self.blocks, derivatives, p, neutral=self.neutral)
 
     def vector(self, w: Array, p: Array) -> Array:
         """Residuals in the order of the NLP's constraints."""
@@ -67,7 +75,12 @@ class RelaxedSystem:
         residuals, derivatives = self.system.linearize(w, p)
         return self._relaxed(residuals), derivatives
 
-    def factor(self, derivatives: Derivatives, p: Array) -> CondensedSystem:
+    @property
+    def compiled(self) -> CompiledChain | None:
+        """The system in the compiled kernel; with a neutral direction numpy does it."""
+        return self.system.compiled
+
+    def factor(self, derivatives: Derivatives, p: Array) -> Factors:
         """Factors of the Jacobian; LinAlgError where it is singular."""
         return self.system.factor(derivatives, p)
 

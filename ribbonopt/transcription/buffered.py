@@ -9,8 +9,10 @@ import casadi as ca
 import numpy as np
 
 from ribbonopt.arrays import Array
+from ribbonopt.kernel.programs import program_of
 
 SHARED = (1, 2)  # inputs of a stage function that all stages have in common
+SHARED_MASK = sum(1 << i for i in SHARED)
 SIZES = (1, 2, *range(4, 65, 4))  # stages of blocks
 LARGEST = SIZES[-1]
 
@@ -22,6 +24,12 @@ class Buffered:
     """
 
     def __init__(self, function: ca.Function) -> None:
+        self.program = program_of(function)
+        self._sizes = [function.numel_out(i) for i in range(function.n_out())]
+        if self.program is None:
+            self._allocate(function)
+
+    def _allocate(self, function: ca.Function) -> None:
         self.arguments = [np.zeros(function.numel_in(i)) for i in range(function.n_in())]
         self.results = [np.zeros(function.numel_out(i)) for i in range(function.n_out())]
         # The buffer must outlive every evaluation.
@@ -36,10 +44,19 @@ class Buffered:
 
     def __call__(self, *values: Array) -> list[Array]:
         """Evaluate: one flat array for each output."""
+        if self.program is not None:
+            results = [np.empty(size) for size in self._sizes]
+            self.program.map(1, 0, *map(plain, values), *results)
+            return results
         for array, value in zip(self.arguments, values, strict=True):
             array[:] = value.ravel()
         self.evaluate()
         return [result.copy() for result in self.results]
+
+
+def plain(values: Array) -> Array:
+    """Return numbers in double precision, without gaps: as compiled code reads them."""
+    return np.ascontiguousarray(values, dtype=float)
 
 
 def shared_map(function: ca.Function, count: int) -> ca.Function:
@@ -62,9 +79,12 @@ class Mapped:
             raise ValueError(f"{function.name()} is expected to have dense outputs")
         self._varying = [i for i in range(function.n_in()) if i not in SHARED]
         self._blocks: dict[int, Buffered] = {}
+        self.program = program_of(function)
 
     def __call__(self, *values: Array) -> list[Array]:
         """Evaluate at all stages: one flat array for each output."""
+        if self.program is not None:
+            return self._compiled(values)
         arguments = [value.ravel() for value in values]
         count = len(arguments[0]) // self._inputs[0]
         for i, (argument, size) in enumerate(zip(arguments, self._inputs, strict=True)):
@@ -83,6 +103,14 @@ class Mapped:
             block.evaluate()
             for result, found, size in zip(results, block.results, self._outputs, strict=True):
                 result[at * size : end * size] = found[: (end - at) * size]
+        return results
+
+    def _compiled(self, values: tuple[Array, ...]) -> list[Array]:
+        arguments = [plain(value) for value in values]
+        count = arguments[0].size // self._inputs[0]
+        results = [np.empty(count * size) for size in self._outputs]
+        assert self.program is not None
+        self.program.map(count, SHARED_MASK, *arguments, *results)
         return results
 
     def _block(self, count: int) -> Buffered:

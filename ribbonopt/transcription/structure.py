@@ -17,6 +17,7 @@ from typing import Protocol
 
 from ribbonopt.arrays import Array
 
+from .collocation.compiled import CompiledChain
 from .known import Known
 from .layout import Layout
 from .residuals import Derivatives, Residuals
@@ -74,6 +75,10 @@ class Blocks(Protocol):
 
     def linearize(self, w: Array, p: Array) -> tuple[Residuals, Derivatives]:
         """Return residuals and derivative blocks at w."""
+
+    @property
+    def compiled(self) -> CompiledChain | None:
+        """The same in the compiled kernel, where that is there and takes it."""
 
     def eliminate(
         self, derivatives: Derivatives, p: Array, only: Residuals | None = None

@@ -21,7 +21,7 @@ from ribbonopt.mechanics.laws.law import ConstitutiveLaw, Stress
 from ribbonopt.problem import BoundaryValueProblem
 from ribbonopt.solution.trajectory import Trajectory
 from ribbonopt.solvers import NewtonSolver
-from ribbonopt.solvers.condense import CondensedSystem
+from ribbonopt.solvers.condense import factored
 from ribbonopt.transcription import CollocationMethod, Mesh
 
 from .infinitesimal import Deflected
@@ -200,7 +200,7 @@ class Search:
         """One Newton step of the next better scheme: what it changes the load by."""
         finer, _ = mode.trajectory.dense.refined()
         residuals, derivatives = finer.blocks.linearize(finer.w, finer.p)
-        step = CondensedSystem(finer.blocks, derivatives, finer.p).solve(residuals)
+        step = factored(finer.blocks, derivatives, finer.p).solve(residuals)
         _, _, constants = finer.blocks.layout.unpack(step)
         return abs(float(constants[self.deflected.sizes[1]]))
 

@@ -20,6 +20,7 @@ from ribbonopt.transcription.points import Conditions, Parts
 from ribbonopt.transcription.residuals import Derivatives, Residuals
 from ribbonopt.transcription.tableaus import Tableau, next_tableau
 
+from .compiled import CompiledChain, compiled_chain
 from .elimination import StageElimination
 from .phase_equations import rates_of
 
@@ -58,8 +59,13 @@ class ElementBlocks:
 
     def build(self) -> None:
         """Build all functions now rather than at the first evaluation."""
-        _ = self._values, self._dense
+        _ = self._values, self._dense, self.compiled
         self.conditions.build()
+
+    @cached_property
+    def compiled(self) -> CompiledChain | None:
+        """The same in the compiled kernel, where that is there and takes it."""
+        return compiled_chain(self.layout, self.tableau, self.phases, self.conditions)
 
     @cached_property
     def finer(self) -> tuple[ElementBlocks, int]:
@@ -94,12 +100,16 @@ class ElementBlocks:
 
     def residuals(self, w: Array, p: Array) -> Residuals:
         """Residuals at the unknowns w for the parameters p."""
+        if self.compiled is not None:
+            return self.compiled.residuals(w, p)
         parts = self.layout.unpack(w)
         values = self._evaluate(self._values, parts, p)
         return self._residuals(parts, p, values[0], self.conditions.values(parts, p))
 
     def linearize(self, w: Array, p: Array) -> tuple[Residuals, Derivatives]:
         """Residuals and derivative blocks at w for p."""
+        if self.compiled is not None:
+            return self.compiled.linearize(w, p)
         lay = self.layout
         parts = lay.unpack(w)
         values, jacobians = self._evaluate(self._dense, parts, p)

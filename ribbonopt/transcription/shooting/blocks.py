@@ -70,6 +70,11 @@ class ShootingBlocks:
         """Whether quadratic invariants are kept to rounding."""
         return self.method.symplectic
 
+    @property
+    def compiled(self) -> None:
+        """Nothing: the kernel knows no shooting."""
+        return None
+
     def build(self) -> None:
         """Build all functions now rather than at the first evaluation."""
         _ = self._values, self._dense
