@@ -8,6 +8,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ribbonopt.arrays import Array
+from ribbonopt.kernel import COMPILED
 
 Index = NDArray[np.intp]
 
@@ -26,7 +27,12 @@ def half_twists(r: Array, twist: float) -> tuple[int, float]:
     twist
         Twist of the directors about it, in turns.
     """
-    value = 2 * (twist + writhe(r))
+    return nearest_half_twists(twist + writhe(r))
+
+
+def nearest_half_twists(link: float) -> tuple[int, float]:
+    """Nearest whole number to twice the sum of twist and writhe, and the distance from it."""
+    value = 2 * link
     if not np.isfinite(value):
         return 0, float("inf")
     return round(value), abs(value - round(value))
@@ -38,6 +44,8 @@ def writhe(r: Array) -> float:
     Every pair of segments contributes the signed area on the sphere of the directions from which
     they are seen to cross (Levitt 1983; Klenin and Langowski 2000, method 1a).
     """
+    if COMPILED is not None:
+        return float(COMPILED.writhe(len(r), np.ascontiguousarray(r, dtype=float)))
     return sum(float(_seen_areas(pairs).sum()) for pairs in _pairs(r)) / (2 * np.pi)
 
 
@@ -64,13 +72,20 @@ def _seen_areas(segments: list[Array]) -> Array:
     """Signed areas (pairs,) of pairs of segments."""
     a, b, c, d = segments
     ac, ad, bc, bd = c - a, d - a, c - b, d - b
-    normals = [_unit(_cross(u, v)) for u, v in ((ac, ad), (ad, bd), (bd, bc), (bc, ac))]
-    area = np.zeros(ac.shape[1])
-    for k in range(4):
-        sine = np.einsum("ij,ij->j", normals[k], normals[k - 1])
-        area += np.arcsin(np.clip(sine, -1.0, 1.0))
+    area = _spherical_triangle(ac, ad, bd) + _spherical_triangle(ac, bd, bc)
     side = np.einsum("ij,ij->j", _cross(d - c, b - a), ac)
-    return np.asarray(np.sign(side) * area)
+    return np.asarray(np.sign(side) * np.abs(area))
+
+
+def _spherical_triangle(u: Array, v: Array, w: Array) -> Array:
+    """Signed areas (pairs,) that triangles of directions cover on the sphere.
+
+    Van Oosterom and Strackee 1983: of degenerate ones nothing has to be divided.
+    """
+    lu, lv, lw = (np.sqrt(np.einsum("ij,ij->j", x, x)) for x in (u, v, w))
+    volume = np.einsum("ij,ij->j", u, _cross(v, w))
+    uv, uw, vw = (np.einsum("ij,ij->j", x, y) for x, y in ((u, v), (u, w), (v, w)))
+    return np.asarray(2 * np.arctan2(volume, lu * lv * lw + uv * lw + uw * lv + vw * lu))
 
 
 def crosses_itself(r: Array) -> bool:
@@ -127,9 +142,3 @@ def _cross(u: Array, v: Array) -> Array:
     x, y, z = u
     a, b, c = v
     return np.stack([y * c - z * b, z * a - x * c, x * b - y * a])
-
-
-def _unit(v: Array) -> Array:
-    """Columns (3, k) divided by their lengths; zero stays zero."""
-    size = np.sqrt(np.einsum("ij,ij->j", v, v))
-    return np.asarray(v / np.where(size > 0, size, 1.0))

@@ -18,7 +18,7 @@ from ribbonopt.scene import Loop
 from ribbonopt.solution.solution import Solution
 
 from .flip import TOLERANCE, Flip, find_flip, flip_at
-from .polygons import half_twists, writhe, writhe_and_crossings
+from .polygons import nearest_half_twists, writhe, writhe_and_crossings
 
 POINTS = (100, 200, 400, 800)  # of the closed polygon, until its writhe is stable
 STABLE = 0.01  # change of the writhe against half the points
@@ -76,9 +76,10 @@ class ClosedBand:
         """Nearest whole number of half twists, and how far from it their count is."""
         for count in POINTS:
             r = self.line(count)
-            if abs(writhe(r) - writhe(r[::2])) < STABLE:
+            found = writhe(r)
+            if abs(found - writhe(r[::2])) < STABLE:
                 break
-        return half_twists(r, self.twist)
+        return nearest_half_twists(self.twist + found)
 
 
 def closure(solution: Solution) -> ClosedBand | None:

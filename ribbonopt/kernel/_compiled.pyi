@@ -10,6 +10,9 @@ from ribbonopt.arrays import Array
 #: numbers of the operations that programs know, by CasADi's names
 OPERATIONS: dict[str, int]
 
+def writhe(count: int, points: Array, /) -> float:
+    """Writhe of the closed polygon through points (count, 3)."""
+
 class Program:
     """An SX instruction list: rows of code (count, 5) are operation, out, a, b and a value."""
 

@@ -7,14 +7,12 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from ribbonopt.checks.polygons import crosses_itself
+from ribbonopt.checks.polygons import crosses_itself, half_twists, writhe
 from ribbonopt.checks.topology import (
     ClosedBand,
     closure,
     count_half_twists,
-    half_twists,
     loop_problems,
-    writhe,
 )
 from ribbonopt.output.summary import summarize
 from ribbonopt.pipeline.prepared import prepare

@@ -122,6 +122,9 @@ typedef struct {
 void newton(const Chain *chain, double *w, const double *p, const double *relaxed,
             Factors *inherited, const Settings *settings, double *residuals, Outcome *outcome);
 
+/* Writhe of the closed polygon r (count, 3). */
+double writhe(const double *r, long count);
+
 void *allocate(size_t count, size_t size);
 void release(void *memory);
 

@@ -205,11 +205,34 @@ PyTypeObject ProgramType = {
 
 /* ---- module ---------------------------------------------------------------------------------- */
 
+static PyObject *module_writhe(PyObject *Py_UNUSED(module), PyObject *const *args,
+                               Py_ssize_t given)
+{
+    Py_ssize_t count = given == 2 ? PyLong_AsSsize_t(args[0]) : -1;
+    if (PyErr_Occurred())
+        return NULL;
+    if (count < 0 || count > MOST) {
+        PyErr_SetString(PyExc_ValueError, "expected the number of points, and these");
+        return NULL;
+    }
+    Held held = {0};
+    double *r = held_numbers(&held, args[1], 3 * (size_t)count, 0, "points");
+    double found = r ? writhe(r, (long)count) : 0.0;
+    held_release(&held);
+    return r ? PyFloat_FromDouble(found) : NULL;
+}
+
+static PyMethodDef functions[] = {
+    {"writhe", (PyCFunction)(void (*)(void))module_writhe, METH_FASTCALL,
+     "writhe(count, points): writhe of the closed polygon through points (count, 3)."},
+    {NULL, NULL, 0, NULL}};
+
 static PyModuleDef definition = {
     PyModuleDef_HEAD_INIT,
     .m_name = "_compiled",
     .m_doc = "Compiled twin of the stage functions, the condensed system and Newton's loop.",
     .m_size = -1,
+    .m_methods = functions,
 };
 
 PyMODINIT_FUNC PyInit__compiled(void)
