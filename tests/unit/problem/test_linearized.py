@@ -1,4 +1,4 @@
-"""Conditions on the least states: taken from the problem where they are the same, else rewritten."""
+"""Conditions on the least states: of the problem where they are the same, else rewritten."""
 
 from dataclasses import replace
 from pathlib import Path
