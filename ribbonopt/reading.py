@@ -13,7 +13,7 @@ import time
 from collections.abc import Iterator
 from typing import Any, NoReturn
 
-from ribbonopt.frozen import dataclass
+from ribbonopt.classes import dataclass
 
 from .errors import OutputError, RibbonoptError
 from .plain import parsed

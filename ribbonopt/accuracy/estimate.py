@@ -21,8 +21,8 @@ from dataclasses import replace
 import numpy as np
 
 from ribbonopt.arrays import Array
+from ribbonopt.classes import dataclass
 from ribbonopt.errors import ModelError
-from ribbonopt.frozen import dataclass
 from ribbonopt.scene import Ipopt
 from ribbonopt.solution.potential import dead_force_of
 from ribbonopt.solution.solution import Solution

@@ -14,7 +14,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ribbonopt.arrays import Array
-from ribbonopt.frozen import dataclass
+from ribbonopt.classes import dataclass
 from ribbonopt.solution.trajectory import Trajectory
 
 REACH = 1.0  # widths of an element, beyond which nothing can be said from it

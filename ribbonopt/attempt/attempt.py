@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from ribbonopt.arrays import Array
 from ribbonopt.checks.verify import verify
+from ribbonopt.classes import dataclass
 from ribbonopt.guess import Guess, initial_unknowns
 from ribbonopt.problem import BoundaryValueProblem, Posed, Ribbon
 from ribbonopt.solution.made import solution_at, solution_of

@@ -8,8 +8,8 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ribbonopt.arrays import Array
+from ribbonopt.classes import dataclass
 from ribbonopt.errors import ModelError
-from ribbonopt.frozen import dataclass
 from ribbonopt.problem import BoundaryValueProblem, Posed, Ribbon, formulate
 from ribbonopt.scene import Ipopt
 from ribbonopt.solvers import solver_named

@@ -13,7 +13,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ribbonopt.arrays import Array
-from ribbonopt.frozen import dataclass
+from ribbonopt.classes import dataclass
 from ribbonopt.guess import Guess
 from ribbonopt.guess.balanced import Balanced
 from ribbonopt.guess.named import ShapeGuess

@@ -11,7 +11,7 @@ from dataclasses import replace
 import numpy as np
 
 from ribbonopt.arrays import Array
-from ribbonopt.frozen import dataclass
+from ribbonopt.classes import dataclass
 
 
 @dataclass(frozen=True, eq=False)

@@ -12,7 +12,7 @@ from __future__ import annotations
 import numpy as np
 
 from ribbonopt.arrays import Array
-from ribbonopt.frozen import dataclass
+from ribbonopt.classes import dataclass
 from ribbonopt.solution.solution import Solution
 
 TOLERANCE = 1e-6  # of directors and fields, and of positions relative to the length

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 
 from ribbonopt.accuracy.estimate import relative_error
 from ribbonopt.arrays import Array
-from ribbonopt.frozen import dataclass
+from ribbonopt.classes import dataclass
 from ribbonopt.mechanics.laws.law import Stress
 from ribbonopt.mechanics.outputs import own_name
 from ribbonopt.mechanics.section import RodFields

@@ -18,7 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ribbonopt.arrays import Array
-from ribbonopt.frozen import dataclass
+from ribbonopt.classes import dataclass
 from ribbonopt.problem import BoundaryValueProblem, Ribbon
 from ribbonopt.solution.solution import Solution
 from ribbonopt.transcription.buffered import Buffered

@@ -15,7 +15,7 @@ from typing import TypeVar
 import numpy as np
 
 from ribbonopt.accuracy.spin import SPIN, spins
-from ribbonopt.frozen import dataclass
+from ribbonopt.classes import dataclass
 from ribbonopt.mechanics.laws.catalogue import capabilities
 from ribbonopt.problem import BoundaryValueProblem, Ribbon
 from ribbonopt.problem.potentials import without_potential

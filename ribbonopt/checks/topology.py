@@ -13,7 +13,7 @@ from dataclasses import field
 import numpy as np
 
 from ribbonopt.arrays import Array
-from ribbonopt.frozen import dataclass
+from ribbonopt.classes import dataclass
 from ribbonopt.scene import Loop
 from ribbonopt.solution.solution import Solution
 

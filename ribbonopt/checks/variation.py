@@ -23,7 +23,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ribbonopt.arrays import Array
-from ribbonopt.frozen import dataclass
+from ribbonopt.classes import dataclass
 from ribbonopt.mechanics.laws.law import ConstitutiveLaw
 from ribbonopt.problem import BoundaryValueProblem, Ribbon
 from ribbonopt.problem.energy import minimum

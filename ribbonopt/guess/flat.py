@@ -10,7 +10,7 @@ from __future__ import annotations
 import numpy as np
 
 from ribbonopt.arrays import Array
-from ribbonopt.frozen import dataclass
+from ribbonopt.classes import dataclass
 from ribbonopt.mechanics.section import RodFields
 from ribbonopt.solution.solution import Solution
 

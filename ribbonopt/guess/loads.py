@@ -8,7 +8,7 @@ import casadi as ca
 import numpy as np
 
 from ribbonopt.arrays import Array
-from ribbonopt.frozen import dataclass
+from ribbonopt.classes import dataclass
 from ribbonopt.mechanics.laws.catalogue import fields_of
 from ribbonopt.mechanics.section import RodFields
 from ribbonopt.problem import BoundaryValueProblem, Posed, Ribbon

@@ -9,8 +9,8 @@ import casadi as ca
 import numpy as np
 
 from ribbonopt.arrays import Array
+from ribbonopt.classes import dataclass
 from ribbonopt.errors import ModelError
-from ribbonopt.frozen import dataclass
 from ribbonopt.mechanics.ends.frames import number
 from ribbonopt.mechanics.section import RodFields
 from ribbonopt.problem import Posed, Ribbon

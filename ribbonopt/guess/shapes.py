@@ -10,7 +10,7 @@ from abc import ABC, abstractmethod
 import numpy as np
 
 from ribbonopt.arrays import Array
-from ribbonopt.frozen import dataclass
+from ribbonopt.classes import dataclass
 from ribbonopt.mechanics.rotations import turn_vector, turns_about
 
 STEP = 1e-5  # of the fraction, for differences of frames

@@ -8,7 +8,7 @@ import casadi as ca
 import numpy as np
 
 from ribbonopt.arrays import Array
-from ribbonopt.frozen import dataclass
+from ribbonopt.classes import dataclass
 
 from .loads.load import Theta
 from .rotations import cross_matrix

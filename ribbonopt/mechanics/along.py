@@ -16,7 +16,7 @@ import casadi as ca
 import numpy as np
 
 from ribbonopt.arrays import Array
-from ribbonopt.frozen import dataclass
+from ribbonopt.classes import dataclass
 from ribbonopt.scene.along import Along, Scaled, Table
 from ribbonopt.scene.formulas.expressions import (
     Binary,

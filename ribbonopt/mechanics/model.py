@@ -23,7 +23,7 @@ import casadi as ca
 import numpy as np
 
 from ribbonopt.arrays import Array
-from ribbonopt.frozen import dataclass
+from ribbonopt.classes import dataclass
 
 from .balance import Balance, ConstantForce, DeadLoads, ForceMomentStates
 from .loads.load import DeadLoad, Load, Theta

@@ -14,8 +14,8 @@ import casadi as ca
 import numpy as np
 
 from ribbonopt.arrays import Array
+from ribbonopt.classes import dataclass
 from ribbonopt.errors import ModelError
-from ribbonopt.frozen import dataclass
 
 from .balance import Balance
 from .loads.load import Load, Theta

@@ -9,7 +9,7 @@ from functools import cached_property
 import casadi as ca
 
 from ribbonopt.arrays import Array
-from ribbonopt.frozen import dataclass
+from ribbonopt.classes import dataclass
 
 from .laws.law import Stress
 

@@ -15,8 +15,8 @@ import time
 from contextlib import suppress
 from pathlib import Path
 
+from ribbonopt.classes import dataclass
 from ribbonopt.errors import OutputError
-from ribbonopt.frozen import dataclass
 
 NO_LOCKS = (errno.ENOLCK, errno.ENOSYS, errno.EOPNOTSUPP, errno.EINVAL, errno.EBADF)
 TAKEN = (errno.EAGAIN, errno.EACCES, errno.EDEADLK)

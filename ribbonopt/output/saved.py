@@ -12,8 +12,8 @@ from typing import Annotated, Any
 import numpy as np
 
 from ribbonopt.arrays import Array
+from ribbonopt.classes import dataclass
 from ribbonopt.errors import OutputError, SceneError, TranscriptionError
-from ribbonopt.frozen import dataclass
 from ribbonopt.reading import MEGA, Kind, read_json, read_text
 from ribbonopt.scene import Scene, loads_scene
 from ribbonopt.scene.schema.bounds import Bounds

@@ -14,8 +14,8 @@ from contextlib import contextmanager, suppress
 from pathlib import Path
 from typing import IO
 
+from ribbonopt.classes import dataclass
 from ribbonopt.errors import OutputError
-from ribbonopt.frozen import dataclass
 
 from .declared import PICTURES
 from .disk import sync

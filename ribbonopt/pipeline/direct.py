@@ -19,7 +19,7 @@ import numpy as np
 from ribbonopt.arrays import Array
 from ribbonopt.attempt.ledger import Ledger
 from ribbonopt.attempt.structure import Structure
-from ribbonopt.frozen import dataclass
+from ribbonopt.classes import dataclass
 from ribbonopt.guess import Guess
 from ribbonopt.mechanics.ends.edges import EdgeHeld
 from ribbonopt.mechanics.laws.law import Stress

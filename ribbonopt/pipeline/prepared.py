@@ -14,8 +14,8 @@ from typing import TYPE_CHECKING
 from ribbonopt.arrays import Array
 from ribbonopt.attempt.structure import Structure
 from ribbonopt.checks.zero_moment import unbent_share
+from ribbonopt.classes import dataclass
 from ribbonopt.errors import ConvergenceError
-from ribbonopt.frozen import dataclass
 from ribbonopt.guess import Guess, guess_of, words
 from ribbonopt.problem import BoundaryValueProblem, Posed, Ribbon
 from ribbonopt.problem.wellposed.examine import examine, refuse_idle_settings, refuse_unreachable

@@ -25,8 +25,8 @@ from typing import Any, TypeVar
 
 import casadi as ca
 
+from ribbonopt.classes import dataclass
 from ribbonopt.errors import ModelError
-from ribbonopt.frozen import dataclass
 
 T = TypeVar("T")
 

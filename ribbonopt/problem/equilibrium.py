@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping
 
 import casadi as ca
 
-from ribbonopt.frozen import dataclass
+from ribbonopt.classes import dataclass
 from ribbonopt.mechanics.ends.conditions import CrossSection
 from ribbonopt.mechanics.laws.law import ConstitutiveLaw, Stress
 from ribbonopt.mechanics.outputs import outputs, singular

@@ -13,7 +13,7 @@ from typing import TYPE_CHECKING, Any, TypeVar
 
 import casadi as ca
 
-from ribbonopt.frozen import dataclass
+from ribbonopt.classes import dataclass
 from ribbonopt.mechanics.ends.conditions import Condition, CrossSection
 from ribbonopt.mechanics.laws.catalogue import relation_of
 from ribbonopt.mechanics.laws.law import ConstitutiveLaw, Stress

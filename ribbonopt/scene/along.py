@@ -12,7 +12,7 @@ from dataclasses import MISSING, fields, is_dataclass
 from functools import cache
 from typing import Annotated, Any, get_origin
 
-from ribbonopt.frozen import dataclass
+from ribbonopt.classes import dataclass
 
 from .faults import KeyPath
 from .schema.annotations import branches, classes_of, hint, hints, inside

@@ -7,7 +7,7 @@ from __future__ import annotations
 
 from typing import Annotated, Literal
 
-from ribbonopt.frozen import dataclass
+from ribbonopt.classes import dataclass
 
 from . import limits
 from .schema.bounds import Bounds

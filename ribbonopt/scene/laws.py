@@ -11,7 +11,7 @@ from collections.abc import Mapping
 from dataclasses import fields, replace
 from typing import Annotated, Any, ClassVar, Literal, Protocol, runtime_checkable
 
-from ribbonopt.frozen import dataclass
+from ribbonopt.classes import dataclass
 
 from .faults import KeyPath
 from .schema.bounds import Bounds, InPython

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Annotated, Any, Protocol, runtime_checkable
 
-from ribbonopt.frozen import dataclass
+from ribbonopt.classes import dataclass
 
 from .along import Along
 from .schema.bounds import InPython

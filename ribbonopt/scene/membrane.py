@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Annotated, Literal
 
-from ribbonopt.frozen import dataclass
+from ribbonopt.classes import dataclass
 
 from .schema.bounds import Bounds
 

@@ -10,7 +10,7 @@ from __future__ import annotations
 from dataclasses import field
 from typing import Annotated, Literal
 
-from ribbonopt.frozen import dataclass
+from ribbonopt.classes import dataclass
 
 from . import limits
 from .along import Along

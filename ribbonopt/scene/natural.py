@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from typing import Annotated
 
-from ribbonopt.frozen import dataclass
+from ribbonopt.classes import dataclass
 
 from .along import Along
 from .schema.bounds import Bounds

@@ -14,7 +14,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from typing import Literal
 
-from ribbonopt.frozen import dataclass
+from ribbonopt.classes import dataclass
 
 Axes = Literal["x", "y", "z", "xy", "xz", "yz", "xyz"]
 Load = Literal["force", "moment"]

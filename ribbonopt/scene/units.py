@@ -16,7 +16,7 @@ from collections.abc import Mapping
 from dataclasses import fields, is_dataclass, replace
 from typing import Any
 
-from ribbonopt.frozen import dataclass
+from ribbonopt.classes import dataclass
 
 from .along import scaled
 from .ends import Boundary, End, LabVector, Triple

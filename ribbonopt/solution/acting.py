@@ -12,7 +12,7 @@ import casadi as ca
 import numpy as np
 
 from ribbonopt.arrays import Array
-from ribbonopt.frozen import dataclass
+from ribbonopt.classes import dataclass
 from ribbonopt.mechanics.section import Section
 
 from .solution import Solution

@@ -7,7 +7,7 @@ from collections.abc import Mapping, Sequence
 import numpy as np
 
 from ribbonopt.arrays import Array
-from ribbonopt.frozen import dataclass
+from ribbonopt.classes import dataclass
 from ribbonopt.scene.formulas.expressions import evaluate
 from ribbonopt.scene.formulas.parsing import parse_expression
 from ribbonopt.scene.quantities import Shape

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING, Any
 import numpy as np
 
 from ribbonopt.arrays import Array
-from ribbonopt.frozen import dataclass
+from ribbonopt.classes import dataclass
 from ribbonopt.mechanics.section import RodFields
 from ribbonopt.problem import BoundaryValueProblem, Posed
 from ribbonopt.scene import Scene

@@ -15,7 +15,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ribbonopt.arrays import Array
-from ribbonopt.frozen import dataclass
+from ribbonopt.classes import dataclass
 from ribbonopt.mechanics.outputs import OWN
 from ribbonopt.mechanics.section import RodFields
 from ribbonopt.problem import BoundaryValueProblem

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 
-from ribbonopt.frozen import dataclass
+from ribbonopt.classes import dataclass
 
 NO_LENGTH = 1e-9  # of the ribbon: a phase that is shorter is not there
 

@@ -15,7 +15,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ribbonopt.arrays import Array
-from ribbonopt.frozen import dataclass
+from ribbonopt.classes import dataclass
 from ribbonopt.transcription import NLP
 from ribbonopt.transcription.collocation.compiled import CompiledChain, CompiledFactors
 

@@ -17,7 +17,7 @@ import numpy as np
 
 from ribbonopt.attempt.ledger import Ledger
 from ribbonopt.attempt.structure import Structure
-from ribbonopt.frozen import dataclass
+from ribbonopt.classes import dataclass
 from ribbonopt.guess import Guess, ShapeGuess
 from ribbonopt.guess.shapes import Chord, Shape
 from ribbonopt.mechanics.laws.catalogue import capabilities

@@ -17,8 +17,8 @@ import numpy as np
 
 from ribbonopt.arrays import Array
 from ribbonopt.attempt.ledger import Ledger
+from ribbonopt.classes import dataclass
 from ribbonopt.errors import ConvergenceError
-from ribbonopt.frozen import dataclass
 from ribbonopt.guess import Guess
 from ribbonopt.guess.named import shape_of
 from ribbonopt.guess.shapes import Chord, Perturbed, Shape

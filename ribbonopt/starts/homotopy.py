@@ -8,7 +8,7 @@ from __future__ import annotations
 import numpy as np
 
 from ribbonopt.attempt.structure import Structure
-from ribbonopt.frozen import dataclass
+from ribbonopt.classes import dataclass
 from ribbonopt.guess import Guess
 from ribbonopt.mechanics.laws.smooth import in_family, sharpened, sharpness
 from ribbonopt.problem import Posed

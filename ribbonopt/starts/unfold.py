@@ -10,7 +10,7 @@ import numpy as np
 
 from ribbonopt.arrays import Array
 from ribbonopt.checks.arcs import Arcs, arcs_of, leaps, sign_changes
-from ribbonopt.frozen import dataclass
+from ribbonopt.classes import dataclass
 from ribbonopt.mechanics.rotations import turns_about
 from ribbonopt.mechanics.section import RodFields
 from ribbonopt.problem import Posed

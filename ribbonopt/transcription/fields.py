@@ -18,8 +18,8 @@ import casadi as ca
 import numpy as np
 
 from ribbonopt.arrays import Array
+from ribbonopt.classes import dataclass
 from ribbonopt.errors import TranscriptionError
-from ribbonopt.frozen import dataclass
 from ribbonopt.problem.contract import BoundaryValueProblem
 
 from .known import Known

@@ -12,7 +12,7 @@ from functools import cached_property
 
 import casadi as ca
 
-from ribbonopt.frozen import dataclass
+from ribbonopt.classes import dataclass
 from ribbonopt.problem.contract import BoundaryValueProblem, Phase
 
 from .buffered import Buffered, Mapped

@@ -8,8 +8,8 @@ from itertools import pairwise
 import numpy as np
 
 from ribbonopt.arrays import Array
+from ribbonopt.classes import dataclass
 from ribbonopt.errors import TranscriptionError
-from ribbonopt.frozen import dataclass
 
 
 @dataclass(frozen=True, eq=False)

@@ -17,8 +17,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ribbonopt.arrays import Array
+from ribbonopt.classes import dataclass
 from ribbonopt.errors import TranscriptionError
-from ribbonopt.frozen import dataclass
 
 from .known import Known
 from .layout import Layout

@@ -6,7 +6,7 @@
 from __future__ import annotations
 
 from ribbonopt.arrays import Array
-from ribbonopt.frozen import dataclass
+from ribbonopt.classes import dataclass
 
 from .functions import ConditionFunctions
 from .layout import Layout

@@ -20,8 +20,8 @@ from functools import cached_property, lru_cache
 import numpy as np
 
 from ribbonopt.arrays import Array
+from ribbonopt.classes import dataclass
 from ribbonopt.errors import TranscriptionError
-from ribbonopt.frozen import dataclass
 
 MAX_DEGREE = 10
 

@@ -7,7 +7,7 @@ from dataclasses import field
 
 import numpy as np
 
-from ribbonopt.frozen import dataclass
+from ribbonopt.classes import dataclass
 from ribbonopt.mechanics.ends.boundary import held_position
 from ribbonopt.mechanics.ends.frames import components, frame_of, number
 from ribbonopt.scene import End, Scene

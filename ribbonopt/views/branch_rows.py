@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ribbonopt.frozen import dataclass
+from ribbonopt.classes import dataclass
 from ribbonopt.plain import Row, Rows, is_number
 from ribbonopt.scene.quantities import ANSWERS
 

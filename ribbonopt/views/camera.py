@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ribbonopt.frozen import dataclass
+from ribbonopt.classes import dataclass
 
 from .pieces import Array
 

@@ -7,7 +7,7 @@ from typing import Any
 
 import numpy as np
 
-from ribbonopt.frozen import dataclass
+from ribbonopt.classes import dataclass
 
 from .camera import Camera
 from .pieces import ROWS, Array

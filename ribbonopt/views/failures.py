@@ -6,7 +6,7 @@ import math
 import re
 from collections.abc import Sequence
 
-from ribbonopt.frozen import dataclass
+from ribbonopt.classes import dataclass
 from ribbonopt.plain import Row, Rows
 from ribbonopt.text import marked_up
 

@@ -14,7 +14,7 @@ from itertools import pairwise
 import numpy as np
 from numpy.typing import NDArray
 
-from ribbonopt.frozen import dataclass
+from ribbonopt.classes import dataclass
 from ribbonopt.mechanics.laws.catalogue import capabilities
 from ribbonopt.mechanics.widths import widths
 from ribbonopt.solution.acting import at_places

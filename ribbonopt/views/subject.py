@@ -5,8 +5,8 @@ from __future__ import annotations
 from dataclasses import field
 
 from ribbonopt.checks.topology import closure
+from ribbonopt.classes import dataclass
 from ribbonopt.errors import ViewError
-from ribbonopt.frozen import dataclass
 from ribbonopt.mechanics.laws.catalogue import curvature_across
 from ribbonopt.mechanics.widths import own_width
 from ribbonopt.scene.units import Units

@@ -14,8 +14,8 @@ from itertools import pairwise
 
 import numpy as np
 
+from ribbonopt.classes import dataclass
 from ribbonopt.errors import ModelError
-from ribbonopt.frozen import dataclass
 
 from .pieces import Array, Piece
 

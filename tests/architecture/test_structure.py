@@ -125,7 +125,7 @@ def test_only_the_command_line_prints() -> None:
 def test_nothing_is_evaluated_from_text() -> None:
     evaluating = {"eval", "exec", "compile", "__import__"}
     # Constructors are written from the names of fields, which stand in code.
-    assert those(lambda p: evaluating & set(calls_of(p))) == ["frozen.py"]
+    assert those(lambda p: evaluating & set(calls_of(p))) == ["classes.py"]
 
 
 def test_files_are_short() -> None:

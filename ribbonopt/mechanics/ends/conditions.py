@@ -16,7 +16,7 @@ import casadi as ca
 import numpy as np
 
 from ribbonopt.arrays import Array
-from ribbonopt.frozen import dataclass
+from ribbonopt.classes import dataclass
 from ribbonopt.mechanics.model import RodModel
 from ribbonopt.mechanics.rotations import directors_of, matrix_of, quaternions_from
 from ribbonopt.mechanics.section import Section

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import casadi as ca
 import numpy as np
 
-from ribbonopt.frozen import dataclass
+from ribbonopt.classes import dataclass
 
 from .conditions import Condition, Context, EndName, Named
 

@@ -9,7 +9,7 @@ from abc import abstractmethod
 
 import casadi as ca
 
-from ribbonopt.frozen import dataclass
+from ribbonopt.classes import dataclass
 
 from .implicit import ImplicitLaw, polynomial_form
 from .law import ConstitutiveLaw, RibbonLaw, Stress

@@ -19,7 +19,7 @@ from math import factorial
 
 import casadi as ca
 
-from ribbonopt.frozen import dataclass
+from ribbonopt.classes import dataclass
 
 from .quartic import Quartic, Stiffening
 from .quartic_law import QuarticLaw

@@ -13,7 +13,7 @@ from collections.abc import Callable
 
 import casadi as ca
 
-from ribbonopt.frozen import dataclass
+from ribbonopt.classes import dataclass
 
 from .relations import Components, norm
 

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import casadi as ca
 
-from ribbonopt.frozen import dataclass
+from ribbonopt.classes import dataclass
 
 from .law import RibbonLaw
 from .relations import Components

@@ -13,8 +13,8 @@ from dataclasses import replace
 
 import casadi as ca
 
+from ribbonopt.classes import dataclass
 from ribbonopt.errors import ModelError
-from ribbonopt.frozen import dataclass
 
 from .implicit import ImplicitLaw
 from .law import ConstitutiveLaw, Stress

@@ -19,7 +19,7 @@ from typing import NamedTuple
 
 import casadi as ca
 
-from ribbonopt.frozen import dataclass
+from ribbonopt.classes import dataclass
 
 from .relations import nonzero, norm
 

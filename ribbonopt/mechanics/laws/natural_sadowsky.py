@@ -14,7 +14,7 @@ from collections.abc import Mapping
 
 import casadi as ca
 
-from ribbonopt.frozen import dataclass
+from ribbonopt.classes import dataclass
 
 from .implicit import ImplicitLaw
 from .law import ConstitutiveLaw, RibbonLaw, Stress

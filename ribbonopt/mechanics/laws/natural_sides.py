@@ -6,7 +6,7 @@ from collections.abc import Mapping
 
 import casadi as ca
 
-from ribbonopt.frozen import dataclass
+from ribbonopt.classes import dataclass
 
 from .law import Stress
 from .natural import NaturalStrains

@@ -11,7 +11,7 @@ from __future__ import annotations
 
 import casadi as ca
 
-from ribbonopt.frozen import dataclass
+from ribbonopt.classes import dataclass
 
 from .implicit import ImplicitLaw
 from .law import RibbonLaw, Stress

@@ -8,7 +8,7 @@ from typing import NamedTuple
 
 import casadi as ca
 
-from ribbonopt.frozen import dataclass
+from ribbonopt.classes import dataclass
 
 #: what a law declares of itself, but for its own states: a law around it declares the same
 DECLARED = (

@@ -20,7 +20,7 @@ from typing import NamedTuple
 
 import casadi as ca
 
-from ribbonopt.frozen import dataclass
+from ribbonopt.classes import dataclass
 
 from .relations import Components
 

@@ -11,7 +11,7 @@ from collections.abc import Mapping
 
 import casadi as ca
 
-from ribbonopt.frozen import dataclass
+from ribbonopt.classes import dataclass
 
 from .law import ConstitutiveLaw, RibbonLaw, Stress
 from .mixture import MixtureLaw

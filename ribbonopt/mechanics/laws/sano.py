@@ -10,7 +10,7 @@ from dataclasses import replace
 
 import casadi as ca
 
-from ribbonopt.frozen import dataclass
+from ribbonopt.classes import dataclass
 
 from .quartic import Quartic, Stiffening
 from .quartic_law import QuarticLaw

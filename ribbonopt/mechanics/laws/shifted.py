@@ -11,7 +11,7 @@ from dataclasses import replace
 
 import casadi as ca
 
-from ribbonopt.frozen import dataclass
+from ribbonopt.classes import dataclass
 
 from .implicit import ImplicitLaw
 from .law import ConstitutiveLaw, Stress

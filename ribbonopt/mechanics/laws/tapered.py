@@ -11,8 +11,8 @@ from collections.abc import Mapping
 
 import casadi as ca
 
+from ribbonopt.classes import dataclass
 from ribbonopt.errors import ModelError
-from ribbonopt.frozen import dataclass
 
 from .implicit import ImplicitLaw
 from .law import ConstitutiveLaw, Stress

@@ -6,7 +6,7 @@ from typing import TYPE_CHECKING
 
 import casadi as ca
 
-from ribbonopt.frozen import dataclass
+from ribbonopt.classes import dataclass
 
 from .implicit import ImplicitLaw, norm_form
 from .law import ConstitutiveLaw, RibbonLaw, Stress

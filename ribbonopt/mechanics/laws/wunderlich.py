@@ -20,7 +20,7 @@ from dataclasses import replace
 
 import casadi as ca
 
-from ribbonopt.frozen import dataclass
+from ribbonopt.classes import dataclass
 
 from .gathering import gathering, log_factor, xi_of
 from .law import ConstitutiveLaw, Stress

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import casadi as ca
 
 from ribbonopt.arrays import Array
-from ribbonopt.frozen import dataclass
+from ribbonopt.classes import dataclass
 from ribbonopt.mechanics.along import Field
 
 from .components import Share

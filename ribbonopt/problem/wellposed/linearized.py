@@ -13,7 +13,7 @@ import casadi as ca
 import numpy as np
 
 from ribbonopt.arrays import Array
-from ribbonopt.frozen import dataclass
+from ribbonopt.classes import dataclass
 from ribbonopt.mechanics.section import RodFields
 from ribbonopt.problem.contract import BoundaryValueProblem
 from ribbonopt.problem.imposed import residuals

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ribbonopt.arrays import Array
-from ribbonopt.frozen import dataclass
+from ribbonopt.classes import dataclass
 
 SMALL = 1e-6  # of directions, and of positions relative to the length
 AXES_BY_NAME = dict(zip("xyz", np.eye(3), strict=True))

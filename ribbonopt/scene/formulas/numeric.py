@@ -6,7 +6,7 @@ import math
 from collections.abc import Mapping, Sequence
 from typing import Any, Literal
 
-from ribbonopt.frozen import dataclass
+from ribbonopt.classes import dataclass
 
 from .expressions import EndName
 

@@ -10,8 +10,8 @@ import math
 
 import numpy as np
 
+from ribbonopt.classes import dataclass
 from ribbonopt.errors import RibbonoptError
-from ribbonopt.frozen import dataclass
 from ribbonopt.plain import is_number
 from ribbonopt.scene.yamlio import loads_scene
 

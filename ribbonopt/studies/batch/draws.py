@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from ribbonopt.arrays import Array
-from ribbonopt.frozen import dataclass
+from ribbonopt.classes import dataclass
 from ribbonopt.plain import is_number
 from ribbonopt.scene.faults import InvalidSceneError, Problem, shown
 from ribbonopt.scene.limits import LARGEST, SEED, VALUES

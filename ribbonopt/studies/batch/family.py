@@ -11,8 +11,8 @@ from contextlib import suppress
 from dataclasses import replace
 from functools import partial
 
+from ribbonopt.classes import dataclass
 from ribbonopt.errors import ConvergenceError
-from ribbonopt.frozen import dataclass
 from ribbonopt.pipeline.prepared import Prepared
 from ribbonopt.scene import Scene
 from ribbonopt.solution.potential import known_potential

@@ -10,8 +10,8 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any, overload
 
+from ribbonopt.classes import dataclass
 from ribbonopt.errors import SceneError
-from ribbonopt.frozen import dataclass
 from ribbonopt.reading import Kind, read_text
 from ribbonopt.scene.faults import InvalidSceneError, KeyPath, Problem, shown, suggestion
 from ribbonopt.scene.yamlio import SCENE

@@ -13,7 +13,7 @@ from ribbonopt.accuracy.compared import mesh_to_begin
 from ribbonopt.accuracy.estimate import analyse
 from ribbonopt.arrays import Array
 from ribbonopt.attempt.attempt import Attempt
-from ribbonopt.frozen import dataclass
+from ribbonopt.classes import dataclass
 from ribbonopt.pipeline.prepared import Prepared
 from ribbonopt.problem import Posed
 from ribbonopt.scene import Scene

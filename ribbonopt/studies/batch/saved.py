@@ -6,7 +6,7 @@ import os
 from pathlib import Path
 from typing import Annotated, Any
 
-from ribbonopt.frozen import dataclass
+from ribbonopt.classes import dataclass
 from ribbonopt.output.records import checked
 from ribbonopt.plain import Row, finite, is_number
 from ribbonopt.reading import MEGA, Kind, read_json

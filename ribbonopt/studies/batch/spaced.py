@@ -6,7 +6,7 @@ import math
 from collections.abc import Sequence
 from typing import Any, overload
 
-from ribbonopt.frozen import dataclass
+from ribbonopt.classes import dataclass
 from ribbonopt.plain import is_number
 from ribbonopt.scene.limits import VALUES
 

@@ -9,8 +9,8 @@ from collections.abc import Iterator, Mapping
 from dataclasses import field
 from typing import Literal
 
+from ribbonopt.classes import dataclass
 from ribbonopt.errors import SceneError
-from ribbonopt.frozen import dataclass
 from ribbonopt.scene import Scene
 from ribbonopt.scene.limits import RIBBONS
 from ribbonopt.scene.quantities import ANSWERS

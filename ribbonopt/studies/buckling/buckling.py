@@ -18,8 +18,8 @@ import numpy as np
 
 from ribbonopt.arrays import Array
 from ribbonopt.checks.zero_moment import SHORTEST, share_without_moment, unbent_share
+from ribbonopt.classes import dataclass
 from ribbonopt.errors import ModelError, SceneError
-from ribbonopt.frozen import dataclass
 from ribbonopt.mechanics.laws.catalogue import relation_of
 from ribbonopt.mechanics.laws.law import ConstitutiveLaw
 from ribbonopt.pipeline.prepared import Prepared, prepare

@@ -7,7 +7,7 @@ from functools import cached_property
 import numpy as np
 
 from ribbonopt.arrays import Array
-from ribbonopt.frozen import dataclass
+from ribbonopt.classes import dataclass
 from ribbonopt.mechanics.section import RodFields
 from ribbonopt.problem import Posed, Ribbon
 

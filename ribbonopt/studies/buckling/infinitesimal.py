@@ -21,7 +21,7 @@ from functools import cached_property
 
 import casadi as ca
 
-from ribbonopt.frozen import dataclass
+from ribbonopt.classes import dataclass
 from ribbonopt.mechanics.laws.law import Stress
 from ribbonopt.problem import Ribbon
 from ribbonopt.problem.imposed import residuals

@@ -15,7 +15,7 @@ import casadi as ca
 import numpy as np
 
 from ribbonopt.arrays import Array
-from ribbonopt.frozen import dataclass
+from ribbonopt.classes import dataclass
 from ribbonopt.guess.unknowns import laid_out, places_of
 from ribbonopt.mechanics.laws.law import ConstitutiveLaw, Stress
 from ribbonopt.problem import BoundaryValueProblem

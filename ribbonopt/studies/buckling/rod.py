@@ -14,7 +14,7 @@ import casadi as ca
 import numpy as np
 
 from ribbonopt.arrays import Array
-from ribbonopt.frozen import dataclass
+from ribbonopt.classes import dataclass
 from ribbonopt.mechanics.laws.law import Stress
 from ribbonopt.problem import Ribbon
 

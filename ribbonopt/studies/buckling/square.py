@@ -12,7 +12,7 @@ import casadi as ca
 import numpy as np
 
 from ribbonopt.arrays import Array
-from ribbonopt.frozen import dataclass
+from ribbonopt.classes import dataclass
 from ribbonopt.mechanics.laws.law import ConstitutiveLaw
 from ribbonopt.problem import BoundaryValueProblem, Phase
 from ribbonopt.problem.pieces import Kinds, passing

@@ -15,7 +15,7 @@ from typing import Any
 
 import numpy as np
 
-from ribbonopt.frozen import dataclass
+from ribbonopt.classes import dataclass
 from ribbonopt.output.summary import versions
 from ribbonopt.scene import Scene
 from ribbonopt.studies.machine import machine

@@ -13,7 +13,7 @@ from dataclasses import replace
 from statistics import median
 from typing import Any
 
-from ribbonopt.frozen import dataclass
+from ribbonopt.classes import dataclass
 from ribbonopt.output.summary import versions
 from ribbonopt.scene import Scene
 from ribbonopt.studies.machine import machine

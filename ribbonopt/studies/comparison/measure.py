@@ -18,8 +18,8 @@ from ribbonopt.accuracy.compared import alone
 from ribbonopt.accuracy.estimate import analyse
 from ribbonopt.accuracy.gaps import ROUNDING
 from ribbonopt.arrays import Array
+from ribbonopt.classes import dataclass
 from ribbonopt.errors import ConvergenceError, RibbonoptError
-from ribbonopt.frozen import dataclass
 from ribbonopt.guess import Guess
 from ribbonopt.mechanics.laws.catalogue import capabilities
 from ribbonopt.mechanics.laws.law import Stress

@@ -11,8 +11,8 @@ from dataclasses import replace
 from typing import Any, Literal, TypeVar
 
 from ribbonopt import problem
+from ribbonopt.classes import dataclass
 from ribbonopt.errors import SceneError
-from ribbonopt.frozen import dataclass
 from ribbonopt.scene import Algebraic, Collocation, Scene, Shooting
 
 T = TypeVar("T")

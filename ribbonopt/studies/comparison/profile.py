@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ribbonopt.arrays import Array
-from ribbonopt.frozen import dataclass
+from ribbonopt.classes import dataclass
 from ribbonopt.scene.units import Units
 
 SAMPLES = 101

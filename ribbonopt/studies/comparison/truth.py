@@ -7,7 +7,7 @@ from dataclasses import replace
 
 import numpy as np
 
-from ribbonopt.frozen import dataclass
+from ribbonopt.classes import dataclass
 from ribbonopt.scene import Collocation, Scene
 
 from .measure import Measurement, measure

@@ -12,8 +12,8 @@ from dataclasses import replace
 from statistics import median
 from typing import Any
 
+from ribbonopt.classes import dataclass
 from ribbonopt.errors import SceneError
-from ribbonopt.frozen import dataclass
 from ribbonopt.output.summary import versions
 from ribbonopt.plain import Row, finite
 from ribbonopt.studies.batch.batch import run_batch

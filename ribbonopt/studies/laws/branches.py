@@ -15,8 +15,8 @@ from typing import Any
 
 import numpy as np
 
+from ribbonopt.classes import dataclass
 from ribbonopt.errors import ConvergenceError, RibbonoptError
-from ribbonopt.frozen import dataclass
 from ribbonopt.output.summary import versions
 from ribbonopt.plain import Row, finite
 from ribbonopt.scene import Scene

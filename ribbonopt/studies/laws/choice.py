@@ -11,8 +11,8 @@ from collections.abc import Iterable, Iterator, Mapping
 from dataclasses import field, fields, replace
 from math import isclose
 
+from ribbonopt.classes import dataclass
 from ribbonopt.errors import SceneError
-from ribbonopt.frozen import dataclass
 from ribbonopt.mechanics.laws.catalogue import numbers_of
 from ribbonopt.scene import Law, Scene
 from ribbonopt.scene.edges import Edge, edge_of

@@ -10,7 +10,7 @@ from functools import cached_property
 
 import numpy as np
 
-from ribbonopt.frozen import dataclass
+from ribbonopt.classes import dataclass
 from ribbonopt.output.summary import bars_of
 from ribbonopt.solution.solution import Solution
 from ribbonopt.studies.comparison.profile import Profile, load_sizes

@@ -7,8 +7,8 @@ from dataclasses import fields, replace
 from functools import cached_property, partial
 from typing import Any
 
+from ribbonopt.classes import dataclass
 from ribbonopt.errors import SceneError
-from ribbonopt.frozen import dataclass
 from ribbonopt.scene import Law, Scene
 from ribbonopt.scene.units import units_of
 from ribbonopt.scene.yamlio import loads_scene

@@ -12,8 +12,8 @@ from dataclasses import replace
 
 import numpy as np
 
+from ribbonopt.classes import dataclass
 from ribbonopt.errors import ConvergenceError, RibbonoptError
-from ribbonopt.frozen import dataclass
 from ribbonopt.pipeline.prepared import Prepared, prepare, solve
 from ribbonopt.scene import Scene
 from ribbonopt.solution.potential import known_potential

@@ -12,7 +12,7 @@ from typing import TYPE_CHECKING
 import numpy as np
 
 from ribbonopt.arrays import Array
-from ribbonopt.frozen import dataclass
+from ribbonopt.classes import dataclass
 from ribbonopt.transcription.buffered import Mapped
 from ribbonopt.transcription.functions import StageFunctions
 from ribbonopt.transcription.layout import Layout

@@ -12,8 +12,8 @@ from __future__ import annotations
 from collections.abc import Callable
 
 from ribbonopt.arrays import Array
+from ribbonopt.classes import dataclass
 from ribbonopt.errors import TranscriptionError
-from ribbonopt.frozen import dataclass
 from ribbonopt.problem.contract import BoundaryValueProblem
 from ribbonopt.transcription.functions import condition_functions, stage_functions
 from ribbonopt.transcription.known import Known

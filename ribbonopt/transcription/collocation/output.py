@@ -16,7 +16,7 @@ from functools import cached_property
 import numpy as np
 
 from ribbonopt.arrays import Array
-from ribbonopt.frozen import dataclass
+from ribbonopt.classes import dataclass
 from ribbonopt.transcription.known import Known, at_places
 from ribbonopt.transcription.layout import Index
 

@@ -13,7 +13,7 @@ import casadi as ca
 import numpy as np
 
 from ribbonopt.arrays import Array
-from ribbonopt.frozen import dataclass
+from ribbonopt.classes import dataclass
 from ribbonopt.transcription.buffered import Mapped
 from ribbonopt.transcription.collocation.elimination import NothingToEliminate
 from ribbonopt.transcription.functions import StageFunctions

@@ -11,7 +11,7 @@ from dataclasses import replace
 import numpy as np
 
 from ribbonopt.arrays import Array
-from ribbonopt.frozen import dataclass
+from ribbonopt.classes import dataclass
 from ribbonopt.transcription.known import Known, at_places, sampled
 from ribbonopt.transcription.tableaus import gauss
 

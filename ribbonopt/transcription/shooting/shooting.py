@@ -15,8 +15,8 @@ from collections.abc import Callable
 import casadi as ca
 
 from ribbonopt.arrays import Array
+from ribbonopt.classes import dataclass
 from ribbonopt.errors import TranscriptionError
-from ribbonopt.frozen import dataclass
 from ribbonopt.problem.contract import BoundaryValueProblem
 from ribbonopt.transcription.functions import condition_functions, stage_functions
 from ribbonopt.transcription.known import Known

@@ -15,7 +15,7 @@ from typing import Protocol, TypeVar
 import casadi as ca
 
 from ribbonopt.arrays import Array
-from ribbonopt.frozen import dataclass
+from ribbonopt.classes import dataclass
 from ribbonopt.transcription.buffered import Mapped
 from ribbonopt.transcription.functions import StageFunctions
 

@@ -12,11 +12,11 @@ from typing import Any, Generic, TypeVar
 
 import pytest
 
-from ribbonopt import frozen
+from ribbonopt import classes
 
 T = TypeVar("T")
 STANDARD = dataclasses.dataclass(frozen=True)
-OURS = frozen.dataclass(frozen=True)
+OURS = classes.dataclass(frozen=True)
 
 
 def pair(make: Callable[[Any], Any]) -> tuple[Any, Any]:
@@ -202,7 +202,7 @@ def test_hashes_follow_equality() -> None:
 
 
 def test_without_equality_it_is_compared_by_identity() -> None:
-    for decorator in (frozen.dataclass, dataclasses.dataclass):
+    for decorator in (classes.dataclass, dataclasses.dataclass):
         cls = lonely(decorator(frozen=True, eq=False))
         one = cls(1)
         assert one != cls(1)
@@ -230,7 +230,7 @@ def points_like(point: Any, y: float) -> Any:
     return type(point)(point.x, y, point.tags)
 
 
-@frozen.dataclass(frozen=True)
+@classes.dataclass(frozen=True)
 class Packed:
     """What is pickled has to have a name that can be found."""
 
@@ -252,6 +252,26 @@ def test_what_holds_itself_is_shown() -> None:
     assert shown[0] == shown[1]
 
 
-def test_what_changes_is_refused() -> None:
-    with pytest.raises(TypeError, match=r"dataclasses\.dataclass"):
-        frozen.dataclass(frozen=False)
+def test_what_changes_changes() -> None:
+    for decorator in (classes.dataclass, dataclasses.dataclass):
+        cls = points(decorator(eq=False))
+        point = cls(1.0)
+        point.x = 2.0
+        del point.y
+        assert point.x == point.y == 2.0  # y is that of the class
+        assert not cls.__dataclass_params__.frozen
+        assert hash(point) == object.__hash__(point)
+    with pytest.raises(TypeError, match="unhashable"):
+        hash(lonely(classes.dataclass())(1))
+
+
+def test_what_changes_is_inherited() -> None:
+    base = points(classes.dataclass(eq=False))
+
+    @classes.dataclass(eq=False)
+    class Solid(base):  # type: ignore[misc, valid-type]
+        z: float = 9.0
+
+    solid = Solid(1.0)
+    solid.z = 1.0
+    assert vars(solid) == {"x": 1.0, "y": 2.0, "tags": [], "z": 1.0}

@@ -1,10 +1,10 @@
-"""Frozen dataclasses whose constructors are written when an instance is first made.
+"""Dataclasses whose constructors are written when they are worth it.
 
 The standard decorator writes and compiles six methods a class, half a millisecond: for the 130
 classes that a command imports, of which it makes every other, a quarter of all its time. Here
 fields are declared as ever (`dataclasses.fields`, `replace`, `is_dataclass` know them), methods are
 functions of the fields, and `__init__` is compiled for classes of which there are more than a few
-instances. Classes that change, or inherit fields, use the standard decorator.
+instances. Frozen classes that inherit fields are left to the standard decorator.
 """
 
 from __future__ import annotations
@@ -23,36 +23,28 @@ if TYPE_CHECKING:
     from dataclasses import dataclass as dataclass  # to readers of types it is the same
 else:
 
-    def dataclass(*, frozen: bool, eq: bool = True) -> Callable[[C], C]:
-        """Return `dataclasses.dataclass(frozen=True, eq=eq)`, whose methods cost nothing unused."""
-        if not frozen:
-            raise TypeError("what is not frozen is declared by dataclasses.dataclass")
+    def dataclass(*, frozen: bool = False, eq: bool = True) -> Callable[[C], C]:
+        """Return `dataclasses.dataclass(frozen=frozen, eq=eq)`, which costs next to nothing."""
 
         def decorate(cls: C) -> C:
-            if any(dataclasses.is_dataclass(base) for base in cls.__mro__[1:]):
-                return dataclasses.dataclass(frozen=True, eq=eq)(cls)
-            return _frozen(cls, eq)
+            # The standard one does not know that what it would make is not frozen only for now.
+            inherits = frozen and any(map(dataclasses.is_dataclass, cls.__mro__[1:]))
+            if inherits or (eq and not frozen):
+                return dataclasses.dataclass(frozen=frozen, eq=eq)(cls)
+            return _declared(cls, frozen, eq)
 
         return decorate
 
 
-@dataclasses.dataclass(frozen=True)
-class _Equal:
-    """Its parameters are those of every class declared here that compares its fields."""
-
-
-@dataclasses.dataclass(frozen=True, eq=False)
-class _Unequal:
-    """Its parameters are those of every class declared here that is compared by identity."""
-
-
-def _frozen(cls: Any, eq: bool) -> Any:
+def _declared(cls: Any, frozen: bool, eq: bool) -> Any:
     cls.__doc__ = cls.__doc__ or cls.__name__  # or else its signature would be asked for
     dataclasses.dataclass(init=False, repr=False, eq=False)(cls)  # finds the fields, writes nothing
-    like: Any = _Equal if eq else _Unequal
-    cls.__dataclass_params__ = like.__dataclass_params__
+    says = cls.__dataclass_params__
+    says.init, says.repr, says.eq, says.frozen = True, True, eq, frozen
     own = vars(cls)
-    methods: dict[str, Any] = {"__repr__": _repr, "__setattr__": _set_one, "__delattr__": _delete}
+    methods: dict[str, Any] = {"__repr__": _repr}
+    if frozen:
+        methods |= {"__setattr__": _set_one, "__delattr__": _delete}
     if "__init__" not in own:
         methods |= {"__init__": _first_init(cls), "__signature__": _Signature(cls)}
     if eq:
