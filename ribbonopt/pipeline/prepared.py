@@ -144,11 +144,11 @@ class Prepared:
     def guess(self, scene: Scene | Posed | None = None) -> Guess:
         """Return the first guess for a scene: its own, or the first of the automatic start."""
         search = self.search(scene)
-        own = self._own_guess(search.posed)
-        own = own or next(self.automatic.guesses(search.posed, search.ledger), None)
-        if own is None:
-            raise _no_start()
-        return own
+        if (own := self._own_guess(search.posed)) is not None:
+            return own
+        for first in self.automatic.guesses(search.posed, search.ledger):
+            return first
+        raise _no_start()
 
     @cached_property
     def automatic(self) -> Automatic:

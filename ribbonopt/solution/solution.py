@@ -147,8 +147,7 @@ class Solution:
         ValueError
             If an arclength is outside the interval.
         """
-        points = np.atleast_1d(np.asarray(s, dtype=float))
-        values = self.outputs(points)
+        values = self.outputs(np.atleast_1d(np.asarray(s, dtype=float)))
         result = values.get(expression)
         if result is None:
             from .sampling import evaluate_formula  # plain names need no parser
