@@ -144,9 +144,8 @@ class Prepared:
     def guess(self, scene: Scene | Posed | None = None) -> Guess:
         """Return the first guess for a scene: its own, or the first of the automatic start."""
         search = self.search(scene)
-        if (own := self._own_guess(search.posed)) is not None:
-            return own
-        for first in self.automatic.guesses(search.posed, search.ledger):
+        own = self._own_guess(search.posed)
+        for first in (own,) if own else self.automatic.guesses(search.posed, search.ledger):
             return first
         raise _no_start()
 
