@@ -154,7 +154,7 @@ class Prepared:
         """What is built for the automatic start, when it is first needed."""
         from ribbonopt.starts.automatic import Automatic  # IPOPT, which many scenes do without
 
-        return Automatic(self.structure.posed)
+        return Automatic(self.structure.posed, self.structure)
 
     def _once(self, posed: Posed, guess: Guess | None, fallback: bool, quick: bool) -> Solution:
         started = time.perf_counter()

@@ -139,7 +139,12 @@ class Posed:
 
     @cached_property
     def structure(self) -> tuple[object, ...]:
-        """What scenes share that differ in numbers only, which serve one built problem."""
+        """What scenes share that differ in numbers only, which serve one built program."""
+        return self.scene.transcription, self.scene.solver, *self.equations
+
+    @cached_property
+    def equations(self) -> tuple[object, ...]:
+        """What scenes share whose equations are the same, whatever solves them."""
         scene = self.scene
         conditions = tuple(
             (type(c).__name__, *(v for v in vars(c).values() if isinstance(v, str)))
@@ -147,7 +152,7 @@ class Posed:
         )
         loads: tuple[object, ...] = tuple(load.structure_key for load in self.loads)
         loads += tuple(tuple(type(a) for a in station.actions) for station in self.stations)
-        settings = type(scene.law), scene.formulation, scene.states, scene.transcription
+        settings = type(scene.law), scene.formulation, scene.states
         # In a plane, which conditions are left depends on what plane it is; natural strains tell
         # whether there is one, and whether a piece of a loop stands for all of it.
         plane: tuple[object, ...] = ()
@@ -155,8 +160,7 @@ class Posed:
             plane = *self.start[1][:, 1].round().tolist(), leaves_plane(scene, self.theta)
         plane = *plane, changed_by_flip(scene, self.theta)
         along = tuple(field.structure for field in fields_of(scene))
-        rest = tuple(self.theta), conditions, along, loads, scene.boundary.also, plane
-        return (*settings, scene.solver, *rest)
+        return *settings, tuple(self.theta), conditions, along, loads, scene.boundary.also, plane
 
     @cached_property
     def start(self) -> Place:

@@ -55,6 +55,7 @@ class Automatic:
     """Everything that is built for the automatic start of one structure of scenes, when needed."""
 
     posed: Posed
+    structure: Structure | None = None
     _energies: dict[type, Structure] = field(default_factory=dict)
     _homotopies: dict[type, Structure] = field(default_factory=dict)
 
@@ -108,7 +109,7 @@ class Automatic:
 
     def _homotopy(self, law: Law) -> Structure:
         if type(law) not in self._homotopies:
-            self._homotopies[type(law)] = Structure.of(smooth_of(self.posed, law))
+            self._homotopies[type(law)] = Structure.of(smooth_of(self.posed, law), self.structure)
         return self._homotopies[type(law)]
 
     @cached_property
