@@ -9,10 +9,11 @@ d1 (a fold), d1, u2 and u3 continue.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from ribbonopt.arrays import Array
-from ribbonopt.classes import dataclass
 from ribbonopt.solution.solution import Solution
 
 TOLERANCE = 1e-6  # of directors and fields, and of positions relative to the length

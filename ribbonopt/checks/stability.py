@@ -9,13 +9,12 @@ second variation (`variation`) is a quadratic form along the ribbon, whose inert
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import TypeVar
 
 import numpy as np
 
 from ribbonopt.accuracy.spin import SPIN, spins
-from ribbonopt.classes import dataclass
 from ribbonopt.mechanics.laws.catalogue import capabilities
 from ribbonopt.problem import BoundaryValueProblem, Ribbon
 from ribbonopt.problem.potentials import without_potential

@@ -8,12 +8,11 @@ with dihedral symmetry (a flip at each end; the two together are a turn by 2 pi 
 
 from __future__ import annotations
 
-from dataclasses import field
+from dataclasses import dataclass, field
 
 import numpy as np
 
 from ribbonopt.arrays import Array
-from ribbonopt.classes import dataclass
 from ribbonopt.scene import Loop
 from ribbonopt.solution.solution import Solution
 

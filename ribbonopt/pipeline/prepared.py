@@ -7,14 +7,13 @@ so that other numbers (epsilon, loads, prescribed values, meshes) are solved wit
 from __future__ import annotations
 
 import time
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from functools import cached_property, partial
 from typing import TYPE_CHECKING
 
 from ribbonopt.arrays import Array
 from ribbonopt.attempt.structure import Structure
 from ribbonopt.checks.zero_moment import unbent_share
-from ribbonopt.classes import dataclass
 from ribbonopt.errors import ConvergenceError
 from ribbonopt.guess import Guess, guess_of, words
 from ribbonopt.problem import BoundaryValueProblem, Posed, Ribbon
@@ -145,9 +144,10 @@ class Prepared:
         """Return the first guess for a scene: its own, or the first of the automatic start."""
         search = self.search(scene)
         own = self._own_guess(search.posed)
-        for first in (own,) if own else self.automatic.guesses(search.posed, search.ledger):
-            return first
-        raise _no_start()
+        own = own or next(self.automatic.guesses(search.posed, search.ledger), None)
+        if own is None:
+            raise _no_start()
+        return own
 
     @cached_property
     def automatic(self) -> Automatic:

@@ -10,8 +10,9 @@ from ribbonopt.mechanics.laws.catalogue import capabilities
 from ribbonopt.solution.solution import Solution
 from ribbonopt.solvers import Status
 
+from .means import Prepare
+
 if TYPE_CHECKING:
-    from .means import Prepare
     from .search import Search
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import field
+from dataclasses import dataclass, field
 from functools import cached_property
 
 import numpy as np
@@ -13,7 +13,7 @@ from ribbonopt.attempt.ledger import Ledger
 from ribbonopt.attempt.structure import Structure
 from ribbonopt.checks.arcs import sign_changes
 from ribbonopt.checks.one_sided import ends_on_switch
-from ribbonopt.classes import dataclass
+from ribbonopt.mechanics.laws.smooth import sharpness
 from ribbonopt.problem import Posed
 from ribbonopt.solution.solution import Solution
 from ribbonopt.transcription import Mesh
@@ -132,6 +132,4 @@ class Tried:
 
 def bluntness(solution: Solution) -> float:
     """Return delta of the smooth law of a solution, 1 for any other law."""
-    from ribbonopt.mechanics.laws.smooth import sharpness
-
     return sharpness(solution.posed.scene.law, 1.0)

@@ -8,14 +8,12 @@ of the scene: metres in SI.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import MISSING, fields, is_dataclass
+from dataclasses import MISSING, dataclass, fields, is_dataclass
 from functools import cache
 from typing import Annotated, Any, get_origin
 
-from ribbonopt.classes import dataclass
-
 from .faults import KeyPath
-from .schema.annotations import branches, classes_of, hint, hints, inside
+from .schema.annotations import branches, classes_of, hints, inside
 from .schema.bounds import InPython
 
 #: fields of a scene in which such numbers may stand
@@ -88,7 +86,7 @@ def _roots(cls: type) -> tuple[tuple[str, Any, Any], ...]:
     for member in (member for member in fields(cls) if member.name in ROOTS):
         made = member.default_factory
         default = member.default if made is MISSING else made()
-        found.append((member.name, hint(cls, member.name), default))
+        found.append((member.name, hints(cls)[member.name], default))
     return tuple(found)
 
 

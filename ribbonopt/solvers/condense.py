@@ -12,13 +12,13 @@ The factors are kept: a new right-hand side costs matrix-vector products only.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ribbonopt.arrays import Array
-from ribbonopt.classes import dataclass
 from ribbonopt.transcription.collocation.elimination import times
 from ribbonopt.transcription.residuals import Derivatives, Residuals
 

@@ -16,12 +16,13 @@ from ribbonopt.scene.faults import KeyPath, Problem, shown
 from ribbonopt.scene.laws import OfWidth, Sized
 from ribbonopt.scene.loads import Loads
 from ribbonopt.scene.model import Guess, MoebiusGuess, RibbonSizes, Scene
-from ribbonopt.scene.schema.annotations import branches, hint, hints, inside
+from ribbonopt.scene.schema.annotations import branches, hints, inside
 from ribbonopt.scene.stations import InteriorSupport
 from ribbonopt.scene.wording import written
 from ribbonopt.text import name_fault
 
 from .frames import check_frame
+from .loops import check_loop, check_piece
 from .magnitudes import as_written, in_units
 from .supports import check_supports
 
@@ -36,7 +37,7 @@ def check(scene: Scene) -> list[Problem]:
     formulas |= _formulas(scene.loads, Loads, ("loads",))
     formulas |= _formulas(scene.supports, tuple[InteriorSupport, ...], ("supports",))
     formulas |= _formulas(scene.guess, Guess, ("guess",))
-    formulas |= _formulas(scene.gravity, hint(Scene, "gravity"), ("gravity",))
+    formulas |= _formulas(scene.gravity, hints(Scene)["gravity"], ("gravity",))
     values: dict[KeyPath, float] = {}
     if formulas or boundary.also or scene.parameters:
         # Imported late: a scene in plain numbers starts without the grammar of formulas.
@@ -59,12 +60,8 @@ def check(scene: Scene) -> list[Problem]:
     for name in ("start", "end"):
         problems += check_frame(getattr(boundary, name), ("boundary", name), values)
     if isinstance(scene.guess, MoebiusGuess):
-        from .loops import check_piece
-
         problems += check_piece(scene.guess.moebius, ("guess", "moebius"))
     if boundary.loop is not None:
-        from .loops import check_loop
-
         problems += check_loop(boundary.loop, boundary, scene.guess)
     else:
         problems += check_supports(boundary, values)

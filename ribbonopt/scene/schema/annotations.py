@@ -6,7 +6,7 @@ Every branch of a union has a tag: the name of a dataclass, or the shape a value
 from __future__ import annotations
 
 import sys
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import fields, is_dataclass
 from functools import cache
 from numbers import Real
@@ -24,11 +24,7 @@ def key_of(name: str) -> str:
 
 
 @cache
-def hint(cls: type, key: str) -> Any:
-    """Return what a key of a dataclass may hold, as its annotation says.
-
-    One by one: a scene has few of the keys that it might have.
-    """
+def _hint(cls: type, key: str) -> Any:
     member = next(some for some in fields(cls) if key_of(some.name) == key)
     # Where it stands in the code decides what its words mean.
     owners = [base for base in cls.__mro__ if _own_field(base, member.name) is member]
@@ -40,10 +36,28 @@ def _own_field(cls: type, name: str) -> Any:
     return vars(cls).get("__dataclass_fields__", {}).get(name)
 
 
+class Hints(Mapping[str, Any]):
+    """What the keys of a dataclass may hold; each annotation is read when it is asked for."""
+
+    def __init__(self, cls: type) -> None:
+        self._cls, self._keys = cls, keys_of(cls)
+
+    def __getitem__(self, key: str) -> Any:
+        if key not in self._keys:
+            raise KeyError(key)
+        return _hint(self._cls, key)
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._keys)
+
+    def __len__(self) -> int:
+        return len(self._keys)
+
+
 @cache
-def hints(cls: type) -> dict[str, Any]:
+def hints(cls: type) -> Hints:
     """Return the annotations of a dataclass, by the key of the field."""
-    return {key: hint(cls, key) for key in keys_of(cls)}
+    return Hints(cls)
 
 
 def keys_of(cls: type) -> list[str]:
@@ -89,8 +103,8 @@ def types_of(annotation: Any) -> dict[str, str]:
     return {
         name: tag
         for tag, cls in classes_of(annotation).items()
-        if "type" in keys_of(cls)
-        for name in get_args(hint(cls, "type"))
+        if "type" in hints(cls)
+        for name in get_args(hints(cls)["type"])
     }
 
 
@@ -101,7 +115,7 @@ def tag_chooser(annotation: Any) -> Callable[[Any], str | None]:
     the one that owns most of its keys, or else names like them. No branch may exist for the tag
     that is returned.
     """
-    classes = {tag: keys_of(cls) for tag, cls in classes_of(annotation).items()}
+    classes = {tag: hints(cls) for tag, cls in classes_of(annotation).items()}
     types, known = types_of(annotation), branches(annotation)
     own = {tag: get_args(some)[0] for tag, some in known.items() if only_in_python(some)}
 
@@ -134,7 +148,7 @@ def inside(annotation: Any, step: str | int) -> Any:
     """Return the annotation of what a key or an index leads to; None where nothing is."""
     origin, arguments = get_origin(annotation), get_args(annotation)
     if is_dataclass(annotation) and isinstance(annotation, type):
-        return hint(annotation, str(step)) if str(step) in keys_of(annotation) else None
+        return hints(annotation).get(str(step))
     if origin is dict:
         return arguments[1]
     if origin is tuple and isinstance(step, int):

@@ -15,7 +15,7 @@ from typing import Annotated, Any, Literal, TypeVar, Union, get_args, get_origin
 
 from ribbonopt.scene.faults import InvalidSceneError
 
-from .annotations import branches, classes_of, hint, key_of, keys_of, tag_chooser, types_of
+from .annotations import branches, classes_of, hints, key_of, keys_of, tag_chooser, types_of
 from .bounds import Bounds, InPython
 from .found import Fault, Kind, Loc
 from .values import Check, fixed, items, literal, mapping, number, plain, step, text
@@ -98,7 +98,7 @@ def _dataclass(cls: type, *, type_required: bool = False) -> Check:
         for member in fields(cls)
     ]
     keys = set(keys_of(cls))
-    check_of_key = cache(lambda key: check_of(hint(cls, key)))  # of those keys only that occur
+    check_of_key = cache(lambda key: check_of(hints(cls)[key]))  # of those keys only that occur
 
     def check(value: Any, loc: Loc, faults: list[Fault]) -> Any:
         if isinstance(value, cls):

@@ -7,13 +7,14 @@ few evaluations of its equations.
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from ribbonopt.accuracy.compared import mesh_to_begin
 from ribbonopt.accuracy.estimate import analyse
 from ribbonopt.arrays import Array
 from ribbonopt.attempt.attempt import Attempt
-from ribbonopt.classes import dataclass
 from ribbonopt.pipeline.prepared import Prepared
 from ribbonopt.problem import Posed
 from ribbonopt.scene import Scene

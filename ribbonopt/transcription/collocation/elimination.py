@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from ribbonopt.arrays import Array
-from ribbonopt.classes import dataclass
 from ribbonopt.transcription.layout import Layout
 from ribbonopt.transcription.residuals import Derivatives, Residuals
 from ribbonopt.transcription.tableaus import Tableau
