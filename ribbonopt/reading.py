@@ -11,8 +11,9 @@ import os
 import stat
 import time
 from collections.abc import Iterator
-from dataclasses import dataclass
 from typing import Any, NoReturn
+
+from ribbonopt.classes import dataclass
 
 from .errors import OutputError, RibbonoptError
 from .plain import parsed

@@ -27,7 +27,7 @@ from typing import NamedTuple
 ROOT = Path(__file__).parents[1]
 RESOLUTIONS = {"oldest": "lowest-direct", "newest": "highest"}
 #: dependencies whose versions are told in the table
-TOLD = ("casadi", "numpy", "matplotlib", "pydantic", "pytest")
+TOLD = ("casadi", "numpy", "matplotlib", "pyyaml", "pytest")
 
 
 class Pair(NamedTuple):

@@ -6,11 +6,10 @@ trajectory (`found`), and the estimate takes it from there.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from ribbonopt.arrays import Array
+from ribbonopt.classes import dataclass
 from ribbonopt.solution.solution import Solution
 from ribbonopt.solvers.condense import factored
 from ribbonopt.solvers.protocols import Factors

@@ -9,13 +9,13 @@ from each pair of neighbouring stages, in the complex plane, says where on this 
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import lru_cache
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ribbonopt.arrays import Array
+from ribbonopt.classes import dataclass
 from ribbonopt.solution.trajectory import Trajectory
 
 REACH = 1.0  # widths of an element, beyond which nothing can be said from it

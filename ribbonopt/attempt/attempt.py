@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 from ribbonopt.arrays import Array
 from ribbonopt.checks.verify import verify
+from ribbonopt.classes import dataclass
 from ribbonopt.guess import Guess, initial_unknowns
 from ribbonopt.problem import BoundaryValueProblem, Posed, Ribbon
 from ribbonopt.solution.made import solution_at, solution_of
@@ -17,7 +18,6 @@ from ribbonopt.solvers.newton import NewtonSolver
 from ribbonopt.transcription import NLP, Mesh
 
 from .ledger import Ledger
-from .resistance import where_it_resists
 
 if TYPE_CHECKING:
     from ribbonopt.solvers import Solver
@@ -160,6 +160,8 @@ class Attempt:
         parts = self.posed, self.problem, self.nlp, report, self.p, self.sheets
         solution = solution_of(*parts)
         if not report.status.converged:
+            from .resistance import where_it_resists  # only a failure pays for it
+
             where = where_it_resists(report.residuals, self.nlp.layout, solution)
             return replace(solution, message=f"{report.status.value}. {where}")
         return verified(solution, self.ribbon) if check else solution

@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, fields
+from dataclasses import field, fields
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ribbonopt.arrays import Array
+from ribbonopt.classes import dataclass
 from ribbonopt.errors import ModelError
 from ribbonopt.problem import BoundaryValueProblem, Posed, Ribbon, formulate
 from ribbonopt.scene import Ipopt
@@ -50,8 +51,10 @@ class Structure:
     _phased: dict[tuple[Kinds, bool], Structure] = field(default_factory=dict)
 
     @classmethod
-    def of(cls, posed: Posed) -> Structure:
-        """Build the equations of a posed scene in its formulation."""
+    def of(cls, posed: Posed, known: Structure | None = None) -> Structure:
+        """Build the equations of a posed scene in its formulation, if none `known` has them."""
+        if known is not None and known.posed.equations == posed.equations:
+            return cls(posed, known.ribbon, known.problem)
         return cls(posed, *formulate(posed))
 
     @classmethod

@@ -6,11 +6,12 @@ B_e y_e and conditions C (x_0, x_N) = 0; independent are x_0 and all y.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from ribbonopt.arrays import Array
+from ribbonopt.classes import dataclass
 
 
 @dataclass(frozen=True, eq=False)

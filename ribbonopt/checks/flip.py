@@ -10,11 +10,11 @@ d1 (a fold), d1, u2 and u3 continue.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 import numpy as np
 
 from ribbonopt.arrays import Array
+from ribbonopt.classes import dataclass
 from ribbonopt.solution.named import Each
 from ribbonopt.solution.solution import Solution
 

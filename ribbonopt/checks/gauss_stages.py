@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 import casadi as ca
 import numpy as np
@@ -11,6 +10,7 @@ from numpy.typing import NDArray
 
 from ribbonopt.accuracy.estimate import relative_error
 from ribbonopt.arrays import Array
+from ribbonopt.classes import dataclass
 from ribbonopt.mechanics.laws.law import Stress
 from ribbonopt.mechanics.outputs import own_name
 from ribbonopt.mechanics.section import RodFields

@@ -12,13 +12,13 @@ point, and as the square of a moment over no length a switch weighs nothing in t
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
 
 from ribbonopt.arrays import Array
+from ribbonopt.classes import dataclass
 from ribbonopt.problem import BoundaryValueProblem, Ribbon
 from ribbonopt.solution.solution import Solution
 from ribbonopt.transcription.buffered import Buffered

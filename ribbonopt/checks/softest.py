@@ -7,11 +7,10 @@ inverse iteration from shifts that approach it from below, as the count of those
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from ribbonopt.arrays import Array
+from ribbonopt.classes import dataclass
 from ribbonopt.mechanics.rotations import product
 from ribbonopt.solution.solution import Solution
 

@@ -9,12 +9,13 @@ second variation (`variation`) is a quadratic form along the ribbon, whose inert
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TypeVar
 
 import numpy as np
 
 from ribbonopt.accuracy.spin import SPIN, spins
+from ribbonopt.classes import dataclass
 from ribbonopt.problem import BoundaryValueProblem, Ribbon
 from ribbonopt.problem.potentials import without_potential
 from ribbonopt.solution.solution import Solution

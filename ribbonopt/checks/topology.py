@@ -9,11 +9,12 @@ with dihedral symmetry (a flip at each end; the two together are a turn by 2 pi 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 
 import numpy as np
 
 from ribbonopt.arrays import Array
+from ribbonopt.classes import dataclass
 from ribbonopt.scene import Loop
 from ribbonopt.solution.solution import Solution
 

@@ -15,7 +15,7 @@ those of the continuous problem, whatever the mesh. Where strains leap see `movi
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import NamedTuple
 
 import casadi as ca
@@ -23,6 +23,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ribbonopt.arrays import Array
+from ribbonopt.classes import dataclass
 from ribbonopt.mechanics.laws.law import ConstitutiveLaw
 from ribbonopt.problem import BoundaryValueProblem, Ribbon
 from ribbonopt.problem.energy import minimum

@@ -3,16 +3,19 @@
 from __future__ import annotations
 
 import argparse
+from collections.abc import Sequence
 
 from ribbonopt.errors import SceneError
-from ribbonopt.studies.continuation.columns import COLUMNS, HINT
 from ribbonopt.version import VERSION
 
 from .terminal import Parser, say
 
 
-def parser() -> argparse.ArgumentParser:
-    """Return the parser of all verbs; `verb` names the one that was given."""
+def parser(given: Sequence[str] = ()) -> argparse.ArgumentParser:
+    """Return the parser of all verbs; `verb` names the one that was given.
+
+    Where the words begin with a verb, the others, which nobody will hear of, are left out.
+    """
     result = Parser(
         prog="ribbonopt",
         description="Equilibria of elastic ribbons from YAML scenes.",
@@ -20,99 +23,92 @@ def parser() -> argparse.ArgumentParser:
     )
     result.add_argument("--version", action="version", version=f"ribbonopt {VERSION}")
     verbs = result.add_subparsers(prog="ribbonopt", dest="verb", required=True, metavar="COMMAND")
+    for name in [given[0]] if given and given[0] in VERBS else VERBS:
+        words, fill = VERBS[name]
+        fill(verbs.add_parser(name, help=words, formatter_class=_help))
+    return result
 
-    solve = verbs.add_parser(
-        "solve", help="solve a scene and report its numbers", formatter_class=_help
-    )
-    _scene(solve)
-    solve.add_argument("--out", metavar="DIR", help="folder for the result (default: none written)")
-    solve.add_argument(
+
+def _solve(verb: argparse.ArgumentParser) -> None:
+    _scene(verb)
+    verb.add_argument("--out", metavar="DIR", help="folder for the result (default: none written)")
+    verb.add_argument(
         "--plot", action="store_true", help="draw pictures (into --out, or results/NAME)"
     )
 
-    check = verbs.add_parser(
-        "check", help="validate a scene and count unknowns and conditions", formatter_class=_help
-    )
-    _scene(check)
-    check.add_argument(
+
+def _check(verb: argparse.ArgumentParser) -> None:
+    _scene(verb)
+    verb.add_argument(
         "--versions",
         action=_Versions,
         nargs=0,
         help="print instead what answers depend on, the compiled kernel included, and exit",
     )
 
-    compare = verbs.add_parser(
-        "compare",
-        help="solve a scene by all formulations and transcriptions, and say which is cheapest",
-        formatter_class=_help,
-    )
-    _scene(compare)
-    _pairs(compare)
-    compare.add_argument(
+
+def _compare(verb: argparse.ArgumentParser) -> None:
+    _scene(verb)
+    _pairs(verb)
+    verb.add_argument(
         "--tolerances",
         metavar="LIST",
         help="relative errors of n(0), m(0), such as 1e-6,1e-9 (default: 1e-4,1e-6,1e-8,1e-10)",
     )
-    _laws(compare)
+    _laws(verb)
 
-    bench = verbs.add_parser(
-        "bench", help="time against error over degrees and meshes", formatter_class=_help
-    )
-    _scene(bench)
-    _pairs(bench)
-    bench.add_argument("--repeat", default="11", metavar="N", help="median of N solves")
-    bench.add_argument("--quick", action="store_true", help="reduced states, low degrees only")
 
-    follow = verbs.add_parser(
-        "continue",
-        help="follow a scene's equilibria as a parameter moves (its `continuation`)",
-        formatter_class=_help_as_written,
-        epilog=_branch_columns(),
-    )
-    _scene(follow)
-    follow.add_argument(
+def _bench(verb: argparse.ArgumentParser) -> None:
+    _scene(verb)
+    _pairs(verb)
+    verb.add_argument("--repeat", default="11", metavar="N", help="median of N solves")
+    verb.add_argument("--quick", action="store_true", help="reduced states, low degrees only")
+
+
+def _follow(verb: argparse.ArgumentParser) -> None:
+    verb.formatter_class = _help_as_written
+    verb.epilog = _branch_columns()
+    _scene(verb)
+    verb.add_argument(
         "--out", metavar="DIR", help="folder of the branch (default: results/NAME-branch)"
     )
-    follow.add_argument("--resume", action="store_true", help="go on with the branch in the folder")
+    verb.add_argument("--resume", action="store_true", help="go on with the branch in the folder")
     _columns(
-        follow,
+        verb,
         "draw columns, such as law.epsilon:energy u2:energy, and ribbons along the branch",
     )
 
-    batch = verbs.add_parser(
-        "batch", help="solve all ribbons of a study, on all cores", formatter_class=_help
-    )
-    batch.add_argument(
+
+def _batch(verb: argparse.ArgumentParser) -> None:
+    verb.add_argument(
         "study", nargs="+", metavar="STUDY", help="study file, scenes, folder of them or pattern"
     )
-    batch.add_argument(
+    verb.add_argument(
         "--set", action="append", default=[], metavar="KEY=VALUE", help="override for all ribbons"
     )
-    batch.add_argument("--jobs", metavar="N", help="worker processes (default: one for each core)")
-    batch.add_argument("--out", metavar="DIR", help="folder of the rows (default: results/NAME)")
-    batch.add_argument("--resume", action="store_true", help="complete the rows in the folder")
-    batch.add_argument(
+    verb.add_argument("--jobs", metavar="N", help="worker processes (default: one for each core)")
+    verb.add_argument("--out", metavar="DIR", help="folder of the rows (default: results/NAME)")
+    verb.add_argument("--resume", action="store_true", help="complete the rows in the folder")
+    verb.add_argument(
         "--retry",
         action="store_true",
         help="with --resume: also solve again what crashed, timed out or met an unforeseen error",
     )
-    batch.add_argument("--scheduler", metavar="ADDRESS", help="Dask scheduler to use instead")
-    _columns(batch, "draw columns against each other too, such as law.epsilon:energy")
-    batch.add_argument("--yes", action="store_true", help="solve more than 100,000 ribbons")
-    batch.add_argument("--json", action="store_true", help="print exactly one JSON object")
-    batch.add_argument("--quiet", action="store_true", help="print nothing unless it fails")
+    verb.add_argument("--scheduler", metavar="ADDRESS", help="Dask scheduler to use instead")
+    _columns(verb, "draw columns against each other too, such as law.epsilon:energy")
+    verb.add_argument("--yes", action="store_true", help="solve more than 100,000 ribbons")
+    verb.add_argument("--json", action="store_true", help="print exactly one JSON object")
+    verb.add_argument("--quiet", action="store_true", help="print nothing unless it fails")
 
-    verbs.add_parser(
-        "schema", help="print the JSON schema of scenes, for editors", formatter_class=_help
-    )
 
-    plot = verbs.add_parser(
-        "plot", help="draw the pictures of a saved result", formatter_class=_help
-    )
-    plot.add_argument("result", metavar="RESULT", help="folder written by solve, continue or batch")
-    _columns(plot, "columns of a branch or a batch to draw, such as u2:energy")
-    plot.add_argument("--out", metavar="DIR", help="folder for the pictures (default: RESULT)")
-    return result
+def _schema(verb: argparse.ArgumentParser) -> None:
+    """Add nothing."""
+
+
+def _plot(verb: argparse.ArgumentParser) -> None:
+    verb.add_argument("result", metavar="RESULT", help="folder written by solve, continue or batch")
+    _columns(verb, "columns of a branch or a batch to draw, such as u2:energy")
+    verb.add_argument("--out", metavar="DIR", help="folder for the pictures (default: RESULT)")
 
 
 class _Versions(argparse.Action):
@@ -142,6 +138,8 @@ def _help_as_written(prog: str) -> argparse.HelpFormatter:
 
 def _branch_columns() -> str:
     from textwrap import fill
+
+    from ribbonopt.studies.continuation.columns import COLUMNS, HINT
 
     lines = [
         fill(text, 98, initial_indent=f"  {name:16}", subsequent_indent=" " * 18)
@@ -190,6 +188,21 @@ def _laws(verb: argparse.ArgumentParser) -> None:
         "such as straight,free; where the scene leaves that open",
     )
     verb.add_argument("--jobs", metavar="N", help="with --laws, of a study: worker processes")
+
+
+VERBS = {
+    "solve": ("solve a scene and report its numbers", _solve),
+    "check": ("validate a scene and count unknowns and conditions", _check),
+    "compare": (
+        "solve a scene by all formulations and transcriptions, and say which is cheapest",
+        _compare,
+    ),
+    "bench": ("time against error over degrees and meshes", _bench),
+    "continue": ("follow a scene's equilibria as a parameter moves (its `continuation`)", _follow),
+    "batch": ("solve all ribbons of a study, on all cores", _batch),
+    "schema": ("print the JSON schema of scenes, for editors", _schema),
+    "plot": ("draw the pictures of a saved result", _plot),
+}
 
 
 def chosen(options: argparse.Namespace) -> tuple[list[str] | None, list[str] | None]:

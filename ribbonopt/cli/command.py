@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import sys
 from collections.abc import Callable, Sequence
 from importlib import import_module
 
@@ -33,7 +34,8 @@ MODULES = {
 
 def run_command(arguments: Sequence[str] | None) -> int:
     """Run one command and return its exit status."""
-    options = parser().parse_args(arguments)
+    given = sys.argv[1:] if arguments is None else arguments
+    options = parser(given).parse_args(given)
     try:
         if getattr(options, "out", None) == "":  # such as a variable that is not set
             raise SceneError("--out: found '', expected a folder")

@@ -7,11 +7,10 @@ in it. From a guess that is planar to the last digit Newton's method stays in th
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from ribbonopt.arrays import Array
+from ribbonopt.classes import dataclass
 from ribbonopt.mechanics.section import RodFields
 from ribbonopt.solution.solution import Solution
 

@@ -6,11 +6,11 @@ Lab frame, units Dw = L = 1. Strains follow from the frames; a shape need not sa
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from dataclasses import dataclass
 
 import numpy as np
 
 from ribbonopt.arrays import Array
+from ribbonopt.classes import dataclass
 from ribbonopt.mechanics.rotations import turn_vector, turns_about
 
 STEP = 1e-5  # of the fraction, for differences of frames

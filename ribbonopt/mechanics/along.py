@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from functools import cached_property
 from math import factorial
 from typing import TYPE_CHECKING
@@ -17,6 +16,7 @@ import casadi as ca
 import numpy as np
 
 from ribbonopt.arrays import Array
+from ribbonopt.classes import dataclass
 from ribbonopt.scene.along import Along, Scaled, Table
 from ribbonopt.scene.formulas.expressions import (
     Binary,

@@ -14,13 +14,13 @@ length (as it was before it stretched). What they are decides how little is unkn
 from __future__ import annotations
 
 from abc import ABC, abstractmethod
-from dataclasses import dataclass
 from functools import cached_property
 
 import casadi as ca
 import numpy as np
 
 from ribbonopt.arrays import Array
+from ribbonopt.classes import dataclass
 
 from .loads.load import DeadLoad, Load, Theta
 from .rotations import cross_matrix

@@ -3,12 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
-from typing import Literal, NoReturn
+from typing import TYPE_CHECKING, Literal, NoReturn
 
 import casadi as ca
 
-from ribbonopt.scene.formulas.expressions import EndName
+from ribbonopt.classes import dataclass
+
+if TYPE_CHECKING:
+    from ribbonopt.scene.formulas.expressions import EndName
 
 
 def no_quantity(name: str, end: EndName) -> NoReturn:

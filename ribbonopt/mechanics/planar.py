@@ -7,13 +7,14 @@ plane, d1 = cos(turn) a - sin(turn) b and d3 = sin(turn) a + cos(turn) b, so tha
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import casadi as ca
 import numpy as np
 
 from ribbonopt.arrays import Array
+from ribbonopt.classes import dataclass
 from ribbonopt.errors import ModelError
 
 from .balance import Balance

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
+from functools import cached_property
 
 import casadi as ca
 
 from ribbonopt.arrays import Array
+from ribbonopt.classes import dataclass
 
 from .laws.law import Stress
 
@@ -45,7 +47,7 @@ class Section:
         """Components (3,) of a lab vector along the directors."""
         return ca.vertcat(*(ca.dot(vector, d) for d in (self.d1, self.d2, self.d3)))
 
-    @property
+    @cached_property
     def stress(self) -> Stress:
         """What a law may read of this section."""
         return Stress(self.along(self.n), self.along(self.m), self.own)

@@ -9,12 +9,13 @@ What is before s follows from s, or in the phases between stations from which of
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import casadi as ca
 import numpy as np
 
 from ribbonopt.arrays import Array
+from ribbonopt.classes import dataclass
 
 from .balance import Balance
 from .loads.load import Theta

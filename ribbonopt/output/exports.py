@@ -14,8 +14,9 @@ from typing import Any, Protocol
 import numpy as np
 
 from ribbonopt.plain import json_text
-from ribbonopt.scene import dump_scene, unsayable
+from ribbonopt.scene import unsayable
 from ribbonopt.scene.quantities import VECTORS
+from ribbonopt.scene.text.dump import dump
 from ribbonopt.solution.solution import Solution
 
 from .summary import summarize
@@ -90,7 +91,8 @@ class SceneText:
             if reason:
                 (inner / "scene.yaml").unlink(missing_ok=True)  # that of an older result
                 continue
-            (inner / "scene.yaml").write_text(dump_scene(found.scene), encoding="utf-8")
+            # As it is: what was solved is valid.
+            (inner / "scene.yaml").write_text(dump(found.scene), encoding="utf-8")
         return [f"scene.yaml: {reason}"] if reason else []
 
 

@@ -9,13 +9,13 @@ from __future__ import annotations
 
 import errno
 import os
-import socket
+import platform
 import stat
 import time
 from contextlib import suppress
-from dataclasses import dataclass
 from pathlib import Path
 
+from ribbonopt.classes import dataclass
 from ribbonopt.errors import OutputError
 
 NO_LOCKS = (errno.ENOLCK, errno.ENOSYS, errno.EOPNOTSUPP, errno.EINVAL, errno.EBADF)
@@ -93,7 +93,7 @@ def _try(path: Path, make: bool = True) -> Lock | None:
             if ours and _is_that(path, descriptor):
                 os.ftruncate(descriptor, 0)
                 os.lseek(descriptor, 0, os.SEEK_SET)
-                os.write(descriptor, f"{os.getpid()} {socket.gethostname()}\n".encode())
+                os.write(descriptor, f"{os.getpid()} {platform.node()}\n".encode())
                 return Lock(path, descriptor)
         except BaseException:
             if made:
@@ -164,7 +164,7 @@ def _said(descriptor: int) -> str:
 def _is_dead(said: str) -> bool:
     """Whether the holder that a lock file names was of this machine and has ended."""
     process, _, host = said.partition(" ")
-    if os.name == "nt" or host != socket.gethostname() or not process.isdigit():
+    if os.name == "nt" or not host or host != platform.node() or not process.isdigit():
         return False
     try:
         os.kill(int(process), 0)  # asks only

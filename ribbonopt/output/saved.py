@@ -6,13 +6,13 @@ Whether they fit the scene, and are the numbers of one solution, `load_solution`
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any
 
 import numpy as np
 
 from ribbonopt.arrays import Array
+from ribbonopt.classes import dataclass
 from ribbonopt.errors import OutputError, SceneError, TranscriptionError
 from ribbonopt.reading import MEGA, Kind, read_json, read_text
 from ribbonopt.scene import Scene, loads_scene

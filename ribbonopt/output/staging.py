@@ -11,10 +11,10 @@ from __future__ import annotations
 import os
 from collections.abc import Collection, Iterator
 from contextlib import contextmanager, suppress
-from dataclasses import dataclass
 from pathlib import Path
 from typing import IO
 
+from ribbonopt.classes import dataclass
 from ribbonopt.errors import OutputError
 
 from .declared import PICTURES

@@ -9,7 +9,7 @@ not change faster than the law allows, else minimising leads astray.
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from typing import Any
 
@@ -19,6 +19,7 @@ import numpy as np
 from ribbonopt.arrays import Array
 from ribbonopt.attempt.ledger import Ledger
 from ribbonopt.attempt.structure import Structure
+from ribbonopt.classes import dataclass
 from ribbonopt.guess import Guess
 from ribbonopt.mechanics.ends.edges import EdgeHeld
 from ribbonopt.mechanics.laws.law import Stress

@@ -8,7 +8,7 @@ few evaluations of its equations.
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -16,6 +16,7 @@ from ribbonopt.accuracy.compared import mesh_to_begin
 from ribbonopt.accuracy.estimate import analyse
 from ribbonopt.arrays import Array
 from ribbonopt.attempt.attempt import Attempt
+from ribbonopt.classes import dataclass
 from ribbonopt.problem import Posed
 from ribbonopt.scene import Scene
 from ribbonopt.solution.solution import Solution

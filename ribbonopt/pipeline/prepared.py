@@ -8,13 +8,14 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from functools import cached_property, partial
 from typing import TYPE_CHECKING
 
 from ribbonopt.arrays import Array
 from ribbonopt.attempt.structure import Structure
 from ribbonopt.checks.zero_moment import unbent_share
+from ribbonopt.classes import dataclass
 from ribbonopt.errors import ConvergenceError
 from ribbonopt.guess import Guess, guess_of, words
 from ribbonopt.problem import BoundaryValueProblem, Posed, Ribbon
@@ -160,7 +161,7 @@ class Prepared:
         """What is built for the automatic start, when it is first needed."""
         from ribbonopt.starts.automatic import Automatic  # IPOPT, which many scenes do without
 
-        return Automatic(self.structure.posed)
+        return Automatic(self.structure.posed, self.structure)
 
     def _once(self, posed: Posed, guess: Guess | None, fallback: bool, quick: bool) -> Solution:
         started, search = time.perf_counter(), self.search(posed)

@@ -10,7 +10,6 @@ phase assumes.
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -27,6 +26,7 @@ from ribbonopt.checks.arcs import (
     with_mixtures,
     without_empty,
 )
+from ribbonopt.classes import dataclass
 from ribbonopt.guess import Guess, ShapeGuess
 from ribbonopt.guess.balanced import Balanced
 from ribbonopt.solution.solution import Solution

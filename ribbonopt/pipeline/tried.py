@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import cached_property
 
 import numpy as np
@@ -13,6 +13,7 @@ from ribbonopt.attempt.ledger import Ledger
 from ribbonopt.attempt.structure import Structure
 from ribbonopt.checks.arcs import Arcs, sign_changes
 from ribbonopt.checks.one_sided import ends_on_switch
+from ribbonopt.classes import dataclass
 from ribbonopt.guess import Guess
 from ribbonopt.guess.flat import Flattened, nearly_flat
 from ribbonopt.mechanics.laws.smooth import sharpness

@@ -19,12 +19,13 @@ is unknown it stretches with the phase (`ribbonopt.transcription.fields` has fie
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import cached_property
 from typing import Any, TypeVar
 
 import casadi as ca
 
+from ribbonopt.classes import dataclass
 from ribbonopt.errors import ModelError
 
 T = TypeVar("T")

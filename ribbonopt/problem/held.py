@@ -8,12 +8,11 @@ nothing depends on.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import casadi as ca
 import numpy as np
 
 from ribbonopt.arrays import Array
+from ribbonopt.classes import dataclass
 from ribbonopt.mechanics.actions import Held
 from ribbonopt.mechanics.section import Section
 from ribbonopt.mechanics.stations import AXES

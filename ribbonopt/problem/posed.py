@@ -7,13 +7,14 @@ converted, evaluated or built a second time.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ribbonopt.arrays import Array
+from ribbonopt.classes import dataclass
 from ribbonopt.mechanics.ends.boundary import conditions_of, start_frame, start_position
 from ribbonopt.mechanics.ends.conditions import Condition
 from ribbonopt.mechanics.laws.asymmetry import changed_by_flip, leaves_plane
@@ -160,18 +161,23 @@ class Posed:
 
     @cached_property
     def structure(self) -> tuple[object, ...]:
-        """What scenes share that differ in numbers only, which serve one built problem."""
+        """What scenes share that differ in numbers only, which serve one built program."""
+        return self.scene.transcription, self.scene.solver, *self.equations
+
+    @cached_property
+    def equations(self) -> tuple[object, ...]:
+        """What scenes share whose equations are the same, whatever solves them."""
         scene, like = self.scene, self.like
         # In a plane natural strains of a law may take it out of that.
         if like is not None and scene.states != "planar" and self.theta.keys() == like.theta.keys():
-            return like.structure
+            return like.equations
         conditions = tuple(
             (type(c).__name__, *(v for v in vars(c).values() if isinstance(v, str)))
             for c in self.conditions
         )
         loads: tuple[object, ...] = tuple(load.structure_key for load in self.loads)
         loads += tuple(tuple(type(a) for a in station.actions) for station in self.stations)
-        settings = type(scene.law), scene.formulation, scene.states, scene.transcription
+        settings = type(scene.law), scene.formulation, scene.states
         # In a plane, which conditions are left depends on what plane it is; natural strains tell
         # whether there is one, and whether a piece of a loop stands for all of it.
         plane: tuple[object, ...] = ()
@@ -179,8 +185,7 @@ class Posed:
             plane = *self.start[1][:, 1].round().tolist(), leaves_plane(scene, self.theta)
         plane = *plane, changed_by_flip(scene, self.theta)
         along = tuple(field.structure for field in fields_of(scene))
-        rest = tuple(self.theta), conditions, along, loads, scene.boundary.also, plane
-        return (*settings, scene.solver, *rest)
+        return *settings, tuple(self.theta), conditions, along, loads, scene.boundary.also, plane
 
     @cached_property
     def start(self) -> Place:

@@ -7,12 +7,13 @@ the same structure is another theta, not another problem.
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from functools import cached_property
 from typing import TYPE_CHECKING, Any, TypeVar
 
 import casadi as ca
 
+from ribbonopt.classes import dataclass
 from ribbonopt.mechanics.ends.conditions import Condition, CrossSection
 from ribbonopt.mechanics.laws.catalogue import relation_of
 from ribbonopt.mechanics.laws.law import ConstitutiveLaw, Stress

@@ -8,9 +8,11 @@ of the scene: metres in SI.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import MISSING, dataclass, fields, is_dataclass
+from dataclasses import MISSING, fields, is_dataclass
 from functools import cache
 from typing import Annotated, Any, get_origin
+
+from ribbonopt.classes import dataclass
 
 from .faults import KeyPath
 from .schema.annotations import branches, classes_of, hints, inside

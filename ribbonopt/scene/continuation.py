@@ -5,8 +5,9 @@ How the stages of a scene follow each other is in `checks.continuation`.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Annotated, Literal
+
+from ribbonopt.classes import dataclass
 
 from . import limits
 from .schema.bounds import Bounds

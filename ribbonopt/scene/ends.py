@@ -6,8 +6,9 @@ are in the lab frame unless named along directors; angles are in radians.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Annotated, Literal
+
+from ribbonopt.classes import dataclass
 
 from . import limits
 from .schema.bounds import Bounds, InPython

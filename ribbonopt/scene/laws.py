@@ -8,8 +8,10 @@ for (`OwnLaw`).
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, fields, replace
+from dataclasses import fields, replace
 from typing import Annotated, Any, ClassVar, Literal, Protocol, runtime_checkable
+
+from ribbonopt.classes import dataclass
 
 from .faults import KeyPath
 from .schema.bounds import Bounds, InPython

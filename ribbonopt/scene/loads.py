@@ -3,8 +3,9 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Annotated, Any, Protocol, runtime_checkable
+
+from ribbonopt.classes import dataclass
 
 from .along import Along
 from .schema.bounds import InPython

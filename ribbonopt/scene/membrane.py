@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING, Annotated, Literal
+
+from ribbonopt.classes import dataclass
 
 from .schema.bounds import Bounds
 

@@ -7,8 +7,10 @@ the scene says what the ribbon is made of (`ribbon`).
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Annotated, Literal
+
+from ribbonopt.classes import dataclass
 
 from . import limits
 from .along import Along

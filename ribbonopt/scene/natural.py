@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import Annotated
+
+from ribbonopt.classes import dataclass
 
 from .along import Along
 from .schema.bounds import Bounds

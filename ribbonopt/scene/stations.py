@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from ribbonopt.classes import dataclass
 
 from .ends import AnyVector, LabVector, Triple, Value
 

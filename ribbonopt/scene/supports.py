@@ -12,8 +12,9 @@ in the place of a name: `End(support=Support("roller", "...", (Position("z"), ..
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import Literal
+
+from ribbonopt.classes import dataclass
 
 Axes = Literal["x", "y", "z", "xy", "xz", "yz", "xyz"]
 Load = Literal["force", "moment"]

@@ -13,8 +13,10 @@ can name.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, fields, is_dataclass, replace
+from dataclasses import fields, is_dataclass, replace
 from typing import Any
+
+from ribbonopt.classes import dataclass
 
 from .along import scaled
 from .ends import Boundary, End, LabVector, Triple

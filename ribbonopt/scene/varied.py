@@ -8,17 +8,19 @@ messages name what is wrong.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, fields, is_dataclass
+from dataclasses import fields, is_dataclass
 from typing import TYPE_CHECKING, Any, get_origin
 
-from pydantic_core import SchemaValidator, ValidationError
+from ribbonopt.classes import dataclass
 
 from .checks.whole import Sound, check
 from .faults import InvalidSceneError, KeyPath
 from .lens import replaced
 from .model import Scene
 from .schema.annotations import branches, inside, key_of
-from .schema.validation import schema_of
+from .schema.found import Fault
+from .schema.validation import check_of
+from .schema.values import Check
 from .validated import as_written, completed, says_interval
 
 if TYPE_CHECKING:
@@ -32,7 +34,7 @@ class Slot:
     """A place in a scene: names and indices that lead to it, and what it takes."""
 
     steps: KeyPath
-    validator: SchemaValidator
+    check: Check
 
     @classmethod
     def at(cls, scene: Scene, keys: KeyPath) -> Slot | None:
@@ -56,7 +58,7 @@ class Slot:
             steps = (*steps, step)
         if annotation is None or isinstance(value, bool) or not isinstance(value, int | float):
             return None
-        return cls(steps, SchemaValidator(schema_of(annotation)))
+        return cls(steps, check_of(annotation))
 
 
 class Alike:
@@ -109,9 +111,9 @@ class Alike:
         """Return the scene with these numbers, not checked as a whole; None if one has no place."""
         scene = self._written
         for slot, number in zip(self._slots, numbers, strict=True):
-            try:
-                value = slot.validator.validate_python(number)
-            except ValidationError:
+            faults: list[Fault] = []
+            value = slot.check(number, (), faults)
+            if faults:
                 return None
             scene = replaced(scene, slot.steps, value)
         try:

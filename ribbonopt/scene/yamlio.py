@@ -143,9 +143,7 @@ def unsayable(scene: Scene) -> str:
 
 def json_schema() -> dict[str, Any]:
     """Return the JSON schema of scene files, for editors to complete and check them."""
-    from .schema.json_schema import (
-        json_schema_of,  # imports pydantic itself, slower than all of this room
-    )
+    from .schema.json_schema import json_schema_of  # only editors want it
 
     schema = json_schema_of(Scene)
     for end in ("start", "end"):

@@ -7,12 +7,12 @@ by the force there, so that all of them and the loads along the ribbon add up to
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 
 import casadi as ca
 import numpy as np
 
 from ribbonopt.arrays import Array
+from ribbonopt.classes import dataclass
 from ribbonopt.mechanics.section import Section
 
 from .solution import Solution

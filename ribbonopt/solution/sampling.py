@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
 from ribbonopt.arrays import Array
+from ribbonopt.classes import dataclass
 from ribbonopt.scene.formulas.expressions import evaluate
 from ribbonopt.scene.formulas.parsing import parse_expression
 from ribbonopt.scene.quantities import Shape

@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import cached_property
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ribbonopt.arrays import Array
+from ribbonopt.classes import dataclass
 from ribbonopt.mechanics.section import RodFields
 from ribbonopt.problem import BoundaryValueProblem, Posed
 from ribbonopt.scene import Scene
@@ -147,8 +148,7 @@ class Solution:
         ValueError
             If an arclength is outside the interval.
         """
-        points = np.atleast_1d(np.asarray(s, dtype=float))
-        values = self.outputs(points)
+        values = self.outputs(np.atleast_1d(np.asarray(s, dtype=float)))
         result = values.get(expression)
         if result is None:
             from .sampling import evaluate_formula  # plain names need no parser

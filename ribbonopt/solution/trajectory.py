@@ -7,7 +7,7 @@ estimate of the error and the summary read the same numbers.
 from __future__ import annotations
 
 from collections.abc import Iterator, Sequence
-from dataclasses import dataclass, field
+from dataclasses import field
 from functools import cached_property
 from itertools import pairwise
 from typing import TYPE_CHECKING, Any
@@ -16,6 +16,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ribbonopt.arrays import Array
+from ribbonopt.classes import dataclass
 from ribbonopt.mechanics.outputs import OWN
 from ribbonopt.mechanics.section import RodFields
 from ribbonopt.problem import BoundaryValueProblem

@@ -3,7 +3,8 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+
+from ribbonopt.classes import dataclass
 
 NO_LENGTH = 1e-9  # of the ribbon: a phase that is shorter is not there
 

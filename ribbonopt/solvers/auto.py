@@ -6,11 +6,12 @@ sparse functions; what it cannot solve, and everything that is not square, goes 
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 from ribbonopt.arrays import Array
+from ribbonopt.classes import dataclass
 from ribbonopt.transcription import NLP
 
 from .newton import NewtonSolver

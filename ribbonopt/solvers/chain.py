@@ -11,7 +11,6 @@ node f + 1, and that of e becomes x_{e+1} = d_e - left x - right x_{f+1} - C_e c
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import lru_cache
 from itertools import pairwise
 
@@ -19,6 +18,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ribbonopt.arrays import Array
+from ribbonopt.classes import dataclass
 from ribbonopt.transcription.collocation.elimination import times
 
 DENSE = 80  # nodes are no longer reduced when their unknowns number less than this

@@ -13,12 +13,13 @@ with k more constants and k more conditions, and is factored by the same code.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING, Protocol
 
 import numpy as np
 
 from ribbonopt.arrays import Array
+from ribbonopt.classes import dataclass
 from ribbonopt.transcription.residuals import Derivatives, Residuals
 
 from .condense import factored

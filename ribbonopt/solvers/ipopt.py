@@ -8,7 +8,6 @@ diagonal, which a symmetric matrix does not need; for square programs no Hessian
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
@@ -16,6 +15,7 @@ import casadi as ca
 import numpy as np
 
 from ribbonopt.arrays import Array
+from ribbonopt.classes import dataclass
 from ribbonopt.transcription import NLP
 
 from .status import SolveReport, Status

@@ -6,12 +6,13 @@ or scheme, Newton's step too, which is the estimate of that one's error.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ribbonopt.arrays import Array
+from ribbonopt.classes import dataclass
 from ribbonopt.transcription.residuals import Derivatives, Residuals
 
 from .condense import factored

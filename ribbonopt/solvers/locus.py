@@ -14,13 +14,14 @@ and the k derivatives of g along T are differences. At a fold B is regular, as o
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ribbonopt.arrays import Array
+from ribbonopt.classes import dataclass
 from ribbonopt.transcription.residuals import Derivatives, Residuals
 
 from .extended import ExtendedSystem, Line

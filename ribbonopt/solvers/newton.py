@@ -9,13 +9,13 @@ factors were tried: two steps fewer, no time gained.)
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass
 from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ribbonopt.arrays import Array
+from ribbonopt.classes import dataclass
 from ribbonopt.transcription import NLP
 from ribbonopt.transcription.collocation.compiled import CompiledChain, CompiledFactors
 

@@ -2,11 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from enum import Enum
 from typing import TYPE_CHECKING
 
 from ribbonopt.arrays import Array
+from ribbonopt.classes import dataclass
 
 if TYPE_CHECKING:
     from .protocols import Factors

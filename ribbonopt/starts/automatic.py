@@ -10,13 +10,14 @@ from __future__ import annotations
 
 import time
 from collections.abc import Iterator
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from functools import cached_property
 
 import numpy as np
 
 from ribbonopt.attempt.ledger import Ledger
 from ribbonopt.attempt.structure import Structure
+from ribbonopt.classes import dataclass
 from ribbonopt.guess import Guess, ShapeGuess
 from ribbonopt.guess.shapes import Chord, Shape
 from ribbonopt.mechanics.laws.catalogue import capabilities
@@ -54,6 +55,7 @@ class Automatic:
     """Everything that is built for the automatic start of one structure of scenes, when needed."""
 
     posed: Posed
+    structure: Structure | None = None
     _energies: dict[tuple[type, bool], Structure] = field(default_factory=dict)
     _homotopies: dict[type, Structure] = field(default_factory=dict)
 
@@ -108,7 +110,7 @@ class Automatic:
 
     def _homotopy(self, law: Law) -> Structure:
         if type(law) not in self._homotopies:
-            self._homotopies[type(law)] = Structure.of(smooth_of(self.posed, law))
+            self._homotopies[type(law)] = Structure.of(smooth_of(self.posed, law), self.structure)
         return self._homotopies[type(law)]
 
     @cached_property

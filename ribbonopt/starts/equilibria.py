@@ -9,7 +9,7 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from itertools import islice, product
 
@@ -17,6 +17,7 @@ import numpy as np
 
 from ribbonopt.arrays import Array
 from ribbonopt.attempt.ledger import Ledger
+from ribbonopt.classes import dataclass
 from ribbonopt.errors import ConvergenceError
 from ribbonopt.guess import Guess
 from ribbonopt.guess.named import shape_of

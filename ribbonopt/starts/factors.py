@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
+
+from ribbonopt.classes import dataclass
 
 FIRST_LOADS = 2.0  # size of loads that are brought on evenly before they grow by factors
 MOST_GROWTH, LEAST_GROWTH = 1.2, 0.02  # of the logarithm of a load in a step

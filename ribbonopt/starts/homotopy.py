@@ -5,11 +5,10 @@ A step that fails is tried again shorter; steps that succeed grow.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from ribbonopt.attempt.structure import Structure
+from ribbonopt.classes import dataclass
 from ribbonopt.guess import Guess
 from ribbonopt.mechanics.laws.smooth import in_family, sharpened, sharpness
 from ribbonopt.problem import Posed

@@ -6,12 +6,11 @@ j = 2 i + 1, the flip of its predecessor about the axis between them: `mechanics
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from ribbonopt.arrays import Array
 from ribbonopt.checks.arcs import Arcs, arcs_of, leaps, sign_changes
+from ribbonopt.classes import dataclass
 from ribbonopt.mechanics.rotations import turns_about
 from ribbonopt.mechanics.section import RodFields
 from ribbonopt.problem import Posed

@@ -8,13 +8,13 @@ width h always reads X_i = x_0 + h sum_j a_ij F_j with F = L f.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
 
 import casadi as ca
 import numpy as np
 from numpy.typing import NDArray
 
+from ribbonopt.classes import dataclass
 from ribbonopt.problem.contract import BoundaryValueProblem, Phase
 
 from .buffered import Buffered, Mapped

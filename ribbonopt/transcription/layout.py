@@ -15,7 +15,6 @@ Parameters p; the known fields k are sampled at all points, then at the places o
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
 from itertools import pairwise
 
@@ -23,6 +22,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from ribbonopt.arrays import Array
+from ribbonopt.classes import dataclass
 
 from .known import Known, sampled
 

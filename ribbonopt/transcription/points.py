@@ -5,9 +5,8 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 from ribbonopt.arrays import Array
+from ribbonopt.classes import dataclass
 
 from .functions import ConditionFunctions
 from .layout import Layout

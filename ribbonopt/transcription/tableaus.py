@@ -15,12 +15,12 @@ with the discrete norm |P_k|^2 = sum_j b_j P_k(c_j)^2: 1 / (2k + 1), but for the
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import cached_property, lru_cache
 
 import numpy as np
 
 from ribbonopt.arrays import Array
+from ribbonopt.classes import dataclass
 from ribbonopt.errors import TranscriptionError
 
 MAX_DEGREE = 10

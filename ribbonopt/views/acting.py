@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterable
-from dataclasses import dataclass, field
+from dataclasses import field
 
 import numpy as np
 
+from ribbonopt.classes import dataclass
 from ribbonopt.mechanics.ends.boundary import held_position
 from ribbonopt.mechanics.ends.frames import components, frame_of, number
 from ribbonopt.scene import End, Scene

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Collection
-from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 
+from ribbonopt.classes import dataclass
 from ribbonopt.plain import Row, Rows, is_number
 from ribbonopt.scene.quantities import ANSWERS
 

@@ -6,9 +6,9 @@ along the direction of least extent, raised where that would show a planar ribbo
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
+
+from ribbonopt.classes import dataclass
 
 from .pieces import Array
 

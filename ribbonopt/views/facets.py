@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
+
+from ribbonopt.classes import dataclass
 
 from .camera import Camera
 from .pieces import ROWS, Array

@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 import re
 from collections.abc import Sequence
-from dataclasses import dataclass
 
+from ribbonopt.classes import dataclass
 from ribbonopt.plain import Row, Rows
 from ribbonopt.text import marked_up
 

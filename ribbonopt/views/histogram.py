@@ -7,9 +7,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass
 from itertools import pairwise
 
+from ribbonopt.classes import dataclass
 from ribbonopt.plain import Rows, is_number
 from ribbonopt.text import marked_up
 

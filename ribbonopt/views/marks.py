@@ -6,10 +6,11 @@ Marks lie under the ribbon and begin beside it, so that they hide none of it.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
+
+from ribbonopt.classes import dataclass
 
 from .acting import Acting, Site
 from .camera import Camera

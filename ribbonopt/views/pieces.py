@@ -9,12 +9,12 @@ and to any value: pieces are the phases, where there are any.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
 from numpy.typing import NDArray
 
+from ribbonopt.classes import dataclass
 from ribbonopt.mechanics.laws.catalogue import capabilities
 from ribbonopt.mechanics.widths import widths
 from ribbonopt.solution.acting import at_places

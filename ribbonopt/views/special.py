@@ -8,10 +8,10 @@ of the kind sano whatever its numbers. What has most kinds has colours, the othe
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
-from dataclasses import dataclass
 from itertools import product
 from typing import TYPE_CHECKING, Any
 
+from ribbonopt.classes import dataclass
 from ribbonopt.plain import SPECIALS, Row, Rows, is_number
 from ribbonopt.text import drawn
 

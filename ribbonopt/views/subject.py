@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import field
 
 from ribbonopt.checks.topology import closure
+from ribbonopt.classes import dataclass
 from ribbonopt.errors import ViewError
 from ribbonopt.mechanics.laws.catalogue import curvature_across
 from ribbonopt.mechanics.widths import own_width

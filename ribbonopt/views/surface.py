@@ -10,11 +10,11 @@ out from about a point of one edge, as they do on a real Moebius ribbon.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from itertools import pairwise
 
 import numpy as np
 
+from ribbonopt.classes import dataclass
 from ribbonopt.errors import ModelError
 
 from .pieces import Array, Piece

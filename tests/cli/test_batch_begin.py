@@ -18,7 +18,7 @@ from ribbonopt.studies.batch.files import load_batch
 
 Run = Callable[..., Any]
 ROOT = Path(ribbonopt.__file__).parents[1]
-HIDING = ("struct", "yaml", "json", "numpy", "casadi", "pydantic_core", "threading", "ribbonopt")
+HIDING = ("struct", "yaml", "json", "numpy", "casadi", "numbers", "threading", "ribbonopt")
 # What pip makes of an entry point: Python puts the folder of the script first, no other.
 SCRIPT = "from ribbonopt.cli import run\nif __name__ == '__main__':\n    run()\n"
 # Loaded by every process before anything else; only workers are told apart.

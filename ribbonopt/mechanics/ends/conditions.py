@@ -10,13 +10,13 @@ from __future__ import annotations
 
 from abc import ABC, abstractmethod
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from typing import Literal
 
 import casadi as ca
 import numpy as np
 
 from ribbonopt.arrays import Array
+from ribbonopt.classes import dataclass
 from ribbonopt.mechanics.model import RodModel
 from ribbonopt.mechanics.rotations import directors_of, matrix_of, quaternions_from
 from ribbonopt.mechanics.section import Section

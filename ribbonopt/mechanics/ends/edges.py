@@ -6,10 +6,9 @@ ends of a closed band meet both continue, with their signs changed as those of d
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import casadi as ca
 
+from ribbonopt.classes import dataclass
 from ribbonopt.scene import Scene
 from ribbonopt.scene.edges import Edge, edge_of
 

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 import casadi as ca
 import numpy as np
+
+from ribbonopt.classes import dataclass
 
 from .conditions import Condition, Context, EndName, Named
 

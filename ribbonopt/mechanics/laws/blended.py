@@ -6,9 +6,10 @@ The kink that u3 keeps at m2 = 0 costs every scheme its order, so that phases he
 from __future__ import annotations
 
 from abc import abstractmethod
-from dataclasses import dataclass
 
 import casadi as ca
+
+from ribbonopt.classes import dataclass
 
 from .implicit import ImplicitLaw, polynomial_form
 from .law import ConstitutiveLaw, RibbonLaw, Stress

@@ -13,11 +13,13 @@ A rod for k* -> infinity, Sadowsky's ribbon for k* -> 0.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from fractions import Fraction
 from math import factorial
 
 import casadi as ca
+
+from ribbonopt.classes import dataclass
 
 from .quartic import Quartic, Stiffening
 from .quartic_law import QuarticLaw

@@ -10,9 +10,10 @@ strains and one or two further unknowns:
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 
 import casadi as ca
+
+from ribbonopt.classes import dataclass
 
 from .relations import Components, norm
 

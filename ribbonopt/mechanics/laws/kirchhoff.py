@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import casadi as ca
+
+from ribbonopt.classes import dataclass
 
 from .law import RibbonLaw
 from .relations import Components

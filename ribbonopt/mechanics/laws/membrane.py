@@ -9,10 +9,11 @@ generatrix b has no part along d1. But unrolled it is bent by u1, its edges stre
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import casadi as ca
 
+from ribbonopt.classes import dataclass
 from ribbonopt.errors import ModelError
 
 from .implicit import ImplicitLaw

@@ -14,11 +14,12 @@ and R = sqrt(D^2 + c^2): (T +- R) / 2 are the eigenvalues of [[m2 + K11, c / 2],
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from functools import cached_property
 from typing import NamedTuple
 
 import casadi as ca
+
+from ribbonopt.classes import dataclass
 
 from .relations import nonzero, norm
 

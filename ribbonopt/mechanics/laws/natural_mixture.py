@@ -8,9 +8,9 @@ act as in `mixture.MixtureLaw`.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import casadi as ca
+
+from ribbonopt.classes import dataclass
 
 from .law import ConstitutiveLaw, Stress
 from .natural import mixed_energy

@@ -11,9 +11,10 @@ the same and the strains are any of a disc: the law is singular there.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 import casadi as ca
+
+from ribbonopt.classes import dataclass
 
 from .implicit import ImplicitLaw
 from .law import ConstitutiveLaw, RibbonLaw, Stress

@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 import casadi as ca
+
+from ribbonopt.classes import dataclass
 
 from .law import Stress
 from .natural import NaturalStrains

@@ -9,9 +9,9 @@ law without natural strains, shifted. Where not, strips that stay planar leap at
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import casadi as ca
+
+from ribbonopt.classes import dataclass
 
 from .implicit import ImplicitLaw
 from .law import RibbonLaw, Stress

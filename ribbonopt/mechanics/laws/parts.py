@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import NamedTuple
 
 import casadi as ca
+
+from ribbonopt.classes import dataclass
 
 #: what a law declares of itself, but for its own states: a law around it declares the same
 DECLARED = (

@@ -15,11 +15,12 @@ there W is not convex at a = 0, and a leaps where m2 changes sign.
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 from functools import cache
 from typing import NamedTuple
 
 import casadi as ca
+
+from ribbonopt.classes import dataclass
 
 from .relations import Components
 

@@ -8,9 +8,10 @@ from __future__ import annotations
 
 from abc import abstractmethod
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 import casadi as ca
+
+from ribbonopt.classes import dataclass
 
 from .law import ConstitutiveLaw, RibbonLaw, Stress
 from .mixture import MixtureLaw

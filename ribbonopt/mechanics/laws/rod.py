@@ -6,9 +6,9 @@ m_i^2 / (2 B_i) + m_i k_i. With u1 not zero there are no generatrices and no rib
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import casadi as ca
+
+from ribbonopt.classes import dataclass
 
 from .law import ConstitutiveLaw, Stress
 

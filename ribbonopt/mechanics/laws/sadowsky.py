@@ -8,10 +8,11 @@ a fine mixture of both (section 4, the convexified energy).
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import casadi as ca
+
+from ribbonopt.classes import dataclass
 
 from .implicit import ImplicitLaw, bounded
 from .law import ConstitutiveLaw, RibbonLaw, Stress

@@ -6,9 +6,11 @@ phi = 2 / (1 + a^2).
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import casadi as ca
+
+from ribbonopt.classes import dataclass
 
 from .quartic import Quartic, Stiffening
 from .quartic_law import QuarticLaw

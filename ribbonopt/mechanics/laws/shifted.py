@@ -7,9 +7,11 @@ W_Leg(m) = W_Leg,0(m2 + K11, m3 + 2 K12) - C.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import casadi as ca
+
+from ribbonopt.classes import dataclass
 
 from .implicit import ImplicitLaw
 from .law import ConstitutiveLaw, Stress

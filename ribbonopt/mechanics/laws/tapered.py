@@ -8,10 +8,10 @@ those of m / w, and W_Leg,w = w W_Leg(m / w); H' = -w' W(u) where W knows no wid
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 
 import casadi as ca
 
+from ribbonopt.classes import dataclass
 from ribbonopt.errors import ModelError
 
 from .implicit import ImplicitLaw

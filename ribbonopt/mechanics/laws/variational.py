@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import casadi as ca
+
+from ribbonopt.classes import dataclass
 
 from .implicit import ImplicitLaw, norm_form
 from .law import ConstitutiveLaw, RibbonLaw, Stress

@@ -16,9 +16,11 @@ zero, and u2 vanishes as A / |log A|: a phase ends there. As w -> 0 it is Sadows
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import casadi as ca
+
+from ribbonopt.classes import dataclass
 
 from .gathering import gathering, log_factor, xi_of
 from .law import ConstitutiveLaw, Stress

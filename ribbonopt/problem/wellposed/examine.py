@@ -33,7 +33,7 @@ def examine(ribbon: Ribbon, problem: BoundaryValueProblem, posed: Posed) -> None
         With counts, names and remedy.
     """
     refuse_asymmetry(posed)
-    conditions = linearize(ribbon, posed)
+    conditions = linearize(ribbon, posed, problem)
     names = list(conditions.names)
     samples = [conditions.at(conditions.generic(seed)) for seed in (0.3, 0.8)]
     counts = unknown_counts(conditions.ribbon)

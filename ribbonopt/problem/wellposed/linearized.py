@@ -7,13 +7,15 @@ Where something acts or holds between the ends, the states there stand between x
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import casadi as ca
 import numpy as np
 
 from ribbonopt.arrays import Array
+from ribbonopt.classes import dataclass
 from ribbonopt.mechanics.section import RodFields
+from ribbonopt.problem.contract import BoundaryValueProblem
 from ribbonopt.problem.imposed import residuals
 from ribbonopt.problem.posed import Posed
 from ribbonopt.problem.ribbon import Ribbon
@@ -134,14 +136,33 @@ class Linearized:
         return np.array(self.points * state + [sizes[name[0]] for name in model.constants])
 
 
-def linearize(ribbon: Ribbon, posed: Posed) -> Linearized:
-    """Return the conditions of a ribbon on its least states."""
-    least = replace(ribbon.least, law=ribbon.law.indirect(), _kept={})
-    nx, count = len(least.states), 2 + len(least.stations)
-    z = ca.SX.sym("z", count * nx + len(least.constants))
-    start, end, *inner = ca.vertsplit(z[: count * nx], nx)
-    named = residuals(least, start, end, z[count * nx :], inner)
+def linearize(
+    ribbon: Ribbon, posed: Posed, problem: BoundaryValueProblem | None = None
+) -> Linearized:
+    """Return the conditions of a ribbon on its least states.
+
+    Those of its `problem`, where they are the same: they need not be written again.
+    """
+    least, law = ribbon.least, ribbon.law.indirect()
+    if law is not least.law:
+        least = replace(least, law=law, _kept={})
+    if problem is not None and least is ribbon and _stands_on(problem, ribbon):
+        (start, *inner, end), c, named = problem.points, problem.constants, problem.conditions
+    else:
+        size = len(least.states)
+        start, end = (ca.SX.sym(name, size) for name in ("start", "end"))
+        inner = [ca.SX.sym("inner", size) for _ in least.stations]
+        c = ca.SX.sym("c", len(least.constants))
+        named = residuals(least, start, end, c, inner)
+    z = ca.vertcat(start, end, *inner, c)
     conditions = ca.vertcat(*named.values())
     both = ca.densify(ca.horzcat(conditions, ca.jacobian(conditions, z)))
     function = ca.Function("conditions", [z, ribbon.parameters], [both])
     return Linearized(least, tuple(named), function, posed)
+
+
+def _stands_on(problem: BoundaryValueProblem, ribbon: Ribbon) -> bool:
+    """Whether the unknowns of a problem are the states and constants of a ribbon, and no more."""
+    names = problem.state_names, problem.constant_names
+    more = problem.algebraic.numel() + problem.costate.numel() + len(problem.recovered)
+    return names == (ribbon.states, ribbon.constants) and not more

@@ -16,9 +16,7 @@ from ribbonopt.mechanics.ends.frames import components, frame_of
 from ribbonopt.mechanics.laws.catalogue import capabilities
 from ribbonopt.scene import ContinuationStage, Scene
 from ribbonopt.scene.faults import KeyPath, dotted
-from ribbonopt.scene.lens import with_value
 from ribbonopt.scene.limits import STRETCH
-from ribbonopt.scene.stages import begin_of, end_of, located_stages
 
 PLACES = 201  # along the way, and those that tell whether the distance changes
 SOME = [1, 7, 30, 71, 113, 158, 193, -1]
@@ -33,6 +31,11 @@ def refuse_far_goals(scene: Scene) -> None:
 
     The whole way of each stage is looked at, and each stage begins where the one before has led.
     """
+    if scene.continuation is None:
+        return
+    from ribbonopt.scene.lens import with_value
+    from ribbonopt.scene.stages import begin_of, end_of, located_stages
+
     for path, stage in located_stages(scene):
         begin = begin_of(stage, scene)
         for key, end in _goals(stage, path):
@@ -72,6 +75,8 @@ def _goals(stage: ContinuationStage, path: KeyPath) -> list[tuple[KeyPath, float
 def _refuse_far(
     scene: Scene, stage: ContinuationStage, begin: float, end: float, key: KeyPath
 ) -> None:
+    from ribbonopt.scene.lens import with_value
+
     name, share = stage.parameter, stretch_of(scene)
 
     def slack(value: float) -> float:

@@ -2,11 +2,10 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from ribbonopt.arrays import Array
+from ribbonopt.classes import dataclass
 
 SMALL = 1e-6  # of directions, and of positions relative to the length
 AXES_BY_NAME = dict(zip("xyz", np.eye(3), strict=True))

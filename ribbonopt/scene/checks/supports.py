@@ -16,7 +16,6 @@ from ribbonopt.scene.supports import EXAMPLES, SUPPORTS, Support
 from ribbonopt.scene.wording import given, listed, written
 
 from .frames import known, number_at
-from .support_loads import check_loads
 
 EndName = Literal["start", "end"]
 
@@ -38,6 +37,8 @@ def check_supports(boundary: Boundary, values: Mapping[KeyPath, float]) -> Itera
             message = "which only the end can be, by a string from the start; write for example "
             yield Problem((*path, "support"), message + _at_end(support), repr(support.name))
         else:
+            from .support_loads import check_loads
+
             yield from _missing(support, end, path)
             yield from _contradicting(name, support, end, path)
             yield from check_loads(support, end, path, values)

@@ -6,10 +6,11 @@ Each check looks at one matter and returns all problems it finds; none depends o
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, is_dataclass
+from dataclasses import is_dataclass
 from itertools import pairwise
 from typing import Any, get_origin
 
+from ribbonopt.classes import dataclass
 from ribbonopt.scene.along import is_along, numbers_along
 from ribbonopt.scene.ends import Boundary
 from ribbonopt.scene.faults import KeyPath, Problem, shown

@@ -5,11 +5,12 @@ Every branch of a union has a tag: the name of a dataclass, or the shape a value
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
-from dataclasses import is_dataclass
+import sys
+from collections.abc import Callable, Iterator, Mapping
+from dataclasses import fields, is_dataclass
 from functools import cache
 from numbers import Real
-from types import NoneType, UnionType
+from types import NoneType, SimpleNamespace, UnionType
 from typing import Annotated, Any, Literal, Union, get_args, get_origin, get_type_hints
 
 from ribbonopt.scene.faults import nearest
@@ -23,10 +24,45 @@ def key_of(name: str) -> str:
 
 
 @cache
-def hints(cls: type) -> dict[str, Any]:
+def _hint(cls: type, key: str) -> Any:
+    member = next(some for some in fields(cls) if key_of(some.name) == key)
+    # Where it stands in the code decides what its words mean.
+    owners = [base for base in cls.__mro__ if _own_field(base, member.name) is member]
+    one = SimpleNamespace(__annotations__={key: member.type})
+    return get_type_hints(one, vars(sys.modules[owners[-1].__module__]), include_extras=True)[key]
+
+
+def _own_field(cls: type, name: str) -> Any:
+    return vars(cls).get("__dataclass_fields__", {}).get(name)
+
+
+class Hints(Mapping[str, Any]):
+    """What the keys of a dataclass may hold; each annotation is read when it is asked for."""
+
+    def __init__(self, cls: type) -> None:
+        self._cls, self._keys = cls, keys_of(cls)
+
+    def __getitem__(self, key: str) -> Any:
+        if key not in self._keys:
+            raise KeyError(key)
+        return _hint(self._cls, key)
+
+    def __iter__(self) -> Iterator[str]:
+        return iter(self._keys)
+
+    def __len__(self) -> int:
+        return len(self._keys)
+
+
+@cache
+def hints(cls: type) -> Hints:
     """Return the annotations of a dataclass, by the key of the field."""
-    members = get_type_hints(cls, include_extras=True).items()
-    return {key_of(name): annotation for name, annotation in members}
+    return Hints(cls)
+
+
+def keys_of(cls: type) -> list[str]:
+    """Return the keys of a dataclass."""
+    return [key_of(member.name) for member in fields(cls)]
 
 
 def only_in_python(annotation: Any) -> bool:

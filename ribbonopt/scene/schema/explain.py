@@ -1,7 +1,7 @@
-"""Errors of `pydantic_core` in the words of a scene: what was found, expected, and the remedy.
+"""Faults of data in the words of a scene: what was found, expected, and the remedy.
 
-The engine says where and of what kind an error is; what was expected is read from the annotation
-at that place, so that a bound or a choice is always told in full.
+Validation says where and of what kind a fault is; what was expected is read from the annotation at
+that place, so that a bound or a choice is always told in full.
 """
 
 from __future__ import annotations
@@ -11,8 +11,6 @@ from collections.abc import Iterable
 from dataclasses import is_dataclass
 from types import NoneType
 from typing import Annotated, Any, Literal, NamedTuple, get_args, get_origin
-
-from pydantic_core import ErrorDetails
 
 from ribbonopt.scene.faults import KeyPath, Problem, nearest, shown, suggestion
 
@@ -27,12 +25,11 @@ from .annotations import (
 )
 from .bounds import Bounds
 from .foreign import elsewhere, unmodelled
-
-_KEY_OF_MAPPING = "[key]"
+from .found import Fault, Kind
 
 
 class _Place(NamedTuple):
-    """Where an error is: its path, the annotations of the value and what holds it, the class."""
+    """Where a fault is: its path, the annotations of the value and what holds it, the class."""
 
     path: KeyPath
     annotation: Any
@@ -41,55 +38,55 @@ class _Place(NamedTuple):
     root: type
 
 
-def explain(cls: type, errors: Iterable[ErrorDetails]) -> list[Problem]:
-    """Return errors as problems of the scene; a misspelt key is not told as missing as well.
+def explain(cls: type, faults: Iterable[Fault]) -> list[Problem]:
+    """Return faults as problems of the scene; a misspelt key is not told as missing as well.
 
     Parameters
     ----------
     cls
         The dataclass that was validated.
-    errors
-        What `ValidationError.errors()` tells.
+    faults
+        What is wrong.
     """
-    placed = [(_place(cls, error), error) for error in errors]
+    placed = [(_place(cls, fault), fault) for fault in faults]
     excused: set[KeyPath] = set()
-    for place, error in placed:
-        if error["type"] == "unexpected_keyword_argument":
+    for place, fault in placed:
+        if fault.kind is Kind.UNKNOWN:
             excused.update((*place.path[:-1], name) for name in _meant(place))
     problems = [
-        _problem(place, error)
-        for place, error in placed
-        if not (error["type"] == "missing" and place.path in excused)
+        _problem(place, fault)
+        for place, fault in placed
+        if not (fault.kind is Kind.MISSING and place.path in excused)
     ]
-    return list(dict.fromkeys(problems))  # a list that is too short lacks each item
+    return list(dict.fromkeys(problems))
 
 
-def _place(cls: type, error: ErrorDetails) -> _Place:
-    """Follow the location of an error, which holds tags of unions, as the path does not."""
+def _place(cls: type, fault: Fault) -> _Place:
+    """Follow the location of a fault, which holds tags of unions, as the path does not."""
     path: KeyPath = ()
     annotation: Any = cls
     union: Any = None
     owner: Any = None
-    for step in error["loc"]:
+    for step in fault.loc:
         if branches(annotation):
             # A name that stands for a dataclass is no branch of its own.
             union, annotation = annotation, branches(annotation).get(str(step), annotation)
-        elif step != _KEY_OF_MAPPING:
+        else:
             owner, annotation = annotation, inside(annotation, step)
             path = (*path, step)
     return _Place(path, annotation, owner, union, cls)
 
 
-def _problem(place: _Place, error: ErrorDetails) -> Problem:
+def _problem(place: _Place, fault: Fault) -> Problem:
     path, annotation, owner, union, _ = place
-    value, kind = error["input"], error["type"]
-    if kind == "invalid_key" or error["loc"][-1:] == (_KEY_OF_MAPPING,):
+    kind, value = fault.kind, fault.found
+    if kind is Kind.KEY:
         return Problem(path, "expected text as the key", shown(value))
-    if kind == "unexpected_keyword_argument":
+    if kind is Kind.UNKNOWN:
         return Problem(path, _unknown_key(place))
-    if kind == "missing" and get_origin(owner) is tuple:
+    if kind is Kind.MISSING and get_origin(owner) is tuple:
         return Problem(path[:-1], f"expected {expected(owner)}", shown(value))
-    if kind == "missing":
+    if kind is Kind.MISSING:
         return Problem(path, f"missing; expected {expected(annotation)}")
     if isinstance(value, dict) and (types := types_of(annotation)):
         return _without_type((*path, "type"), value, types)
@@ -101,7 +98,7 @@ def _problem(place: _Place, error: ErrorDetails) -> Problem:
     elif isinstance(value, str):
         remedy = suggestion(value, [*_words(annotation), *types_of(annotation)])
         if not remedy:
-            annotation = union if error["loc"][-1:] == ("text",) else annotation
+            annotation = union if fault.loc[-1:] == ("text",) else annotation
             remedy = _as_mapping(value, annotation)
     return Problem(path, f"expected {expected(annotation)}{remedy}", shown(value))
 

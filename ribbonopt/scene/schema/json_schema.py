@@ -1,57 +1,107 @@
-"""The JSON schema of scene files, from the same schema that validates them."""
+"""The JSON schema of scene files, from the same annotations that validation reads."""
 
 from __future__ import annotations
 
-from dataclasses import is_dataclass
-from typing import Any, get_args
+from dataclasses import MISSING, Field, fields, is_dataclass
+from types import NoneType, UnionType
+from typing import Annotated, Any, Literal, Union, get_args, get_origin
 
-from pydantic.json_schema import GenerateJsonSchema, JsonSchemaValue
-from pydantic_core import PydanticOmit
-from pydantic_core.core_schema import IsInstanceSchema
+from .annotations import branches, classes_of, hints, key_of, only_in_python, types_of
+from .bounds import Bounds
 
-from .annotations import hints
-from .validation import schema_of
+DIALECT = "https://json-schema.org/draft/2020-12/schema"
 
 
 def json_schema_of(cls: type) -> dict[str, Any]:
     """Return the JSON schema of a dataclass and of all that it contains."""
-    schema = _tidied(_Generator().generate(schema_of(cls)), _descriptions(cls))
-    return {"$schema": GenerateJsonSchema.schema_dialect, **schema}
+    return {"$schema": DIALECT, **_object(cls)}
 
 
-class _Generator(GenerateJsonSchema):
-    """Leaves out what no file can say."""
-
-    def is_instance_schema(self, schema: IsInstanceSchema) -> JsonSchemaValue:
-        raise PydanticOmit
-
-
-def _descriptions(annotation: Any) -> dict[str, str]:
-    """Return the first line of the docstring of every dataclass in an annotation, by its name."""
-    descriptions: dict[str, str] = {}
-    parts = get_args(annotation)
+def _schema(annotation: Any) -> dict[str, Any]:
+    origin, arguments = get_origin(annotation), get_args(annotation)
+    if origin in (Union, UnionType):
+        return _union(annotation)
+    if origin is Annotated:
+        return _limits(arguments[1]) | _schema(arguments[0])
+    if origin is Literal:
+        return _literal(arguments)
+    if origin is tuple and arguments[-1] is Ellipsis:
+        return {"items": _schema(arguments[0]), "type": "array"}
+    if origin is tuple:
+        items = [_schema(item) for item in arguments]
+        sizes = {"maxItems": len(items), "minItems": len(items)}
+        return {**sizes, "prefixItems": items, "type": "array"}
+    if origin is dict:
+        return {"additionalProperties": _schema(arguments[1]), "type": "object"}
     if is_dataclass(annotation) and isinstance(annotation, type):
-        descriptions[annotation.__name__] = (annotation.__doc__ or "").partition("\n")[0]
-        parts = tuple(hints(annotation).values())
-    for part in parts:
-        descriptions |= _descriptions(part)
-    return descriptions
+        return _object(annotation)
+    plain = {float: "number", int: "integer", bool: "boolean", str: "string", NoneType: "null"}
+    return {"type": plain[annotation]}
 
 
-def _tidied(schema: Any, descriptions: dict[str, str]) -> Any:
-    """Forbid unknown keys, as validation does; describe classes; drop defaults that say nothing."""
-    if isinstance(schema, list):
-        return [_tidied(item, descriptions) for item in schema]
-    if not isinstance(schema, dict):
-        return schema
-    tidied = {
-        key: _tidied(value, descriptions) for key, value in schema.items() if key != "properties"
+def _limits(bounds: Bounds) -> dict[str, Any]:
+    """Return the limits of a number; one on its size is told as both."""
+    low = -bounds.most if bounds.most is not None and bounds.ge is None else bounds.ge
+    high = bounds.most if bounds.le is None else bounds.le
+    told = {
+        "exclusiveMaximum": bounds.lt,
+        "exclusiveMinimum": bounds.gt,
+        "maximum": high,
+        "minimum": low,
     }
-    if tidied.get("default", 0) is None or isinstance(tidied.get("default"), dict):
-        del tidied["default"]
-    if "properties" in schema:
-        members = schema["properties"].items()
-        tidied["properties"] = {name: _tidied(member, descriptions) for name, member in members}
-        tidied["additionalProperties"] = False
-        tidied["description"] = descriptions[schema["title"]]
-    return tidied
+    return {name: limit for name, limit in told.items() if limit is not None}
+
+
+def _literal(values: tuple[Any, ...]) -> dict[str, Any]:
+    kind = "string" if isinstance(values[0], str) else "integer"
+    told = {"const": values[0]} if len(values) == 1 else {"enum": list(values)}
+    return {**told, "type": kind}
+
+
+def _union(annotation: Any) -> dict[str, Any]:
+    members = {tag: some for tag, some in branches(annotation).items() if not only_in_python(some)}
+    several = len(classes_of(annotation)) > 1
+    told = [
+        _object(some, type_required=several) if is_dataclass(some) else _schema(some)
+        for some in members.values()
+    ]
+    if several and (types := types_of(annotation)) and "text" not in members:
+        told.append(_literal(tuple(types)))  # a name alone stands for its class
+    return told[0] if len(told) == 1 else {"oneOf": told}
+
+
+def _object(cls: Any, *, type_required: bool = False) -> dict[str, Any]:
+    """Return the schema of a dataclass; `type` is required where it has picked the class."""
+    members = [
+        (key_of(member.name), hint, member)
+        for member in fields(cls)
+        if not only_in_python(hint := hints(cls)[key_of(member.name)])
+    ]
+    required = [
+        key
+        for key, _, member in members
+        if (member.default is MISSING and member.default_factory is MISSING)
+        or (type_required and member.name == "type")
+    ]
+    told: dict[str, Any] = {"description": (cls.__doc__ or "").partition("\n")[0]}
+    if required:
+        told["required"] = required
+    return {
+        **told,
+        "title": cls.__name__,
+        "type": "object",
+        "properties": {
+            key: _member(hint, member, key in required) for key, hint, member in members
+        },
+        "additionalProperties": False,
+    }
+
+
+def _member(hint: Any, member: Field[Any], required: bool) -> dict[str, Any]:
+    schema, default = _schema(hint), member.default
+    if "title" in schema:  # of a class, whose default says nothing
+        return schema
+    told: dict[str, Any] = {**schema, "title": key_of(member.name).title().replace("_", " ")}
+    if not (required or default in (MISSING, None) or is_dataclass(default)):
+        told["default"] = list(default) if isinstance(default, tuple) else default
+    return dict(sorted(told.items()))

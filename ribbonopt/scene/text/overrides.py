@@ -6,10 +6,10 @@ A dotted path leads through mappings and list indices; the value is read as YAML
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
+from ribbonopt.classes import dataclass
 from ribbonopt.errors import SceneError
 from ribbonopt.scene.faults import KeyPath, Place, Problem, dotted, quotable, shown
 

@@ -7,10 +7,10 @@ the same however many there are.
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass
 
 import numpy as np
 
+from ribbonopt.classes import dataclass
 from ribbonopt.errors import RibbonoptError
 from ribbonopt.plain import is_number
 from ribbonopt.scene.yamlio import loads_scene

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 
 from ribbonopt.arrays import Array
+from ribbonopt.classes import dataclass
 from ribbonopt.plain import is_number
 from ribbonopt.scene.faults import InvalidSceneError, Problem, shown
 from ribbonopt.scene.limits import LARGEST, SEED, VALUES

@@ -8,9 +8,10 @@ the equilibrium of least energy. Where that is lost, N starts look for others.
 from __future__ import annotations
 
 from contextlib import suppress
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import partial
 
+from ribbonopt.classes import dataclass
 from ribbonopt.errors import ConvergenceError
 from ribbonopt.pipeline.neighbour import Neighbour
 from ribbonopt.pipeline.prepared import Prepared

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 import os
-from dataclasses import dataclass
 from pathlib import Path
 from typing import Annotated, Any
 
+from ribbonopt.classes import dataclass
 from ribbonopt.output.records import checked
 from ribbonopt.plain import Row, finite, is_number
 from ribbonopt.reading import MEGA, Kind, read_json

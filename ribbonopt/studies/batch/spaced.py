@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import Any, overload
 
+from ribbonopt.classes import dataclass
 from ribbonopt.plain import is_number
 from ribbonopt.scene.limits import VALUES
 

@@ -6,9 +6,10 @@ import hashlib
 import itertools
 import json
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass, field
+from dataclasses import field
 from typing import Literal
 
+from ribbonopt.classes import dataclass
 from ribbonopt.errors import SceneError
 from ribbonopt.scene import Scene
 from ribbonopt.scene.limits import RIBBONS

@@ -10,7 +10,7 @@ bears n and m1, but neither m2 nor m3, until it buckles. See `infinitesimal` for
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 
 import casadi as ca
@@ -18,6 +18,7 @@ import numpy as np
 
 from ribbonopt.arrays import Array
 from ribbonopt.checks.zero_moment import SHORTEST, share_without_moment, unbent_share
+from ribbonopt.classes import dataclass
 from ribbonopt.errors import ModelError, SceneError
 from ribbonopt.mechanics.laws.catalogue import relation_of
 from ribbonopt.mechanics.laws.law import ConstitutiveLaw

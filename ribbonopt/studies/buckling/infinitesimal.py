@@ -17,11 +17,11 @@ states obey x' = f(x, c, 0) from the start, and start and constants are affine i
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
 from functools import cached_property
 
 import casadi as ca
 
+from ribbonopt.classes import dataclass
 from ribbonopt.mechanics.laws.law import Stress
 from ribbonopt.problem import Ribbon
 from ribbonopt.problem.imposed import residuals

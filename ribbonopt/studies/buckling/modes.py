@@ -8,13 +8,14 @@ meet where m2 of the mode changes sign, each on one side of the law, which is an
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 
 import casadi as ca
 import numpy as np
 
 from ribbonopt.arrays import Array
+from ribbonopt.classes import dataclass
 from ribbonopt.guess.unknowns import laid_out, places_of
 from ribbonopt.mechanics.laws.law import ConstitutiveLaw, Stress
 from ribbonopt.problem import BoundaryValueProblem

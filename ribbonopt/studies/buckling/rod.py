@@ -8,13 +8,13 @@ conditions where a determinant vanishes.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass
 from functools import cached_property
 
 import casadi as ca
 import numpy as np
 
 from ribbonopt.arrays import Array
+from ribbonopt.classes import dataclass
 from ribbonopt.mechanics.laws.law import Stress
 from ribbonopt.problem import Ribbon
 

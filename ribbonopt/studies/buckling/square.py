@@ -6,13 +6,13 @@ at the stations of the ribbon, where something acts or holds, and where m2 of th
 
 from __future__ import annotations
 
-from dataclasses import dataclass
 from itertools import pairwise
 
 import casadi as ca
 import numpy as np
 
 from ribbonopt.arrays import Array
+from ribbonopt.classes import dataclass
 from ribbonopt.mechanics.laws.law import ConstitutiveLaw
 from ribbonopt.problem import BoundaryValueProblem, Phase
 from ribbonopt.problem.pieces import Kinds, passing

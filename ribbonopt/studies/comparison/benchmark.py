@@ -9,12 +9,13 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Callable, Iterable, Sequence
-from dataclasses import asdict, dataclass, replace
+from dataclasses import asdict, replace
 from statistics import median
 from typing import Any
 
 import numpy as np
 
+from ribbonopt.classes import dataclass
 from ribbonopt.output.summary import versions
 from ribbonopt.scene import Scene
 from ribbonopt.studies.machine import machine

@@ -6,7 +6,7 @@ What is refused or does not converge is a measurement too, with the message that
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 from statistics import median
 from typing import Any
@@ -18,6 +18,7 @@ from ribbonopt.accuracy.compared import alone
 from ribbonopt.accuracy.estimate import analyse
 from ribbonopt.accuracy.gaps import ROUNDING
 from ribbonopt.arrays import Array
+from ribbonopt.classes import dataclass
 from ribbonopt.errors import ConvergenceError, RibbonoptError
 from ribbonopt.guess import Guess
 from ribbonopt.mechanics.laws.catalogue import capabilities

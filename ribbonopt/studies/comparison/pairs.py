@@ -7,10 +7,11 @@ them, and what they refuse is a result like any other.
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any, Literal, TypeVar
 
 from ribbonopt import problem
+from ribbonopt.classes import dataclass
 from ribbonopt.errors import SceneError
 from ribbonopt.scene import Algebraic, Collocation, Scene, Shooting
 

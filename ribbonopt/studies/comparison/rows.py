@@ -4,9 +4,10 @@ from __future__ import annotations
 
 import math
 from collections.abc import Sequence
-from dataclasses import asdict, dataclass, fields
+from dataclasses import asdict, fields
 from typing import Any
 
+from ribbonopt.classes import dataclass
 from ribbonopt.plain import finite
 
 from .measure import Measurement

@@ -6,12 +6,13 @@ answer at that very value is large on any mesh. As a point of the branch it is a
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from ribbonopt.accuracy.estimate import analyse, relative_error
 from ribbonopt.arrays import Array
+from ribbonopt.classes import dataclass
 from ribbonopt.solution.solution import Solution
 from ribbonopt.solvers.extended import ExtendedSystem
 from ribbonopt.solvers.protocols import Factors

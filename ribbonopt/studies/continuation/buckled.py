@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -10,6 +10,7 @@ import numpy as np
 from ribbonopt.arrays import Array
 from ribbonopt.attempt.attempt import Attempt
 from ribbonopt.checks.zero_moment import SHORTEST, unbent_share
+from ribbonopt.classes import dataclass
 from ribbonopt.pipeline.prepared import Prepared
 from ribbonopt.solution.solution import Solution
 

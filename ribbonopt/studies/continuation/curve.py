@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from functools import cached_property
 from itertools import pairwise
 
@@ -10,6 +10,7 @@ import numpy as np
 
 from ribbonopt.accuracy.spin import spins
 from ribbonopt.arrays import Array
+from ribbonopt.classes import dataclass
 from ribbonopt.problem import BoundaryValueProblem, Posed
 from ribbonopt.scene import ContinuationStage, Scene
 from ribbonopt.scene.faults import KeyPath

@@ -7,7 +7,7 @@ determinant as that scheme has them: those of the point to within its error.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
@@ -15,6 +15,7 @@ from ribbonopt.accuracy.estimate import Analysis
 from ribbonopt.accuracy.improved import Improved, growth_of
 from ribbonopt.accuracy.spin import spins
 from ribbonopt.arrays import Array
+from ribbonopt.classes import dataclass
 from ribbonopt.solution.solution import Solution
 from ribbonopt.solvers.local import local_near
 

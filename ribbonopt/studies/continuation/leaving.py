@@ -9,12 +9,13 @@ maybe more: then branches cross, and leave linearly.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from itertools import combinations
 from typing import TYPE_CHECKING
 
 import numpy as np
 
+from ribbonopt.classes import dataclass
 from ribbonopt.solution.solution import Solution
 
 from .phases import EMPTY, Change, What, margins

@@ -6,7 +6,7 @@ changes of m2 do. So a layout is a mesh and its phases.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field, replace
+from dataclasses import field, replace
 from typing import Any, NamedTuple
 
 import numpy as np
@@ -14,6 +14,7 @@ import numpy as np
 from ribbonopt.arrays import Array
 from ribbonopt.attempt.attempt import Attempt, verified
 from ribbonopt.checks.zero_moment import unbent_share
+from ribbonopt.classes import dataclass
 from ribbonopt.pipeline.prepared import Prepared
 from ribbonopt.solution.solution import Solution
 from ribbonopt.solution.trajectory import Trajectory

@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
-from dataclasses import dataclass
 from functools import cached_property
 from typing import Any
 
 import numpy as np
 
+from ribbonopt.classes import dataclass
 from ribbonopt.scene import ContinuationStage
 from ribbonopt.scene.stages import parse_stop, special_stop, words_of
 from ribbonopt.solution.sampling import evaluate_formula

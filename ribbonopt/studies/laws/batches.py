@@ -8,10 +8,11 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable, Iterable, Iterator
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from statistics import median
 from typing import Any
 
+from ribbonopt.classes import dataclass
 from ribbonopt.errors import SceneError
 from ribbonopt.output.summary import versions
 from ribbonopt.plain import Row, finite

@@ -8,9 +8,10 @@ with the reason. The scene's own law is always the first, as it stands.
 from __future__ import annotations
 
 from collections.abc import Iterable, Iterator, Mapping
-from dataclasses import dataclass, field, fields, replace
+from dataclasses import field, fields, replace
 from math import isclose
 
+from ribbonopt.classes import dataclass
 from ribbonopt.errors import SceneError
 from ribbonopt.mechanics.laws.catalogue import numbers_of
 from ribbonopt.scene import Law, Scene

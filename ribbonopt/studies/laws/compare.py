@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any
 
+from ribbonopt.classes import dataclass
 from ribbonopt.output.summary import versions
 from ribbonopt.plain import Row
 from ribbonopt.scene import Scene

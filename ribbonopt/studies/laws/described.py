@@ -6,11 +6,11 @@ A bar of a difference is that of both: the solutions are wrong independently of 
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 
+from ribbonopt.classes import dataclass
 from ribbonopt.output.summary import bars_of
 from ribbonopt.solution.solution import Solution
 from ribbonopt.studies.comparison.profile import Profile, load_sizes

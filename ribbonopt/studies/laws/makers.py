@@ -6,8 +6,8 @@ In units of Dw: B2 = 1 - nu^2, B3 = 2 (1 - nu) and B1 = (1 - nu^2) w^2 / h^2 of 
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass
 
+from ribbonopt.classes import dataclass
 from ribbonopt.scene import (
     Extensible,
     Homotopy,

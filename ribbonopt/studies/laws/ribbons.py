@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import dataclass, fields, replace
+from dataclasses import fields, replace
 from functools import cached_property, partial
 from typing import Any
 
+from ribbonopt.classes import dataclass
 from ribbonopt.errors import SceneError
 from ribbonopt.scene import Law, Scene
 from ribbonopt.scene.units import units_of

@@ -8,10 +8,11 @@ they lead to two equilibria the one nearer to the known shape is taken, and the 
 from __future__ import annotations
 
 import time
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
+from ribbonopt.classes import dataclass
 from ribbonopt.errors import ConvergenceError, RibbonoptError
 from ribbonopt.pipeline.prepared import Prepared, prepare, solve
 from ribbonopt.scene import Scene

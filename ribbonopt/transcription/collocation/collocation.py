@@ -10,9 +10,9 @@ Between the nodes x is the polynomial x_0 + h sum_j F_j integral(l_j), z interpo
 from __future__ import annotations
 
 from collections.abc import Callable
-from dataclasses import dataclass
 
 from ribbonopt.arrays import Array
+from ribbonopt.classes import dataclass
 from ribbonopt.errors import TranscriptionError
 from ribbonopt.problem.contract import BoundaryValueProblem
 from ribbonopt.transcription.functions import condition_functions, stage_functions

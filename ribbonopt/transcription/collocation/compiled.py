@@ -7,12 +7,12 @@ functions whose instructions the kernel knows. For all else there is no twin, an
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from typing import TYPE_CHECKING
 
 import numpy as np
 
 from ribbonopt.arrays import Array
+from ribbonopt.classes import dataclass
 from ribbonopt.kernel import COMPILED
 from ribbonopt.transcription.buffered import plain
 from ribbonopt.transcription.functions import StageFunctions

@@ -13,11 +13,10 @@ the equations of the rest Q first, so that only K nq unknowns V of an element ar
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from ribbonopt.arrays import Array
+from ribbonopt.classes import dataclass
 from ribbonopt.transcription.residuals import Derivatives, Residuals, Share
 
 from .splitting import Splitting

@@ -10,12 +10,13 @@ the polynomial, which both nodes hold, is of use.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from functools import cached_property
 
 import numpy as np
 
 from ribbonopt.arrays import Array
+from ribbonopt.classes import dataclass
 from ribbonopt.transcription.known import Known, at_places
 from ribbonopt.transcription.layout import Index
 from ribbonopt.transcription.tableaus import Inside

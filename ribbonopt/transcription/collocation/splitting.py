@@ -11,13 +11,13 @@ so that only the unknowns Q of the rest are solved for in an element.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 from functools import cached_property
 
 import numpy as np
 from numpy.typing import NDArray
 
 from ribbonopt.arrays import Array
+from ribbonopt.classes import dataclass
 from ribbonopt.transcription.functions import StageFunctions
 from ribbonopt.transcription.layout import Layout
 from ribbonopt.transcription.tableaus import Tableau

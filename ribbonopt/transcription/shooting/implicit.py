@@ -9,11 +9,10 @@ step and its derivatives, "idas" over forty times.)
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import casadi as ca
 import numpy as np
 
+from ribbonopt.classes import dataclass
 from ribbonopt.transcription.functions import StageFunctions
 from ribbonopt.transcription.tableaus import Tableau
 

@@ -6,11 +6,12 @@ states.
 
 from __future__ import annotations
 
-from dataclasses import dataclass, replace
+from dataclasses import replace
 
 import numpy as np
 
 from ribbonopt.arrays import Array
+from ribbonopt.classes import dataclass
 from ribbonopt.transcription.known import Known, at_places, sampled
 from ribbonopt.transcription.tableaus import gauss
 

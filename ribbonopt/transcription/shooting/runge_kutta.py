@@ -7,11 +7,10 @@ With F the derivative of the states, a step of width h from x is
 
 from __future__ import annotations
 
-from dataclasses import dataclass
-
 import numpy as np
 
 from ribbonopt.arrays import Array
+from ribbonopt.classes import dataclass
 
 
 @dataclass(frozen=True, eq=False)

@@ -119,7 +119,7 @@ def test_results_are_replaced_whole(solved: Solved, saved: Path) -> None:
     assert [path.name for path in saved.parent.iterdir()] == ["half"]
 
 
-@pytest.mark.parametrize("victim", ["summarize", "dump_scene"])
+@pytest.mark.parametrize("victim", ["summarize", "dump"])
 def test_failure_while_writing_leaves_the_old_result(
     solved: Solved, saved: Path, monkeypatch: pytest.MonkeyPatch, victim: str
 ) -> None:

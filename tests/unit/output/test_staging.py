@@ -1,6 +1,7 @@
 """Places of results: checked before anything is spent, locked, and put right after a kill."""
 
 import os
+import socket
 import subprocess
 import sys
 from collections.abc import Callable
@@ -97,7 +98,7 @@ def test_without_locks_the_file_says_who_holds_it(
     assert names(tmp_path) == []
     dead = subprocess.Popen([sys.executable, "-c", ""])
     dead.wait()
-    host = locks.socket.gethostname()
+    host = socket.gethostname()
     path.write_text(f"{dead.pid} {host}\n")
     locks.take(path, tmp_path).release()
     for other in (f"{dead.pid} {host}-other", f"{os.getpid()} {host}", "", "\x00\xff" * 200):

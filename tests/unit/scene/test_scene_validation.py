@@ -5,6 +5,7 @@ import math
 from dataclasses import dataclass, field
 from typing import Annotated, Any, Literal
 
+import numpy as np
 import pytest
 
 from ribbonopt.scene import (
@@ -30,7 +31,7 @@ from ribbonopt.scene import (
 )
 from ribbonopt.scene.faults import InvalidSceneError
 from ribbonopt.scene.schema.bounds import Bounds
-from ribbonopt.scene.schema.validation import schema_of, validate
+from ribbonopt.scene.schema.validation import check_of, validate
 
 GOOD: dict[str, Any] = {
     "name": "one",
@@ -300,9 +301,9 @@ def test_other_dataclasses_validate_too() -> None:
 @pytest.mark.parametrize(
     "annotation", [list[int], int | float, set, Annotated[str | int | float, 1]]
 )
-def test_unsupported_annotations_are_refused_when_the_schema_is_built(annotation: Any) -> None:
+def test_unsupported_annotations_are_refused(annotation: Any) -> None:
     with pytest.raises((TypeError, KeyError)):
-        schema_of(annotation)
+        check_of(annotation)
 
 
 def test_strictness_of_numbers_in_unions() -> None:
@@ -316,6 +317,33 @@ def test_strictness_of_numbers_in_unions() -> None:
     for value, message in ((3, "a number < 3"), ("aut", "'auto'"), (True, "number < 3 or 'auto'")):
         with pytest.raises(InvalidSceneError, match=message):
             validate(Mixed, {"value": value})
+
+
+def test_what_numpy_makes_becomes_plain() -> None:
+    made = {"name": np.str_("a"), "interval": np.array([0, 1]), "tolerance": np.float32(0.25) / 4}
+    scene = validate(Scene, {**GOOD, **made, "parameters": {np.str_("k"): np.int64(2)}})
+    assert scene.interval == (0.0, 1.0)
+    assert {type(value) for value in scene.interval} == {float}
+    assert (type(scene.name), type(scene.tolerance)) == (str, float)
+    assert [*map(type, [*scene.parameters, *scene.parameters.values()])] == [str, float]
+    for wrong in (np.array(0.5), np.array([0.0, 0.5, 1.0]), "01", {"a": 1, "b": 2}, 5):
+        assert problems(interval=wrong).keys() == {"interval"}
+    assert problems(tolerance=np.bool_(True), seed=np.int64(1)).keys() == {"tolerance", "seed"}
+
+
+def test_a_key_in_a_mapping_of_the_users_own_is_text() -> None:
+    assert problems(parameters={1: 2.0}) == {"parameters.1": "found 1, expected text as the key"}
+    assert problems(**{"law": {"type": "sadowsky", 3: 4}})["law.3"].endswith("text as the key")
+
+
+def test_annotations_mean_what_they_mean_where_they_stand() -> None:
+    @dataclass(frozen=True)
+    class Turned(Turn):
+        w: float = 0.0
+
+    assert validate(Turned, {"x": "90*deg", "w": 1}) == Turned("90*deg", w=1.0)
+    with pytest.raises(InvalidSceneError, match="expected a number or a formula"):
+        validate(Turned, {"x": []})
 
 
 def test_defaults_of_the_classes_are_valid() -> None:

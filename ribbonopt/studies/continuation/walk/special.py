@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
+from dataclasses import replace
 from typing import Any, Generic
 
 import numpy as np
+
+from ribbonopt.classes import dataclass
 
 from .beside import ENOUGH, Beside, Probe
 from .points import BRANCH_POINT, FOLD, Point, S
