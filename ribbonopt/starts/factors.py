@@ -10,7 +10,7 @@ FIRST_LOADS = 2.0  # size of loads that are brought on evenly before they grow b
 MOST_GROWTH, LEAST_GROWTH = 1.2, 0.02  # of the logarithm of a load in a step
 
 
-@dataclass
+@dataclass()
 class Factors:
     """Where a load of a size (Dw = L = 1) is on its way, and the next step, as logarithms."""
 

@@ -82,7 +82,7 @@ class SavedEnding:
     points: Count | None = None
 
 
-@dataclass
+@dataclass()
 class _Course:
     """What the lines before say, to which the next one must fit."""
 

@@ -8,13 +8,13 @@ polynomial through them, and the unknowns at the root are interpolated alike.
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import dataclass
 from itertools import pairwise
 from typing import Generic
 
 import numpy as np
 
 from ribbonopt.arrays import Array
-from ribbonopt.classes import dataclass
 
 from .linearised import Linearised
 from .points import Point, S

@@ -4,12 +4,10 @@ from __future__ import annotations
 
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator, Mapping
-from dataclasses import field, replace
+from dataclasses import dataclass, field, replace
 from typing import Generic, Protocol
 
 import numpy as np
-
-from ribbonopt.classes import dataclass
 
 from .endless import CLOSED, IDLE, IDLE_POINTS, comes_home, homeward, is_home, is_idle
 from .known import Atlas

@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
+
 import numpy as np
 
 from ribbonopt.arrays import Array
-from ribbonopt.classes import dataclass
 
 from .metric import Metric
 from .points import Point, S

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
+from dataclasses import dataclass
 from typing import Generic
 
 from ribbonopt.arrays import Array
-from ribbonopt.classes import dataclass
 
 from .points import Point, S
 

@@ -8,14 +8,13 @@ passes the ends of that piece to rounding.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import field
+from dataclasses import dataclass, field
 from itertools import pairwise
 from typing import Generic
 
 import numpy as np
 
 from ribbonopt.arrays import Array
-from ribbonopt.classes import dataclass
 
 from .course import COSINE
 from .metric import Metric

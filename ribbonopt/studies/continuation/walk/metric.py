@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 import math
+from dataclasses import dataclass
 
 from ribbonopt.arrays import Array
-from ribbonopt.classes import dataclass
 
 
 @dataclass(frozen=True, eq=False)

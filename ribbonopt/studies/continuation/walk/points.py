@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import field
+from dataclasses import dataclass, field
 from typing import Any, Generic, TypeVar
 
 from ribbonopt.arrays import Array
-from ribbonopt.classes import dataclass
 
 POINT, FOLD, BRANCH_POINT, BUCKLING = "point", "fold", "branch point", "buckling point"
 KINK = "kink"  # branches meet at an angle where the equations change, as phases begin or end

@@ -11,10 +11,10 @@ vanishes at folds. The walk sees the vector of unknowns [w, l1 .. lk] and asks f
 from __future__ import annotations
 
 from collections.abc import Mapping
+from dataclasses import dataclass
 from typing import Any, Generic, Protocol
 
 from ribbonopt.arrays import Array
-from ribbonopt.classes import dataclass
 
 from .departure import Departure
 from .linearised import Heading, Linearised

@@ -3,12 +3,10 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from typing import Any, Generic
 
 import numpy as np
-
-from ribbonopt.classes import dataclass
 
 from .beside import ENOUGH, Beside, Probe
 from .points import BRANCH_POINT, FOLD, Point, S
