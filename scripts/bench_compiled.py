@@ -194,7 +194,7 @@ def energies(pairs: list[tuple[Found, Found]], tolerance: float) -> dict[str, in
     counts = {"same": 0, "lower": 0, "higher": 0}
     for first, other in pairs:
         for a, b in zip(first["numbers"], other["numbers"], strict=True):
-            same = abs(b - a) <= 20 * tolerance * abs(a)
+            same = abs(b - a) <= 2 * tolerance * abs(a)
             counts["same" if same else "lower" if b < a else "higher"] += 1
     return counts
 
