@@ -8,7 +8,8 @@ before, and with `--peers` what is found of COLNEW, AUTO, CasADi's rootfinder an
 Each has a process of its own, in which all is built before it is timed; they take turns in one run,
 and all that is told is a median of turns, so that ratios hold on a noisy machine. The ratio of a
 turn is the CPU of the checkout before over that of this one. Answers of all checkouts must agree
-within their tolerance, and all be verified; errors are against the references below. Writes
+within their tolerance, and all be verified; where ribbons have several equilibria, it is counted
+how many have another energy. Errors are against the references below. Writes
 `compiled.json` and `compiled.png`.
 """
 
@@ -178,15 +179,24 @@ def summary(name: str, runs: dict[str, list[Found]]) -> Found:
             one["ratio"] = statistics.median(ratios)
             one["ratios"] = [ratios[len(ratios) // 4], ratios[-1 - len(ratios) // 4]]
         result["contenders"][label] = one
-    ours = [label for label in (BEFORE, WITH, WITHOUT) if label in runs]
-    first = runs[ours[0]]
-    result["apart"] = max(
-        apart(b["numbers"], a["numbers"])
-        for label in ours[1:]
-        for a, b in zip(first, runs[label], strict=True)
-    )
-    result["agree"] = result["apart"] <= 2 * tolerance
+    ours = [runs[label] for label in (BEFORE, WITH, WITHOUT) if label in runs]
+    pairs = [pair for other in ours[1:] for pair in zip(ours[0], other, strict=True)]
+    if truth is None:
+        result["energies"] = energies(pairs, tolerance)
+    else:
+        result["apart"] = max(apart(b["numbers"], a["numbers"]) for a, b in pairs)
+        result["agree"] = result["apart"] <= 2 * tolerance
     return result
+
+
+def energies(pairs: list[tuple[Found, Found]], tolerance: float) -> dict[str, int]:
+    """Count energies against those of the first checkout: many clamps have several equilibria."""
+    counts = {"same": 0, "lower": 0, "higher": 0}
+    for first, other in pairs:
+        for a, b in zip(first["numbers"], other["numbers"], strict=True):
+            same = abs(b - a) <= 2 * tolerance * abs(a)
+            counts["same" if same else "lower" if b < a else "higher"] += 1
+    return counts
 
 
 def apart(numbers: list[float], truth: list[float]) -> float:
@@ -196,8 +206,12 @@ def apart(numbers: list[float], truth: list[float]) -> float:
 
 def report(name: str, row: Found) -> None:
     """Print a row: a line for each contender."""
-    agree = "" if row["agree"] else "; THEY DO NOT AGREE"
-    print(f"{name}: checkouts differ by {row['apart']:.1e}{agree}")
+    if "energies" in row:
+        counts = ", ".join(f"{count} {word}" for word, count in row["energies"].items())
+        print(f"{name}: energies against the first checkout: {counts}")
+    else:
+        agree = "" if row["agree"] else "; THEY DO NOT AGREE"
+        print(f"{name}: checkouts differ by {row['apart']:.1e}{agree}")
     for label, one in row["contenders"].items():
         text = f"  {label:<22} {one['ms']:9.3f} ms (least {one['ms_least']:.3f})"
         if "ratio" in one:

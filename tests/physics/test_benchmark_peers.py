@@ -92,3 +92,8 @@ LIBRARIES = {
     "libc.so.6": "libc",
     "[kernel.kallsyms]": "system",
 }
+
+
+def test_other_equilibria_are_counted() -> None:
+    pairs = [({"numbers": [2.0, 3.0, 4.0]}, {"numbers": [2.0 + 1e-7, 2.9, 4.1]})]
+    assert bench_compiled.energies(pairs, 1e-6) == {"same": 1, "lower": 1, "higher": 1}
