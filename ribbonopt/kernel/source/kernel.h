@@ -13,6 +13,7 @@
 _Static_assert(sizeof(size_t) >= 8 && sizeof(int) >= 4, "the kernel is for 64 bits");
 
 #if defined(__clang__) /* of each other: the rounds of the loop that follows */
+#pragma clang diagnostic ignored "-Wpass-failed" /* such loops as are no better so are left */
 #define INDEPENDENT _Pragma("clang loop vectorize(assume_safety)")
 #elif defined(__GNUC__)
 #define INDEPENDENT _Pragma("GCC ivdep")
