@@ -24,6 +24,12 @@ class Program:
     def map(self, count: int, shared: int, /, *arrays: Array) -> None:
         """Run at `count` points: inputs, then outputs; bits of `shared` tell inputs of all."""
 
+    def accumulate(self, count: int, shared: int, /, *arrays: Array) -> None:
+        """Run `count` steps, each from what the one before put out: inputs, then the output.
+
+        The first input is where the first step begins.
+        """
+
 class Factors:
     """Factors of a chain's Newton matrix."""
 

@@ -59,6 +59,47 @@ def plain(values: Array) -> Array:
     return np.ascontiguousarray(values, dtype=float)
 
 
+class Accumulated:
+    """States after each of many steps (x, shared .., varying ..) -> x, one from the other.
+
+    `shared` inputs follow the state, then those that each step has of its own. Without the kernel
+    steps are taken in blocks of few sizes, the last filled up with steps whose own inputs are zero.
+    """
+
+    def __init__(self, step: ca.Function, shared: int) -> None:
+        self._step, self._shared = step, shared
+        self._mask = sum(1 << i for i in range(1, 1 + shared))
+        self._sizes = [step.numel_in(i) for i in range(step.n_in())]
+        self._blocks: dict[int, Buffered] = {}
+        self.program = program_of(step)
+
+    def __call__(self, state: Array, *values: Array) -> Array:
+        """Return the states (k, nx) after each of k steps from a state (nx,)."""
+        arguments = [plain(value) for value in (state, *values)]
+        count = arguments[-1].size // self._sizes[-1]
+        states = np.empty((count, self._sizes[0]))
+        if self.program is not None:
+            self.program.accumulate(count, self._mask, *arguments, states)
+            return states
+        for at in range(0, count, LARGEST):
+            taken = min(count - at, LARGEST)
+            size = SIZES[bisect_left(SIZES, taken)]
+            if size not in self._blocks:
+                self._blocks[size] = Buffered(self._step.mapaccum("steps", size))
+            block = [state]
+            for i, (value, width) in enumerate(zip(arguments, self._sizes, strict=True)):
+                if 0 < i <= self._shared:
+                    block.append(np.tile(value.ravel(), size))
+                elif i:
+                    own = np.zeros((size, width))
+                    own[:taken] = value.reshape(-1, width)[at : at + taken]
+                    block.append(own)
+            (after,) = self._blocks[size](*block)
+            states[at : at + taken] = after.reshape(size, -1)[:taken]
+            state = states[at + taken - 1]
+        return states
+
+
 def shared_map(function: ca.Function, count: int) -> ca.Function:
     """Map a stage function over `count` stages that share constants and parameters."""
     return function.map(f"{function.name()}_map", "serial", count, list(SHARED), [])

@@ -189,7 +189,64 @@ done:
     Py_RETURN_NONE;
 }
 
+/* x after each of many steps: the first input is what the step before put out. */
+static PyObject *program_accumulate(PyObject *self, PyObject *const *args, Py_ssize_t given)
+{
+    const Program *p = &((ProgramObject *)self)->program;
+    if (p->outputs != 1 || p->inputs < 1 || p->sizes_in[0] != p->sizes_out[0]) {
+        PyErr_SetString(PyExc_ValueError, "a step puts out what it takes first, and that alone");
+        return NULL;
+    }
+    if (given != 3 + p->inputs) {
+        PyErr_Format(PyExc_TypeError, "expected a count, a mask, %d inputs and an output",
+                     p->inputs);
+        return NULL;
+    }
+    Py_ssize_t count = PyLong_AsSsize_t(args[0]);
+    long shared = PyLong_AsLong(args[1]);
+    if (PyErr_Occurred())
+        return NULL;
+    if (count < 0 || count > MOST) {
+        PyErr_SetString(PyExc_ValueError, "count: beyond what there can be");
+        return NULL;
+    }
+    shared |= 1;
+    Held held = {0};
+    double *data[MOST_ARRAYS + 1], *work = NULL;
+    for (int i = 0; i <= p->inputs; i++) {
+        size_t size = i < p->inputs ? p->sizes_in[i] : p->sizes_out[0];
+        int fixed = i < p->inputs && shared >> i & 1;
+        char name[32];
+        PyOS_snprintf(name, sizeof name, "argument %d", i);
+        data[i] = held_numbers(&held, args[2 + i], fixed ? size : size * (size_t)count,
+                               i == p->inputs, name);
+        if (!data[i])
+            goto done;
+    }
+    if (!(work = allocate((size_t)p->work * LANES, sizeof(double)))) {
+        PyErr_NoMemory();
+        goto done;
+    }
+    const double *in[MOST_ARRAYS * LANES] = {0};
+    double *out[LANES] = {0};
+    for (Py_ssize_t at = 0; at < count; at++) {
+        for (int i = 1; i < p->inputs; i++)
+            in[i * LANES] = data[i] + (shared >> i & 1 ? 0 : at * p->sizes_in[i]);
+        out[0] = data[p->inputs] + at * p->sizes_out[0];
+        in[0] = at ? out[0] - p->sizes_out[0] : data[0];
+        program_run(p, 1, in, out, work);
+    }
+    release(work);
+done:
+    held_release(&held);
+    if (PyErr_Occurred())
+        return NULL;
+    Py_RETURN_NONE;
+}
+
 static PyMethodDef program_methods[] = {
+    {"accumulate", (PyCFunction)(void (*)(void))program_accumulate, METH_FASTCALL,
+     "accumulate(count, mask, *inputs, output): steps, each from what the one before put out."},
     {"map", (PyCFunction)(void (*)(void))program_map, METH_FASTCALL,
      "map(count, mask, *inputs, *outputs): run at points; inputs in the mask are shared."},
     {NULL, NULL, 0, NULL}};
