@@ -1,5 +1,5 @@
 /* The compiled kernel: CasADi's instruction lists over many points at once, Newton steps of a chain
- * of collocation elements, Newton's loop. Plain numbers; `module.c` alone knows Python.
+ * of collocation elements, Newton's loop. Plain numbers; files with `objects.h` know Python.
  *
  * Shapes as in ribbonopt.transcription.structure: N elements, K stages, nx states, nv = nx + nz
  * unknowns of a stage, nz algebraic equations, nc constants, nb conditions, P + 1 points. Matrices
