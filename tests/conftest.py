@@ -80,3 +80,11 @@ def solved() -> "Callable[..., Solution]":
         return result
 
     return solution
+
+
+@pytest.fixture(params=["as it is", "without the kernel"])
+def each_way(request: pytest.FixtureRequest, monkeypatch: pytest.MonkeyPatch) -> None:
+    """Run with the compiled kernel, where there is one, and again without."""
+    if request.param == "without the kernel":
+        monkeypatch.setattr("ribbonopt.kernel.programs.COMPILED", None)
+        monkeypatch.setattr("ribbonopt.transcription.collocation.compiled.COMPILED", None)

@@ -1,5 +1,5 @@
 /* The compiled kernel: CasADi's instruction lists over many points at once, Newton steps of a chain
- * of collocation elements, Newton's loop. Plain numbers; `module.c` alone knows Python.
+ * of collocation elements, Newton's loop. Plain numbers; files with `objects.h` know Python.
  *
  * Shapes as in ribbonopt.transcription.structure: N elements, K stages, nx states, nv = nx + nz
  * unknowns of a stage, nz algebraic equations, nc constants, nb conditions, P + 1 points. Matrices
@@ -13,6 +13,7 @@
 _Static_assert(sizeof(size_t) >= 8 && sizeof(int) >= 4, "the kernel is for 64 bits");
 
 #if defined(__clang__) /* of each other: the rounds of the loop that follows */
+#pragma clang diagnostic ignored "-Wpass-failed" /* such loops as are no better so are left */
 #define INDEPENDENT _Pragma("clang loop vectorize(assume_safety)")
 #elif defined(__GNUC__)
 #define INDEPENDENT _Pragma("GCC ivdep")

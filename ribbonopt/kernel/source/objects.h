@@ -39,5 +39,6 @@ typedef struct {
 } FactorsObject;
 
 extern PyTypeObject ProgramType, ChainType, FactorsType;
+extern PyMethodDef chain_methods[];
 
 #endif

@@ -173,6 +173,41 @@ def test_kernel_objects_are_made_in_one_way_only(kernel: ModuleType) -> None:
             value.own = 1
 
 
+Y = ca.SX.sym("y", 2)
+STEP = ca.Function("step", [Y, ca.SX.sym("c", 2), ca.SX.sym("own", 3)], [ca.cos(Y) + 1])
+
+
+def step_arrays() -> list[Array]:
+    """Return the start, a shared input, own ones of COUNT steps and the states after each."""
+    return [np.zeros(size) for size in (2, 2, 3 * COUNT, 2 * COUNT)]
+
+
+@each_unfit
+@pytest.mark.parametrize("at", range(4))
+def test_steps_refuse_arrays_that_do_not_fit(at: int, name: str) -> None:
+    program, arrays = program_of(STEP), step_arrays()
+    program.accumulate(COUNT, 0b010, *arrays)
+    with pytest.raises(ERRORS):
+        program.accumulate(COUNT, 0b010, *arrays[:at], UNFIT[name](arrays[at]), *arrays[at + 1 :])
+
+
+def test_steps_of_other_counts_masks_and_programs() -> None:
+    program, arrays = program_of(STEP), step_arrays()
+    for count in (-1, COUNT - 1, COUNT + 1, 2**31, 2**61, 2**63 - 1):
+        with pytest.raises(ValueError):
+            program.accumulate(count, 0b010, *arrays)
+    for mask in (0b000, 0b100, 0b110):
+        with pytest.raises(ValueError):
+            program.accumulate(COUNT, mask, *arrays)
+    for given in ((), (COUNT, 0b010), (COUNT, 0b010, *arrays, arrays[0])):
+        with pytest.raises(TypeError):
+            program.accumulate(*given)
+    with pytest.raises(ERRORS):
+        program.accumulate(COUNT, 0b010, *arrays[:3], locked(arrays[3]))
+    with pytest.raises(ValueError, match="puts out"):
+        program_of(FUNCTION).accumulate(COUNT, 0, *map_arrays())
+
+
 @each_unfit
 def test_writhe_refuses_arrays_that_do_not_fit(kernel: ModuleType, name: str) -> None:
     points = np.random.default_rng(0).normal(size=12)
