@@ -52,17 +52,17 @@ static void swap(double *x, double *y, int n)
 /* Eliminate column k in the columns of its panel, which ends before `to`. */
 static int lu_column(double *matrix, int *pivots, int n, int k, int to)
 {
-    double *row = matrix + (size_t)k * n, largest = 0.0;
+    double *row = matrix + (size_t)k * n, terms = 0.0;
     int best = k;
-    for (int i = 0; i < k; i++)
-        largest = fmax(largest, fabs(matrix[(size_t)i * n + k]));
     for (int i = k + 1; i < n; i++)
         if (fabs(matrix[(size_t)i * n + k]) > fabs(matrix[(size_t)best * n + k]))
             best = i;
     pivots[k] = best;
     if (best != k)
         swap(row, matrix + (size_t)best * n, n);
-    if (fabs(row[k]) <= DBL_EPSILON * largest || row[k] == 0.0)
+    for (int i = 0; i < k; i++) /* what the pivot is a difference of, in any scaling */
+        terms += fabs(row[i] * matrix[(size_t)i * n + k]);
+    if (fabs(row[k]) <= DBL_EPSILON * terms || row[k] == 0.0)
         return -1;
     for (int i = k + 1; i < n; i++) {
         double *below = matrix + (size_t)i * n, factor = below[k] /= row[k];
@@ -117,13 +117,11 @@ int qr_factor(double *matrix, double *scales, int rows, int n, int columns, doub
 {
     const size_t c = columns;
     for (int k = 0; k < n; k++) {
-        double squares = 0.0, above = 0.0, *top = matrix + k * c;
-        for (int i = 0; i < k; i++)
-            above += matrix[i * c + k] * matrix[i * c + k];
+        double squares = 0.0, *top = matrix + k * c;
         for (int i = k; i < rows; i++)
             squares += matrix[i * c + k] * matrix[i * c + k];
         double length = sqrt(squares);
-        if (length <= DBL_EPSILON * sqrt(above) || length == 0.0)
+        if (length == 0.0)
             return -1;
         double diagonal = top[k] > 0.0 ? -length : length, first = top[k] - diagonal;
         scales[k] = -first / diagonal;

@@ -53,7 +53,7 @@ void program_run(const Program *program, int lanes, const double *const *in, dou
 void add_rows(double *y, const double *x, size_t stride, const double *factors, size_t step,
               int count, double sign, int n);
 double dot(const double *x, const double *y, int n);
-/* LU factors with partial pivoting, in place; -1 where a pivot is rounding beside its column. */
+/* LU factors with partial pivoting, in place; -1 where a pivot is the rounding of its terms. */
 int lu_factor(double *matrix, int *pivots, int n);
 void lu_solve(const double *lu, const int *pivots, int n, double *right, int columns);
 /* Householder QR of the first n columns: R and the vectors in place, all columns transformed; -1

@@ -9,7 +9,7 @@ from generic import of_first_node
 
 from ribbonopt.arrays import Array
 from ribbonopt.solvers.condense import CondensedSystem
-from ribbonopt.transcription.collocation.compiled import without_one_another
+from ribbonopt.transcription.collocation.splitting import integrated_states
 from ribbonopt.transcription.residuals import Derivatives
 
 each_kind = pytest.mark.parametrize("kind", KINDS, ids=str)
@@ -24,7 +24,7 @@ def close(found: Array, expected: Array, factor: float = 1.0) -> bool:
 @each_kind
 def test_states_apart_are_those_of_the_problem(kind: Kind) -> None:
     """Otherwise the cases do not test what they say."""
-    found = without_one_another(case_of(kind).blocks.phases, kind.nx)
+    found = integrated_states(case_of(kind).blocks.phases, kind.nx).tolist()
     assert found == list(range(kind.apart))
 
 
