@@ -11,7 +11,7 @@ from setuptools.command.build_ext import build_ext
 SOURCE = Path("ribbonopt") / "kernel" / "source"
 # No -ffast-math: it would make every process that loads the kernel flush denormals.
 FLAGS = {"msvc": ["/O2", "/std:c11"]}
-OTHERS = ["-O3", "-std=c11"]
+OTHERS = ["-O3", "-std=c11", "-fvisibility=hidden"]
 
 
 class Build(build_ext):

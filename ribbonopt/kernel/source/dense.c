@@ -18,26 +18,16 @@ void add_rows(double *y, const double *x, size_t stride, const double *factors, 
         INDEPENDENT for (int i = 0; i < n; i++) y[i] =
             y[i] + f0 * x[i] + f1 * x1[i] + f2 * x2[i] + f3 * x3[i];
     }
+    for (; k + 2 <= count; k += 2, x += 2 * stride, factors += 2 * step) {
+        const double *x1 = x + stride;
+        double f0 = sign * factors[0], f1 = sign * factors[step];
+        INDEPENDENT for (int i = 0; i < n; i++) y[i] = y[i] + f0 * x[i] + f1 * x1[i];
+    }
     for (; k < count; k++, x += stride, factors += step) {
         double factor = sign * factors[0];
         if (factor != 0.0)
             INDEPENDENT for (int i = 0; i < n; i++) y[i] += factor * x[i];
     }
-}
-
-double dot(const double *x, const double *y, int n)
-{
-    double even = 0.0, odd = 0.0, third = 0.0, fourth = 0.0;
-    int i = 0;
-    for (; i + 4 <= n; i += 4) {
-        even += x[i] * y[i];
-        odd += x[i + 1] * y[i + 1];
-        third += x[i + 2] * y[i + 2];
-        fourth += x[i + 3] * y[i + 3];
-    }
-    for (; i < n; i++)
-        even += x[i] * y[i];
-    return (even + odd) + (third + fourth);
 }
 
 static void swap(double *x, double *y, int n)

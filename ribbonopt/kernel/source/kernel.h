@@ -52,7 +52,20 @@ void program_run(const Program *program, int lanes, const double *const *in, dou
 /* y (n) += sum_k sign * factors[k * step] * x[k * stride + .], count terms, in that order. */
 void add_rows(double *y, const double *x, size_t stride, const double *factors, size_t step,
               int count, double sign, int n);
-double dot(const double *x, const double *y, int n);
+static inline double dot(const double *x, const double *y, int n)
+{
+    double even = 0.0, odd = 0.0, third = 0.0, fourth = 0.0;
+    int i = 0;
+    for (; i + 4 <= n; i += 4) {
+        even += x[i] * y[i];
+        odd += x[i + 1] * y[i + 1];
+        third += x[i + 2] * y[i + 2];
+        fourth += x[i + 3] * y[i + 3];
+    }
+    for (; i < n; i++)
+        even += x[i] * y[i];
+    return (even + odd) + (third + fourth);
+}
 /* LU factors with partial pivoting, in place; -1 where a pivot is the rounding of its terms. */
 int lu_factor(double *matrix, int *pivots, int n);
 void lu_solve(const double *lu, const int *pivots, int n, double *right, int columns);
