@@ -14,10 +14,10 @@ from ribbonopt.errors import SceneError
 from ribbonopt.scene.limits import JOBS
 from ribbonopt.text import one_line
 
-from .arguments import count
 from .common import INTERRUPTED, NOT_CONVERGED, default_folder, drawn, listing, pairs_of
 from .progress import ProgressLine
 from .terminal import complain, say, say_json
+from .values import count
 
 if TYPE_CHECKING:
     from pathlib import Path

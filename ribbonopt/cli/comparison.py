@@ -9,9 +9,9 @@ from typing import TYPE_CHECKING
 
 from ribbonopt.scene.limits import REPEATS
 
-from .arguments import chosen, count, numbers
 from .common import NOT_CONVERGED, drawn, load
 from .terminal import complain, say, say_json
+from .values import chosen, count, numbers
 
 if TYPE_CHECKING:
     from ribbonopt.studies.comparison.benchmark import Benchmark

@@ -13,10 +13,10 @@ from typing import TYPE_CHECKING, Any
 from ribbonopt.errors import SceneError
 from ribbonopt.scene.limits import JOBS
 
-from .arguments import count, size, words
 from .common import NOT_CONVERGED, drawn, load
 from .progress import ProgressLine
 from .terminal import complain, say, say_json
+from .values import count, size, words
 
 if TYPE_CHECKING:
     from collections.abc import Mapping

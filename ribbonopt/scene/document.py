@@ -17,10 +17,10 @@ from .model import Scene
 from .schema.annotations import written_keys
 from .text.yamltext import PlainData, YamlTextError, read
 from .validated import validated
-from .varied import Alike
 
 if TYPE_CHECKING:
     from .text.overrides import Overridden
+    from .varied import Alike
 
 LOOKED_AT, LONGEST = 20, 100  # keys that may be misspelt, of a file that may have any; letters
 REMEMBERED = 64  # values of overrides that are no numbers, which rows of a study share
@@ -57,7 +57,9 @@ class Document:
         """
         if not overrides:
             return self._whole(self._written)
-        from .text.overrides import numbers_of, override  # only scenes that are overridden pay
+        # Only scenes that are overridden pay for these.
+        from .text.overrides import numbers_of, override
+        from .varied import Alike
 
         kind, numbers = numbers_of(overrides)
         alike = self._alike
