@@ -166,8 +166,7 @@ def _analysed(solution: Solution, near: Factors | None, keep: bool) -> Analysis:
     errors, sizes = gaps_at_nodes(trajectory, better, split, clear), sizes_of(trajectory)
     witnessed = np.maximum(witness(better, split), overlooked(trajectory, near_by))
     local, doubt = more_of(local, witnessed)
-    # Rounding of one element counts as its local error does. Where arithmetic is exact by accident,
-    # as of a straight ribbon along an axis, local errors tell nothing of it.
+    # Rounding of one element counts as its local error does; an exact answer has none but that.
     more = doubt * (1 + len(local) * UNIT / max(float(local.sum()), UNIT))
     errors = {name: error * more for name, error in errors.items()}
     # Between the nodes the output starts from the node before, with the error of that element.

@@ -19,6 +19,8 @@ NEAREST = 1e-9  # of a phase: closer poles are as far as this
 # Times the even width, for elements far from poles: what they leave to those next to them. Measured
 # on (6.1) at epsilon = 0.01, Gauss 8: no other grading of 6 to 12 elements is much more exact.
 WIDER = 2.0
+MOST = 1.1  # times their number, elements that may be wanted
+LESS = 2.0  # times as far, where too few reach a pole
 
 
 def toward_poles(attempt: Attempt, w: Array) -> Mesh | None:
@@ -35,13 +37,21 @@ def toward_poles(attempt: Attempt, w: Array) -> Mesh | None:
 
 
 def _graded(widths: Array, poles: Layers) -> Array:
-    """Return as many relative widths, smaller next to poles."""
+    """Return as many relative widths, smaller next to poles.
+
+    Elements that are too few to come near a pole, and to be wide enough elsewhere, come less near:
+    much wider ones would be on another answer, or on none.
+    """
     if not len(poles):
         return widths
+    near = NEAREST
 
     def limit(positions: Array) -> Array:
         distance = np.abs(positions[:, None] - poles.places)
-        return np.asarray(np.maximum(distance, NEAREST).min(axis=1))
+        return np.asarray(np.maximum(distance, near).min(axis=1))
 
-    positions, share = graded(widths, WIDER * widths, poles.places.real, limit)
-    return redistributed(positions, share, len(widths))
+    while True:
+        positions, share = graded(widths, WIDER * widths, poles.places.real, limit)
+        if share[-1] <= MOST * len(widths) or near >= 1:
+            return redistributed(positions, share, len(widths))
+        near = LESS * max(near, float(np.abs(poles.places.imag).min()))

@@ -81,7 +81,7 @@ def refine(
     if found is None:
         return _missed(replace(solution, steps=tuple(means.steps)), tolerance)
     solution, steps = found, means.steps
-    best, smallest, status = solution, np.inf, Status.TOLERANCE_MISSED
+    best, smallest, status, rounded = solution, np.inf, Status.TOLERANCE_MISSED, False
     for _ in range(ROUNDS):
         try:
             error, _ = relative_error(solution)
@@ -96,10 +96,13 @@ def refine(
             done = solution if same else verified(solution, ribbon)
             return done if same else replace(done, steps=tuple(steps))
         least = analyse(solution).least
-        if _is_left(error, least) or (error > SLOW * before and _is_rounding(solution, tolerance)):
+        stuck, close = error > SLOW * before, error <= CLOSE * tolerance
+        again, rounded = rounded, stuck and _is_rounding(solution, tolerance)
+        status = Status.ROUNDED if rounded else Status.TOLERANCE_MISSED
+        # Close to the tolerance the mesh may just not have been fine enough: one more tells.
+        if _is_left(error, least) or (rounded and (again or not close)):
             status = Status.ROUNDED
             break
-        stuck, close = error > SLOW * before, error <= CLOSE * tolerance
         surprised = stuck and not close and not solution.problem.recovered
         goal = max(aim * tolerance * (1 / CLOSE if stuck and close else 1.0), least)
         mesh, short = _better_mesh(solution, goal, error, surprised)

@@ -95,12 +95,14 @@ def solved_and_integrated(scenes: list[Scene]) -> tuple[int, int]:
 
 
 def test_clamps_are_solved_from_nothing() -> None:
-    confirmed, _ = solved_and_integrated(clamps(12))  # the first of the 200 below
+    confirmed, _ = solved_and_integrated(clamps(12))  # the first of those below
     assert confirmed == 12
 
 
-@pytest.mark.slow
-def test_many_clamps_are_solved_from_nothing() -> None:
-    confirmed, whole = solved_and_integrated(clamps(200))
-    assert confirmed >= 194
-    assert whole >= 100
+@pytest.mark.parametrize(
+    "count", [pytest.param(100, marks=pytest.mark.slow), pytest.param(200, marks=pytest.mark.sweep)]
+)
+def test_many_clamps_are_solved_from_nothing(count: int) -> None:
+    confirmed, whole = solved_and_integrated(clamps(count))
+    assert confirmed >= 0.97 * count
+    assert whole >= count / 2

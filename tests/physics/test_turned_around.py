@@ -94,8 +94,13 @@ def test_a_rod_is_turned_all_around_and_back(name: str) -> None:
     assert_the_same_both_ways(name, 10.0)
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("largest", [3.0, 5.0, 7.0, 10.0, 20.0])
+@pytest.mark.parametrize(
+    "largest",
+    [
+        *(pytest.param(angle, marks=pytest.mark.slow) for angle in (7.0, 20.0)),
+        *(pytest.param(angle, marks=pytest.mark.sweep) for angle in (3.0, 5.0, 10.0)),
+    ],
+)
 @each_law
 def test_a_ribbon_is_turned_all_around_and_back(name: str, largest: float) -> None:
     assert_the_same_both_ways(name, largest)

@@ -46,7 +46,7 @@ def test_arches() -> None:
     assert same >= 8
 
 
-@pytest.mark.slow
+@pytest.mark.sweep  # 4,000 starts; of fewer ribbons tests/unit/studies/test_family.py
 def test_least_energies_of_arches_are_symmetric() -> None:
     _, rows = whole("arches", "starts=8")
     energies = np.array([row["energy"] for row in rows]).reshape(20, 25)  # by distance and turn

@@ -95,3 +95,23 @@ def test_what_is_compared_elsewhere_is_what_is_there(solved: Solved) -> None:
         assert 0 < off < 100 * by**2
         strains = np.abs(_shifted(found, moved)[:, 12:] - found.at_nodes["u"]).max()
         assert 0 < strains < 100 * abs(by)
+
+
+@pytest.mark.parametrize("law", ["kirchhoff", "kirchhoff, B2: 1, B3: 1.3"])
+def test_an_exact_answer_has_bars_of_rounding(each_way: None, law: str) -> None:
+    """A straight column under its load: defects are none at all, and no measure of anything."""
+    column = f"""
+name: column
+law: {{type: {law}}}
+boundary:
+  start: {{support: clamped, position: [0, 0, 0], directors: identity}}
+  end: {{support: free, force: {{x: 0, y: 0, z: -2}}}}
+states: reduced
+tolerance: 1e-9
+"""
+    found = solve(loads_scene(column))
+    assert found.verified, found.message
+    bars = estimate_error(found)
+    assert np.abs(found.n0 - [0, 0, -2]).max() <= bars["n0"] < 1e-11
+    assert np.abs(found.m0).max() <= bars["m0"] < 1e-11
+    assert all(0 < bar < 1e-11 for bar in bars.values())

@@ -22,7 +22,14 @@ def originals(tmp_path_factory: pytest.TempPathFactory) -> Originals:
 
 
 @pytest.mark.parametrize("kind", FILES)
-@pytest.mark.parametrize(("seed", "count"), [(1, 40), pytest.param(2, 500, marks=pytest.mark.slow)])
+@pytest.mark.parametrize(
+    ("seed", "count"),
+    [
+        (1, 40),
+        pytest.param(2, 200, marks=pytest.mark.slow),
+        pytest.param(2, 500, marks=pytest.mark.sweep),
+    ],
+)
 @pytest.mark.filterwarnings("default")
 def test_spoiled_files_are_read_or_refused(
     originals: Originals,
