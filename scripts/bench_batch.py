@@ -21,6 +21,7 @@ from typing import Any
 
 os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 
+from compiled_cases import clamp_study
 from stopwatches import stopwatches
 
 from ribbonopt.accuracy import estimate
@@ -37,22 +38,6 @@ from ribbonopt.transcription.collocation.blocks import ElementBlocks
 from ribbonopt.views.style import BENDING, FAINT, TWIST, blank, tidy
 
 CONFIGS = Path(__file__).resolve().parent.parent / "configs"
-CLAMPS = """\
-name: clamps
-scene:
-  name: clamp
-  law: {{type: variational, delta: 0.1}}
-  parameters: {{distance: 0.8, turn: 0.2}}
-  boundary:
-    start: {{support: clamped, position: [0, 0, 0], directors: identity}}
-    end: {{support: clamped, position: [0, 0.05, distance], directors: {{turns: [{{z: turn}}]}}}}
-  transcription: {{type: collocation, degree: 6, intervals: 10}}
-  tolerance: 1e-6
-sweep:
-  grid:
-    parameters.distance: {{from: 0.5, to: 0.95, count: {rows}}}
-    parameters.turn: {{from: -1.5, to: 1.5, count: 25}}
-"""
 HALF = f"""\
 name: half
 scene: {CONFIGS / "moebius_half.yaml"}
@@ -85,7 +70,7 @@ def main() -> None:
     options = parser.parse_args()
     options.out.mkdir(parents=True, exist_ok=True)
     result: dict[str, Any] = {}
-    for name, text in {"clamps": CLAMPS.format(rows=options.count // 25), "half": HALF}.items():
+    for name, text in {"clamps": clamp_study(options.count // 25, 25), "half": HALF}.items():
         path = options.out / f"{name}.yaml"
         path.write_text(text, encoding="utf-8")
         study = load_study([path])

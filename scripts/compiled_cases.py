@@ -34,14 +34,11 @@ ANSWERS = {
 }
 CASES = (*ANSWERS, "branch", "batch half 1e-8", "batch clamps 1e-6", "clamp from nothing")
 FIRST = 25  # ribbons of a batch that are not counted: the worker's start is among them
-BATCHES = {
-    "batch half 1e-8": """\
-name: half
-scene: {half}
-set: {{law: {{type: regularized, epsilon: 0.1}}, tolerance: 1e-8}}
-sweep: {{grid: {{law.epsilon: {{from: 0.1, to: 1e-4, count: 250, scale: log}}}}}}
-""",
-    "batch clamps 1e-6": """\
+
+
+def clamp_study(distances: int, turns: int) -> str:
+    """Return the study of ribbons between clamps, one of them turned."""
+    return f"""\
 name: clamps
 scene:
   name: clamp
@@ -54,9 +51,19 @@ scene:
   tolerance: 1e-6
 sweep:
   grid:
-    parameters.distance: {{from: 0.5, to: 0.95, count: 40}}
-    parameters.turn: {{from: -1.5, to: 1.5, count: 5}}
+    parameters.distance: {{from: 0.5, to: 0.95, count: {distances}}}
+    parameters.turn: {{from: -1.5, to: 1.5, count: {turns}}}
+"""
+
+
+BATCHES = {
+    "batch half 1e-8": f"""\
+name: half
+scene: {HALF}
+set: {{law: {{type: regularized, epsilon: 0.1}}, tolerance: 1e-8}}
+sweep: {{grid: {{law.epsilon: {{from: 0.1, to: 1e-4, count: 250, scale: log}}}}}}
 """,
+    "batch clamps 1e-6": clamp_study(40, 5),
 }
 
 Found = dict[str, Any]
@@ -120,7 +127,7 @@ def batch(name: str) -> Work:
     def work(count: int, turn: int) -> Found:
         with TemporaryDirectory() as folder:
             path = Path(folder) / "study.yaml"
-            path.write_text(BATCHES[name].format(half=HALF), encoding="utf-8")
+            path.write_text(BATCHES[name], encoding="utf-8")
             rows: list[Found] = []
             for row in run_batch(load_study([path]), jobs=1):
                 rows.append(row)

@@ -126,27 +126,23 @@ static void fill_residuals(const Chain *s, const double *w, const double *p,
     }
 }
 
-int chain_residuals(const Chain *s, const double *w, const double *p, double *residuals)
+int chain_linearize(const Chain *s, const double *w, const double *p, double *residuals,
+                    double *jacobians, double *condition_jacobian)
 {
     double *equations = allocate((size_t)s->N * s->K * s->ne, sizeof(double));
     double *conditions = residuals + (size_t)s->N * s->element_equations;
-    int failed = !equations || at_stages(s, s->values, w, p, equations, NULL) ||
-                 at_points(s, s->conditions, w, p, conditions, NULL);
+    int alone = jacobians == NULL;
+    int failed = !equations ||
+                 at_stages(s, alone ? s->values : s->dense, w, p, equations, jacobians) ||
+                 at_points(s, alone ? s->conditions : s->conditions_dense, w, p, conditions,
+                           condition_jacobian);
     if (!failed)
         fill_residuals(s, w, p, equations, residuals);
     release(equations);
     return failed ? -1 : 0;
 }
 
-int chain_linearize(const Chain *s, const double *w, const double *p, double *residuals,
-                    double *jacobians, double *condition_jacobian)
+int chain_residuals(const Chain *s, const double *w, const double *p, double *residuals)
 {
-    double *equations = allocate((size_t)s->N * s->K * s->ne, sizeof(double));
-    double *conditions = residuals + (size_t)s->N * s->element_equations;
-    int failed = !equations || at_stages(s, s->dense, w, p, equations, jacobians) ||
-                 at_points(s, s->conditions_dense, w, p, conditions, condition_jacobian);
-    if (!failed)
-        fill_residuals(s, w, p, equations, residuals);
-    release(equations);
-    return failed ? -1 : 0;
+    return chain_linearize(s, w, p, residuals, NULL, NULL);
 }
