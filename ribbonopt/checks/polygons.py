@@ -17,22 +17,9 @@ LISTED = 1 << 22  # pairs whose indices are listed at once
 MEETING = 1e-6  # distance, relative to the length of the polygon, at which segments meet
 
 
-def half_twists(r: Array, twist: float) -> tuple[int, float]:
-    """Nearest whole number to 2 (Tw + Wr), and the distance from it.
-
-    Parameters
-    ----------
-    r
-        Points (k, 3) of the closed centre line, the first not repeated.
-    twist
-        Twist of the directors about it, in turns.
-    """
-    return nearest_half_twists(twist + writhe(r))
-
-
-def nearest_half_twists(link: float) -> tuple[int, float]:
-    """Nearest whole number to twice the sum of twist and writhe, and the distance from it."""
-    value = 2 * link
+def half_twists(twist: float, writhe: float) -> tuple[int, float]:
+    """Nearest whole number to 2 (Tw + Wr), both in turns, and the distance from it."""
+    value = 2 * (twist + writhe)
     if not np.isfinite(value):
         return 0, float("inf")
     return round(value), abs(value - round(value))

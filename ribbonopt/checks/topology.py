@@ -19,7 +19,7 @@ from ribbonopt.scene import Loop
 from ribbonopt.solution.solution import Solution
 
 from .flip import TOLERANCE, Flip, at_ends, find_flip, flip_at
-from .polygons import nearest_half_twists, writhe, writhe_and_crossings
+from .polygons import half_twists, writhe, writhe_and_crossings
 
 POINTS = (100, 200, 400, 800)  # of the closed polygon, until its writhe is stable
 STABLE = 0.01  # change of the writhe against half the points
@@ -93,7 +93,7 @@ class ClosedBand:
             found = writhe(r)
             if abs(found - writhe(r[::2])) < STABLE:
                 break
-        return nearest_half_twists(self.twist + found)
+        return half_twists(self.twist, found)
 
 
 def closure(solution: Solution) -> ClosedBand | None:

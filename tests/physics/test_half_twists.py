@@ -79,7 +79,7 @@ def test_writhe_and_twist_add_to_the_linking_number(p: int, q: int) -> None:
     r, normal = torus_curve(p, q)
     assert twist_of(r, normal) + writhe(r) == pytest.approx(-p * q, abs=2e-3)
     assert linking(r, r + 0.3 * normal) == pytest.approx(-p * q, abs=2e-3)
-    assert half_twists(r, twist_of(r, normal))[0] == -2 * p * q
+    assert half_twists(twist_of(r, normal), writhe(r))[0] == -2 * p * q
 
 
 @pytest.mark.parametrize("axis", [0, 1, 2])
@@ -100,14 +100,14 @@ def test_writhe_is_that_of_the_curve_to_second_order() -> None:
 def test_twisted_circles(k: int) -> None:
     t = angles(100)
     circle = np.stack([np.cos(t), np.sin(t), 0 * t], axis=1)
-    found, off = half_twists(circle, k / 2)
+    found, off = half_twists(k / 2, writhe(circle))
     assert found == k
     assert off < 1e-9
-    assert half_twists(circle, k / 2 + 0.1)[1] == pytest.approx(0.2)
+    assert half_twists(k / 2 + 0.1, writhe(circle))[1] == pytest.approx(0.2)
 
 
 def test_what_is_no_number_has_no_half_twists() -> None:
-    assert half_twists(np.full((9, 3), np.nan), 0.5) == (0, float("inf"))
+    assert half_twists(0.5, writhe(np.full((9, 3), np.nan))) == (0, float("inf"))
 
 
 @pytest.mark.parametrize("name", [*HALVES, "moebius_regularized", "moebius_whole"])

@@ -76,42 +76,51 @@ static PyObject *program_new(PyTypeObject *type, PyObject *args, PyObject *Py_UN
     return (PyObject *)self;
 }
 
-static PyObject *program_map(PyObject *self, PyObject *const *args, Py_ssize_t given)
+/* Read (count, mask, *inputs, *outputs) and find work; what is held is to be released in any case.
+ * Of steps that follow one another all share the first input. -1: an error. */
+static int take_arguments(const Program *p, PyObject *const *args, Py_ssize_t given, int chained,
+                          Py_ssize_t *count, long *shared, Held *held, double **data, double **work)
 {
-    const Program *p = &((ProgramObject *)self)->program;
     if (given != 2 + p->inputs + p->outputs) {
         PyErr_Format(PyExc_TypeError, "expected a count, a mask, %d inputs and %d outputs",
                      p->inputs, p->outputs);
-        return NULL;
+        return -1;
     }
-    Py_ssize_t count = PyLong_AsSsize_t(args[0]);
-    long shared = PyLong_AsLong(args[1]);
+    *count = PyLong_AsSsize_t(args[0]);
+    *shared = PyLong_AsLong(args[1]) | chained;
     if (PyErr_Occurred())
-        return NULL;
-    if (count < 0 || count > MOST) {
-        PyErr_Format(PyExc_ValueError, "count: found %zd, expected 0 to %d", count, MOST);
-        return NULL;
+        return -1;
+    if (*count < 0 || *count > MOST) {
+        PyErr_Format(PyExc_ValueError, "count: found %zd, expected 0 to %d", *count, MOST);
+        return -1;
     }
-    Held held = {0};
-    double *data[2 * MOST_ARRAYS];
     for (int i = 0; i < p->inputs + p->outputs; i++) {
-        int output = i >= p->inputs, fixed = !output && shared >> i & 1;
+        int output = i >= p->inputs, fixed = !output && *shared >> i & 1;
         size_t size = output ? p->sizes_out[i - p->inputs] : p->sizes_in[i];
-        size_t expected = fixed ? size : size * (size_t)count;
+        size_t expected = fixed ? size : size * (size_t)*count;
         char name[32];
         PyOS_snprintf(name, sizeof name, "argument %d", i);
-        data[i] = held_numbers(&held, args[2 + i], expected, output, name);
-        if (!data[i])
-            goto done;
+        if (!(data[i] = held_numbers(held, args[2 + i], expected, output, name)))
+            return -1;
     }
-    double *work = allocate((size_t)p->work * LANES, sizeof(double));
-    if (!work) {
+    if (!(*work = allocate((size_t)p->work * LANES, sizeof(double)))) {
         PyErr_NoMemory();
-        goto done;
+        return -1;
     }
+    return 0;
+}
+
+static PyObject *program_map(PyObject *self, PyObject *const *args, Py_ssize_t given)
+{
+    const Program *p = &((ProgramObject *)self)->program;
+    Py_ssize_t count;
+    long shared;
+    Held held = {0};
+    double *data[2 * MOST_ARRAYS], *work = NULL;
+    int failed = take_arguments(p, args, given, 0, &count, &shared, &held, data, &work);
     const double *in[MOST_ARRAYS * LANES];
     double *out[MOST_ARRAYS * LANES];
-    for (Py_ssize_t at = 0; at < count; at += LANES) {
+    for (Py_ssize_t at = 0; !failed && at < count; at += LANES) {
         int lanes = count - at < LANES ? (int)(count - at) : LANES;
         for (int l = 0; l < LANES; l++) {
             size_t place = at + (l < lanes ? l : 0);
@@ -123,9 +132,8 @@ static PyObject *program_map(PyObject *self, PyObject *const *args, Py_ssize_t g
         program_run(p, lanes, in, out, work);
     }
     release(work);
-done:
     held_release(&held);
-    if (PyErr_Occurred())
+    if (failed)
         return NULL;
     Py_RETURN_NONE;
 }
@@ -138,39 +146,14 @@ static PyObject *program_accumulate(PyObject *self, PyObject *const *args, Py_ss
         PyErr_SetString(PyExc_ValueError, "a step puts out what it takes first, and that alone");
         return NULL;
     }
-    if (given != 3 + p->inputs) {
-        PyErr_Format(PyExc_TypeError, "expected a count, a mask, %d inputs and an output",
-                     p->inputs);
-        return NULL;
-    }
-    Py_ssize_t count = PyLong_AsSsize_t(args[0]);
-    long shared = PyLong_AsLong(args[1]);
-    if (PyErr_Occurred())
-        return NULL;
-    if (count < 0 || count > MOST) {
-        PyErr_SetString(PyExc_ValueError, "count: beyond what there can be");
-        return NULL;
-    }
-    shared |= 1;
+    Py_ssize_t count;
+    long shared;
     Held held = {0};
-    double *data[MOST_ARRAYS + 1], *work = NULL;
-    for (int i = 0; i <= p->inputs; i++) {
-        size_t size = i < p->inputs ? p->sizes_in[i] : p->sizes_out[0];
-        int fixed = i < p->inputs && shared >> i & 1;
-        char name[32];
-        PyOS_snprintf(name, sizeof name, "argument %d", i);
-        data[i] = held_numbers(&held, args[2 + i], fixed ? size : size * (size_t)count,
-                               i == p->inputs, name);
-        if (!data[i])
-            goto done;
-    }
-    if (!(work = allocate((size_t)p->work * LANES, sizeof(double)))) {
-        PyErr_NoMemory();
-        goto done;
-    }
+    double *data[2 * MOST_ARRAYS], *work = NULL;
+    int failed = take_arguments(p, args, given, 1, &count, &shared, &held, data, &work);
     const double *in[MOST_ARRAYS * LANES] = {0};
     double *out[LANES] = {0};
-    for (Py_ssize_t at = 0; at < count; at++) {
+    for (Py_ssize_t at = 0; !failed && at < count; at++) {
         for (int i = 1; i < p->inputs; i++)
             in[i * LANES] = data[i] + (shared >> i & 1 ? 0 : at * p->sizes_in[i]);
         out[0] = data[p->inputs] + at * p->sizes_out[0];
@@ -178,9 +161,8 @@ static PyObject *program_accumulate(PyObject *self, PyObject *const *args, Py_ss
         program_run(p, 1, in, out, work);
     }
     release(work);
-done:
     held_release(&held);
-    if (PyErr_Occurred())
+    if (failed)
         return NULL;
     Py_RETURN_NONE;
 }
