@@ -32,6 +32,7 @@ from ribbonopt.mechanics.laws.parts import Relaxed
 from ribbonopt.mechanics.outputs import outputs, own_name, singular
 from ribbonopt.mechanics.rotations import product
 from ribbonopt.mechanics.section import Section
+from ribbonopt.scene.planes import said
 
 from .contract import BoundaryValueProblem, Phase
 from .equilibrium import local_stress
@@ -41,6 +42,7 @@ from .posed import RECOVERED, Posed
 from .potentials import Refusal, is_dead_force, without_potential
 from .ribbon import Ribbon
 
+REDUCED = "use states: reduced"
 WITHOUT = {
     "full": "costates of nine director components are not unique",
     "planar": "it is stated in space, where the scene's ends may not determine it",
@@ -198,5 +200,6 @@ def refusal(ribbon: Ribbon, posed: Posed) -> Refusal | None:
             "formulation",
         )
     if posed.scene.states in WITHOUT:
-        return Refusal(WITHOUT[posed.scene.states], "use states: reduced", "formulation")
+        instead = said(posed.scene).instead if posed.scene.states == "planar" else REDUCED
+        return Refusal(WITHOUT[posed.scene.states], instead, "formulation")
     return without_potential(ribbon)
