@@ -8,6 +8,7 @@ is the stiffness of the guard. Buckling loads are another matter: `ribbonopt.stu
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import reduce
 
 import numpy as np
@@ -96,6 +97,14 @@ def law_of(solution: Solution) -> ConstitutiveLaw:
         known[ConstitutiveLaw] = capabilities(solution.scene)
     found: ConstitutiveLaw = known[ConstitutiveLaw]
     return found
+
+
+def law_in_space(solution: Solution) -> ConstitutiveLaw:
+    """Return the relation of a solution's ribbon, were it held in no plane."""
+    scene = solution.scene
+    if scene.states != "planar":
+        return law_of(solution)
+    return capabilities(replace(scene, states="reduced", planar=False))
 
 
 def unknown_of(solution: Solution) -> list[str]:

@@ -16,7 +16,7 @@ from .parts import Switch
 from .relations import Components
 
 #: what a plane leaves as it is; where it is straight, and may leave the plane, as in space
-OF_RIBBON = ("developable", "natural", "linear_at_zero", "switch_name")
+OF_RIBBON = ("variational", "developable", "natural", "linear_at_zero", "switch_name")
 
 
 @dataclass(frozen=True, eq=False)
@@ -49,12 +49,13 @@ class BentLaw(ConstitutiveLaw):
     def moment(self, u: ca.SX) -> ca.SX:
         return self.B * (u[1] - self.k)
 
-    def energy(self, u: ca.SX) -> ca.SX:
-        return self.B * (u[1] - self.k) ** 2 / 2 - self.rest
+    def energy(self, u: ca.SX) -> ca.SX | None:
+        return self.B * (u[1] - self.k) ** 2 / 2 - self.rest if self.variational else None
 
-    def complementary_energy(self, stress: Stress) -> ca.SX:
+    def complementary_energy(self, stress: Stress) -> ca.SX | None:
         m2 = stress.m[1]
-        return m2**2 / (2 * self.B) + m2 * self.k + self.rest
+        found = m2**2 / (2 * self.B) + m2 * self.k + self.rest
+        return found if self.variational else None
 
     def switching(self, stress: Stress) -> Switch:
         return Switch(stress.m[1] - self.zero, ca.SX(0))
