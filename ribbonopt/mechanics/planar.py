@@ -131,7 +131,7 @@ class PlanarRod(RodModel):
         states, constants = self.balance.pack(fields, reference)
         (i, j), d3, (own, fixed) = self.plane.inside, fields.frames[:, :, 2], self._both
         turn = np.arctan2(self.plane.sign * d3[:, i], d3[:, j])
-        if (np.abs(turn[1:] - turn[:-1]) > np.pi).any():
+        if len(turn) > 1 and np.abs(turn[1:] - turn[:-1]).max() > np.pi:
             turn = np.unwrap(turn)
         x = np.empty((len(turn), 3 + len(own)))
         x[:, 0], x[:, 1], x[:, 2] = fields.r[:, i], fields.r[:, j], turn
