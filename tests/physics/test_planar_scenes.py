@@ -1,6 +1,7 @@
 """`planar: true`: answers of elliptic integrals, those in space, and stability judged there."""
 
 from dataclasses import replace
+from pathlib import Path
 
 import mpmath as mp
 import numpy as np
@@ -13,7 +14,7 @@ from ribbonopt.accuracy.estimate import estimate_error
 from ribbonopt.arrays import Array
 from ribbonopt.checks.stability import SecondVariation, second_variation
 from ribbonopt.errors import ModelError, SceneError
-from ribbonopt.scene import Scene, loads_scene
+from ribbonopt.scene import Scene, load_scene, loads_scene
 from ribbonopt.solution.solution import Solution
 
 TURNED = "d3: [0.6, 0, 0.8], d1: [0.8, 0, -0.6]"
@@ -195,3 +196,14 @@ def test_a_rod_soft_in_twist_leaves_its_plane_where_a_determinant_vanishes() -> 
     for B3, across in ((0.998 * critical, 1), (1.002 * critical, 0)):
         found = variation(mode(f"type: kirchhoff, B3: {B3}", 1))
         assert (found.negative, found.in_plane) == (1 + across, 1)
+
+
+@pytest.mark.parametrize(("offset", "negative"), [(-1e-4, 0), (1e-4, 1)])
+def test_the_shipped_arch_gives_way_across_its_plane(
+    configs: Path, offset: float, negative: int
+) -> None:
+    """Where the determinant of those disturbances vanishes, at a shortening of 0.58208583."""
+    scene = load_scene(configs / "arch_planar.yaml")
+    at = {"shortening": 0.58208583 + offset}
+    found = variation(replace(scene, parameters=at, continuation=None))
+    assert (found.negative, found.in_plane or 0) == (negative, 0)
