@@ -25,7 +25,7 @@ from ribbonopt.scene import ContinuationStage, Scene, load_scene
 
 CONFIGS = Path(__file__).parents[1] / "configs"
 SCENE, FORCE = "elastica_clamped", -45.2259556678  # and its axial force, by elliptic integrals
-TOLERANCE, TIMES, FEWER = 1e-9, 101, 7
+TOLERANCE, TIMES, FEWER, NEIGHBOURS = 1e-9, 101, 7, 50
 WAYS = {"space": False, "plane": True}
 
 
@@ -73,6 +73,21 @@ def planar_case(name: str = SCENE, force: float = FORCE, times: int = TIMES) -> 
     }
 
 
+def neighbours(scene: Scene) -> Callable[[], object]:
+    """Return what solves ribbons one after the other, as a batch does."""
+    prepared = prepare(scene)
+    solved = prepared.solve()
+
+    def work() -> None:
+        found = solved
+        for shortening in np.linspace(0.25, 0.4, NEIGHBOURS):
+            moved = replace(prepared.scene, parameters={"shortening": float(shortening)})
+            found = prepared.solve(moved, guess=found)
+            assert found.verified
+
+    return work
+
+
 def cold(scene: Scene) -> Callable[[], object]:
     """Return what builds and solves a scene."""
     return lambda: prepare(scene).solve()
@@ -88,6 +103,7 @@ def main() -> None:
         "cold, guess given": {way: cold(scene) for way, scene in both().items()},
         "cold, from nothing": {way: cold(scene) for way, scene in both(guess="auto").items()},
     }
+    cases["50 neighbours"] = {way: neighbours(scene) for way, scene in both().items()}
     named = {"branch": stage, "branch with stability": stable}
     for words, one in named.items():
         scenes = both(continuation=one)

@@ -17,7 +17,7 @@ from ribbonopt.arrays import Array
 from ribbonopt.classes import dataclass
 from ribbonopt.mechanics.ends.boundary import conditions_of, start_frame, start_position
 from ribbonopt.mechanics.ends.conditions import Condition
-from ribbonopt.mechanics.laws.asymmetry import changed_by_flip, leaves_plane
+from ribbonopt.mechanics.laws.asymmetry import changed_by_flip, leaves_plane, never_bent
 from ribbonopt.mechanics.laws.catalogue import bends_alone, fields_of, membrane_numbers, numbers_of
 from ribbonopt.mechanics.loads.load import Load
 from ribbonopt.scene import Loads, Scene
@@ -171,7 +171,8 @@ class Posed:
         """What scenes share whose equations are the same, whatever solves them."""
         scene, like = self.scene, self.like
         # In a plane natural strains of a law may take it out of that.
-        if like is not None and scene.states != "planar" and self.theta.keys() == like.theta.keys():
+        same = scene.states != "planar" or never_bent(scene)
+        if like is not None and same and self.theta.keys() == like.theta.keys():
             return like.equations
         conditions = tuple(
             (type(c).__name__, *(v for v in vars(c).values() if isinstance(v, str)))
