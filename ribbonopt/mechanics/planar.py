@@ -148,6 +148,13 @@ class PlanarRod(RodModel):
     def defect(self, x: Array) -> tuple[Array, Array]:
         return np.empty(0), np.empty((0, len(x)))
 
+    def of_costates(self, x: ca.SX, costate: ca.SX, dead: ca.SX, reference: ca.SX) -> ca.SX:
+        (i, j), n, m, arm = self.plane.inside, ca.SX(3, 1), ca.SX(3, 1), ca.SX(3, 1)
+        n[i], n[j] = costate[0] + dead[i], costate[1] + dead[j]
+        m[self.plane.axis] = self.plane.sign * costate[2]
+        arm[i], arm[j] = x[0] - reference[i], x[1] - reference[j]
+        return ca.vertcat(n, m - ca.cross(n, arm))
+
     def moved(self, x: Array, c: Array, reference: Array) -> tuple[Array, Array]:
         (i, j), k = self.plane.inside, self.plane.axis
         result = np.zeros((len(x), 6))

@@ -36,7 +36,7 @@ def _refuse_loads(posed: Posed, loop: Loop) -> None:
         acting = [name for name in acting if name != "loads.pressure"]
     if not acting:
         return
-    plane = ", or in a plane planar: true" if acting == ["loads.pressure"] else ""
+    plane = ", or in a plane states: planar" if acting == ["loads.pressure"] else ""
     raise ModelError(
         f"boundary.loop.piece: {loop.piece} stands for all of the loop by flips, after which "
         f"{acting[0]} is another; solve piece: whole{plane}, or the piece with ends of its own "
