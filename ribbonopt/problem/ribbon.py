@@ -130,7 +130,7 @@ class Ribbon:
         loaded = self.loads or self.stations
         return ("H",) if self.law.variational and self.uniform and not loaded else ()
 
-    @property
+    @cached_property
     def states(self) -> tuple[str, ...]:
         """Names of the states along s: those of the model, then those of the law."""
         return (*self.model.states, *self.law.states)
