@@ -114,8 +114,8 @@ def layers(trajectory: Trajectory, phase: int) -> Layers:
     None for shooting, which takes many steps in an element, none of which is known here.
     """
     stages = trajectory.dense.blocks.layout.stages
-    rows = trajectory.singular_at_stages(phase) if stages else np.empty(0)
-    if not rows.size:
+    rows = trajectory.singular_at_stages(phase) if stages else None
+    if rows is None or not rows.size:
         return Layers.none()
     _, sigma, _, phases = trajectory.stages
     if len(trajectory.ends) > 2:

@@ -63,6 +63,10 @@ class Structure:
         from ribbonopt.problem.energy import minimum  # only where there is no guess
 
         ribbon = Ribbon.of(posed)
+        if posed.scene.states == "planar":
+            from ribbonopt.problem.wellposed.plane import in_plane  # few scenes are held in one
+
+            ribbon = in_plane(ribbon, posed)
         return cls(posed, ribbon, minimum(ribbon))
 
     def in_phases(self, kinds: Kinds, *, free: bool = False) -> Structure:

@@ -104,7 +104,7 @@ def gauss_stages(solution: Solution, ribbon: Ribbon, theta: Array) -> GaussStage
     if ribbon.stations:
         ends = trajectory.ends[[0, *turns, -1]]
         x = np.hstack([x, _held(solution, ribbon, np.insert(places, at, ends), fields.r)])
-    x = np.hstack([x, *(every[own_name(name)][:, None] for name in ribbon.law.states)])
+    x = np.hstack([x, *(_own(every, name)[:, None] for name in ribbon.law.states)])
     z = _controls(every, ribbon, np.insert(places, at, trajectory.ends[[0, *turns, -1]]), theta)
     rows = at + np.arange(len(at))
     inside = np.delete(np.arange(len(x)), rows)
@@ -126,7 +126,7 @@ def gauss_stages(solution: Solution, ribbon: Ribbon, theta: Array) -> GaussStage
 
 def _controls(o: Mapping[str, Array], ribbon: Ribbon, fraction: Array, theta: Array) -> Array:
     """Return the controls (k, nz) of the law, of named outputs at fractions (k,) of the length."""
-    states = [own_name(name) for name in ribbon.law.indirect().states]
+    states = ribbon.law.indirect().states
     local, (start, end) = ca.SX.sym("local", 6 + len(states)), ribbon.interval
     share = ca.SX.sym("share")
     place = start + share * (end - start)
@@ -135,9 +135,16 @@ def _controls(o: Mapping[str, Array], ribbon: Ribbon, fraction: Array, theta: Ar
     function = Mapped(
         ca.Function("controls", [local, ca.SX(0, 1), ribbon.parameters, share], [controls])
     )
-    given = [o[f"{load}{i}"] for load in "nm" for i in (1, 2, 3)] + [o[name] for name in states]
+    given = [o[f"{load}{i}"] for load in "nm" for i in (1, 2, 3)]
+    given += [_own(o, name) for name in states]
     (found,) = function(np.column_stack(given), np.empty(0), theta, fraction)
     return found.reshape(len(fraction), -1)
+
+
+def _own(o: Mapping[str, Array], state: str) -> Array:
+    """Return a state of the law's own, of named outputs: zero in a plane, where none has any."""
+    name = own_name(state)
+    return o[name] if name in o else np.zeros(len(o["r"]))
 
 
 def _held(solution: Solution, ribbon: Ribbon, fraction: Array, r: Array) -> Array:

@@ -28,8 +28,8 @@ def planar_problems(solution: Solution) -> list[str]:
         return []
     return [
         "the answer lies in a plane, though nothing holds it there: it may be unstable, and others "
-        "may leave the plane (try `starts`, or `stability: true` in a `continuation`; `states: "
-        "planar` says that the plane is meant)"
+        "may leave the plane (try `starts`, or `stability: true` in a `continuation`; `planar: "
+        "true` says that the plane is meant)"
     ]
 
 

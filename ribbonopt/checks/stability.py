@@ -16,15 +16,16 @@ import numpy as np
 
 from ribbonopt.accuracy.spin import SPIN, spins
 from ribbonopt.classes import dataclass
+from ribbonopt.mechanics.laws.catalogue import bends_alone
 from ribbonopt.problem import BoundaryValueProblem, Ribbon
 from ribbonopt.problem.potentials import without_potential
 from ribbonopt.solution.solution import Solution
 
 from .arcs import NEGLIGIBLE, sign_changes
 from .elimination import factored
-from .in_plane import mechanics, planar_posed
+from .in_plane import mechanics, planar_posed, posed_in_plane
 from .variation import Energy, Variation
-from .zero_moment import faded_share, law_of, unbent_share
+from .zero_moment import faded_share, law_in_space, law_of, unbent_share
 
 T = TypeVar("T")
 
@@ -42,7 +43,8 @@ class SecondVariation:
     `negative` is the number of its clearly negative eigenvalues, those below -`neutral`. `error` is
     that of eigenvalues, over the largest, which is about `largest`. Units Dw = L = 1. `spins` says
     that one is zero since an isotropic rod spins, which is neither for nor against it; `planar`
-    that only directions in the ribbon's plane were looked at.
+    that only directions in the ribbon's plane were looked at. `in_plane` is how many are in that,
+    of an unstable ribbon that is held there; None where it is not known.
     """
 
     negative: int
@@ -51,6 +53,7 @@ class SecondVariation:
     largest: float
     spins: bool = False
     planar: bool = False
+    in_plane: int | None = None
 
     @property
     def verdict(self) -> str:
@@ -58,6 +61,12 @@ class SecondVariation:
         count = f"{self.negative} negative direction{'s' if self.negative > 1 else ''}"
         found = f"unstable: {count}" if self.negative else "stable"
         found += " in its plane" if self.planar else ""
+        if self.in_plane is not None:
+            found = (
+                f"{found}, {self.in_plane} of them in its plane"
+                if self.in_plane
+                else f"stable in its plane, {found} in space"
+            )
         return f"{found}; neutral: {SPIN}" if self.spins else found
 
 
@@ -82,6 +91,19 @@ def why_not(solution: Solution) -> str:
     return found if isinstance(found, str) else ""
 
 
+def told_of_plane(solution: Solution) -> str:
+    """Say what the count of negative directions means of a ribbon that is held in a plane.
+
+    Empty where there is none, in space, or where it is stable in space.
+    """
+    found = second_variation(solution)
+    if isinstance(found, str):
+        return ""
+    if found.planar:
+        return "directions across the plane are not counted, where the loads have no potential"
+    return "" if found.in_plane is None else found.verdict
+
+
 def second_variation(solution: Solution) -> SecondVariation | str:
     """Return the second variation of the energy or, in words, why there is none.
 
@@ -103,14 +125,29 @@ def _judged(variation: Variation | str, solution: Solution) -> SecondVariation |
     neutral = max(error, ROUNDING) * largest
     negative = factored(variation.form, neutral).negative
     planar = planar_posed(solution) is not None
-    return SecondVariation(negative, neutral, error, largest, spins(solution), planar)
+    inside = None if planar or not negative else _negative_in_plane(solution)
+    return SecondVariation(negative, neutral, error, largest, spins(solution), planar, inside)
+
+
+def _negative_in_plane(solution: Solution) -> int | None:
+    """Negative directions in the plane of a ribbon that is held there; None where not known."""
+    posed = posed_in_plane(solution)
+    if posed is None or not bends_alone(posed.scene):
+        return None
+    energy = _once(solution.problem.kept(_planar), lambda: Energy.of(mechanics(posed)))
+    found = energy.variation(solution, posed.values)
+    if not found.error < MOST:
+        return None
+    neutral = max(found.error, ROUNDING) * found.largest
+    return factored(found.form, neutral).negative
 
 
 def variation_of(solution: Solution) -> Variation | str:
     """Return the second variation as a quadratic form or, in words, why there is none."""
     if not solution.status.converged:
         return NO_EQUILIBRIUM
-    name, law = solution.scene.law.type, law_of(solution)
+    within = planar_posed(solution)
+    name, law = solution.scene.law.type, law_of(solution) if within else law_in_space(solution)
     if not law.variational:
         return f"the law {name} has no energy"
     if law.states and law.direct() is law:
@@ -124,7 +161,7 @@ def variation_of(solution: Solution) -> Variation | str:
         kinked = _on_the_kink(solution, law.switch_name) if law.kinked else "at its kinks"
         if kinked:
             return f"{none} {kinked}"
-    posed = planar_posed(solution) or solution.posed.under(formulation="energy", states="reduced")
+    posed = within or solution.posed.under(formulation="energy", states="reduced")
     ribbon = _once(solution.problem.kept(_ribbons), lambda: mechanics(posed))
     # With the conditions of this very scene: whether they are zero decides.
     refused = without_potential(replace(ribbon, conditions=posed.conditions))
@@ -169,6 +206,11 @@ def _once(store: list[T], make: Callable[[], T]) -> T:
 
 def _ribbons(problem: BoundaryValueProblem) -> list[Ribbon]:
     """Return the place where a problem keeps the mechanics of its energy."""
+    return []
+
+
+def _planar(problem: BoundaryValueProblem) -> list[Energy]:
+    """Return the place where a problem keeps what is built of its energy in its plane."""
     return []
 
 

@@ -8,7 +8,9 @@ is the stiffness of the guard. Buckling loads are another matter: `ribbonopt.stu
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import reduce
+from typing import NamedTuple
 
 import numpy as np
 from numpy.typing import NDArray
@@ -30,6 +32,12 @@ WORDS = (
 FADED = (
     "m2 and m3 fade away into rounding along the ribbon: stability and branch points are not known"
 )
+
+
+class InSpace(NamedTuple):
+    """The relation of a solution's ribbon, were it held in no plane."""
+
+    law: ConstitutiveLaw
 
 
 def unbent_share(solution: Solution, law: ConstitutiveLaw) -> float:
@@ -96,6 +104,18 @@ def law_of(solution: Solution) -> ConstitutiveLaw:
         known[ConstitutiveLaw] = capabilities(solution.scene)
     found: ConstitutiveLaw = known[ConstitutiveLaw]
     return found
+
+
+def law_in_space(solution: Solution) -> ConstitutiveLaw:
+    """Return the relation of a solution's ribbon, were it held in no plane."""
+    scene = solution.scene
+    if scene.states != "planar":
+        return law_of(solution)
+    known = solution.trajectory.found
+    if InSpace not in known:
+        known[InSpace] = InSpace(capabilities(replace(scene, states="reduced", planar=False)))
+    found: InSpace = known[InSpace]
+    return found.law
 
 
 def unknown_of(solution: Solution) -> list[str]:

@@ -39,8 +39,8 @@ class IntegratedLoads:
     @property
     def _most_strain(self) -> float:
         """Bound of the strains, for stiffness 1: the force may act on all of the length."""
-        n, m = (np.abs(v).max() for v in (self.loads.force, self.loads.moment))
-        return float(m + self.posed.length * n) + free_strain(self.posed)
+        n, m = (max(map(abs, v)) for v in (self.loads.force, self.loads.moment))
+        return m + self.posed.length * n + free_strain(self.posed)
 
     def fields(self, fraction: Array) -> RodFields:
         """Fields at fractions (k,) of the length, increasing from 0 to 1."""
@@ -85,7 +85,7 @@ def _bounded_strain(posed: Posed, loads: LoadGuess) -> float:
     """Bound of the strains by H = W + n3, |u|^2 <= 2 W; infinite where H is not constant."""
     if posed.loaded or not all(field.uniform for field in fields_of(posed.scene)):
         return math.inf
-    n, m = (float(np.linalg.norm(v)) for v in (loads.force, loads.moment))
+    n, m = math.hypot(*loads.force), math.hypot(*loads.moment)
     return math.sqrt((m + free_strain(posed)) ** 2 + 4 * n)
 
 

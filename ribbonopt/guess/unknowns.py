@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING, Protocol, runtime_checkable
+from typing import TYPE_CHECKING, Protocol
 
 import casadi as ca
 import numpy as np
@@ -22,7 +22,6 @@ class Guess(Protocol):
         """Fields at fractions (k,) of the length, increasing from 0 to 1."""
 
 
-@runtime_checkable
 class Solved(Guess, Protocol):
     """A guess that may have the unknowns themselves."""
 
@@ -48,7 +47,8 @@ def initial_unknowns(
     layout, theta = blocks.layout, blocks.layout.theta(p)
     ends = np.concatenate([[0.0], [] if switches is None else switches, [1.0]])
     fractions = places_of(blocks, p, ends)
-    known = guess.unknowns_for(problem, theta, fractions) if isinstance(guess, Solved) else None
+    own = getattr(guess, "unknowns_for", None)  # of a `Solved`: its check would take longer
+    known = None if own is None else own(problem, theta, fractions)
     v, constants = known or _from_fields(guess, ribbon, problem, theta, fractions)
     if switches is not None and len(switches):
         names = [problem.parameter_names.index(f"interval.{end}") for end in ("start", "end")]

@@ -28,7 +28,7 @@ from ribbonopt.classes import dataclass
 from .balance import Balance, ConstantForce, DeadLoads, ForceMomentStates
 from .loads.load import DeadLoad, Load, Theta
 from .orientation import DirectorTriad, Orientation, UnitQuaternion
-from .rotations import cross_matrix, matrix_of
+from .rotations import cross_matrix, matrix_of, product
 from .section import RodFields, Section
 
 if TYPE_CHECKING:
@@ -103,6 +103,13 @@ class RodModel(ABC):
         """Residuals (k,) and Jacobian (k, nx) of what makes states (nx,) those of a frame."""
 
     @abstractmethod
+    def of_costates(self, x: ca.SX, costate: ca.SX, dead: ca.SX, reference: ca.SX) -> ca.SX:
+        """Force and moment about the reference (6,), lab frame, from costates: `problem.energy`.
+
+        `dead` (3,) is the force that these are without.
+        """
+
+    @abstractmethod
     def moved(self, x: Array, c: Array, reference: Array) -> tuple[Array, Array]:
         """Return the changes (nx, 6) and (nc, 6) by unit translations and turns."""
 
@@ -171,6 +178,12 @@ class SpatialRod(RodModel):
         q, jacobian = x[3:7], np.zeros((1, len(x)))
         jacobian[0, 3:7] = 2 * q
         return np.array([q @ q - 1]), jacobian
+
+    def of_costates(self, x: ca.SX, costate: ca.SX, dead: ca.SX, reference: ca.SX) -> ca.SX:
+        n, q = costate[:3] + dead, ca.vertsplit(x[3:7])
+        basis = ((0, 1, 0, 0), (0, 0, 1, 0), (0, 0, 0, 1))
+        m = ca.vertcat(*(ca.dot(costate[3:7], ca.vertcat(*product(e, q))) / 2 for e in basis))
+        return ca.vertcat(n, m - ca.cross(n, x[:3] - reference))
 
     def moved(self, x: Array, c: Array, reference: Array) -> tuple[Array, Array]:
         result = np.zeros((len(x), 6))

@@ -8,6 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping
 from dataclasses import replace
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import casadi as ca
@@ -16,6 +17,7 @@ import numpy as np
 from ribbonopt.arrays import Array
 from ribbonopt.classes import dataclass
 from ribbonopt.errors import ModelError
+from ribbonopt.scene.planes import Said
 
 from .balance import Balance
 from .loads.load import Load, Theta
@@ -38,8 +40,8 @@ class Plane:
     sign: int
 
     @classmethod
-    def of(cls, frame: Array) -> Plane:
-        """Return the plane across d2 of a frame (3, 3).
+    def of(cls, frame: Array, words: Said) -> Plane:
+        """Return the plane across d2 of a frame (3, 3); `words` are those that ask for it.
 
         Raises
         ------
@@ -51,9 +53,9 @@ class Plane:
         if abs(d2[axis]) < ALONG:
             found = ", ".join(f"{v:.3g}" for v in d2)
             raise ModelError(
-                f"states: planar needs d2 at the start along an axis of the lab, found ({found}); "
-                "turn the scene, or use states: reduced",
-                "states",
+                f"{words.words} needs d2 at the start along an axis of the lab, found ({found}); "
+                f"turn the scene, or {words.instead}",
+                words.key,
             )
         return cls(axis, 1 if d2[axis] > 0 else -1)
 
@@ -78,12 +80,11 @@ class PlanarRod(RodModel):
 
     @property
     def states(self) -> tuple[str, ...]:
-        names = (self.balance.states[i] for i in self._kept(self.balance.states))
-        return (*(f"r{AXES[i]}" for i in self.plane.inside), "turn", *names)
+        return self._names[0]
 
     @property
     def constants(self) -> tuple[str, ...]:
-        return tuple(self.balance.constants[i] for i in self._kept(self.balance.constants))
+        return self._names[1]
 
     @property
     def unknowns(self) -> Mapping[str, int]:
@@ -112,7 +113,7 @@ class PlanarRod(RodModel):
 
     def rates(self, x: ca.SX, section: Section, u: ca.SX) -> ca.SX:
         own = self._whole(self.balance.states, x[3:])
-        rest = self.balance.rates(section, own)[self._kept(self.balance.states)]
+        rest = self.balance.rates(section, own)[self._both[0]]
         return ca.vertcat(section.tangent[list(self.plane.inside)], u[1], rest)
 
     def beyond(self, s: ca.SX) -> ca.SX:
@@ -128,14 +129,14 @@ class PlanarRod(RodModel):
 
     def pack(self, fields: RodFields, reference: Array) -> tuple[Array, Array]:
         states, constants = self.balance.pack(fields, reference)
-        a, b = self.plane.basis
-        d3 = fields.frames[:, :, 2]
-        turn = np.unwrap(np.arctan2(d3 @ a, d3 @ b))
-        inside = fields.r[:, self.plane.inside]
-        kept = states[:, self._kept(self.balance.states)]
-        return np.hstack([inside, turn[:, None], kept]), constants[
-            self._kept(self.balance.constants)
-        ]
+        (i, j), d3, (own, fixed) = self.plane.inside, fields.frames[:, :, 2], self._both
+        turn = np.arctan2(self.plane.sign * d3[:, i], d3[:, j])
+        if len(turn) > 1 and np.abs(turn[1:] - turn[:-1]).max() > np.pi:
+            turn = np.unwrap(turn)
+        x = np.empty((len(turn), 3 + len(own)))
+        x[:, 0], x[:, 1], x[:, 2] = fields.r[:, i], fields.r[:, j], turn
+        x[:, 3:] = states[:, own]
+        return x, constants[fixed]
 
     def place(self, x: Array) -> tuple[Array, Array]:
         r = np.zeros(3)
@@ -147,6 +148,13 @@ class PlanarRod(RodModel):
     def defect(self, x: Array) -> tuple[Array, Array]:
         return np.empty(0), np.empty((0, len(x)))
 
+    def of_costates(self, x: ca.SX, costate: ca.SX, dead: ca.SX, reference: ca.SX) -> ca.SX:
+        (i, j), n, m, arm = self.plane.inside, ca.SX(3, 1), ca.SX(3, 1), ca.SX(3, 1)
+        n[i], n[j] = costate[0] + dead[i], costate[1] + dead[j]
+        m[self.plane.axis] = self.plane.sign * costate[2]
+        arm[i], arm[j] = x[0] - reference[i], x[1] - reference[j]
+        return ca.vertcat(n, m - ca.cross(n, arm))
+
     def moved(self, x: Array, c: Array, reference: Array) -> tuple[Array, Array]:
         (i, j), k = self.plane.inside, self.plane.axis
         result = np.zeros((len(x), 6))
@@ -156,11 +164,24 @@ class PlanarRod(RodModel):
         result[:2, 3 + k] = np.cross(np.eye(3)[k], off)[[i, j]]
         result[2, 3 + k] = self.plane.sign
         whole = [np.zeros(len(names)) for names in (self.balance.states, self.balance.constants)]
-        kept = [self._kept(names) for names in (self.balance.states, self.balance.constants)]
+        kept = self._both
         whole[0][kept[0]], whole[1][kept[1]] = x[3:], c
         states, constants = self.balance.moved(*whole)
         result[3:] = states[kept[0]]
         return result, constants[kept[1]]
+
+    @cached_property
+    def _both(self) -> tuple[list[int], list[int]]:
+        """Places in the plane of the states and of the constants of the balance."""
+        return self._kept(self.balance.states), self._kept(self.balance.constants)
+
+    @cached_property
+    def _names(self) -> tuple[tuple[str, ...], tuple[str, ...]]:
+        """Names of states and of constants."""
+        (own, fixed), balance = self._both, self.balance
+        place = (f"r{AXES[i]}" for i in self.plane.inside)
+        states = (*place, "turn", *(balance.states[i] for i in own))
+        return states, tuple(balance.constants[i] for i in fixed)
 
     def _directors(self, turn: ca.SX) -> tuple[ca.SX, ca.SX, ca.SX]:
         a, b = (ca.SX(ca.sparsify(ca.DM(v))) for v in self.plane.basis)

@@ -30,8 +30,8 @@ from ribbonopt.mechanics.ends.placement import LoadAlong
 from ribbonopt.mechanics.laws.law import ConstitutiveLaw, Stress
 from ribbonopt.mechanics.laws.parts import Relaxed
 from ribbonopt.mechanics.outputs import outputs, own_name, singular
-from ribbonopt.mechanics.rotations import product
 from ribbonopt.mechanics.section import Section
+from ribbonopt.scene.planes import said
 
 from .contract import BoundaryValueProblem, Phase
 from .equilibrium import local_stress
@@ -41,6 +41,7 @@ from .posed import RECOVERED, Posed
 from .potentials import Refusal, is_dead_force, without_potential
 from .ribbon import Ribbon
 
+REDUCED = "use states: reduced"
 WITHOUT = {
     "full": "costates of nine director components are not unique",
     "planar": "it is stated in space, where the scene's ends may not determine it",
@@ -91,10 +92,10 @@ def minimum(ribbon: Ribbon) -> BoundaryValueProblem:
     first, last = (point[:count] for point in points)
     conditions = residuals(ribbon, first, last, loads, kinematic_only=True)
     conditions |= held.conditions(*points)
-    found: list[ca.SX] = []
-    if set(RECOVERED) <= set(names):  # not in a plane, where only its second variation is asked for
-        found += _loads(points[0], costate, at_start + held.force(costate), ribbon)
-        found += held.reactions(costate)
+    dead = at_start + held.force(costate)
+    at_reference = ribbon.model.of_costates(points[0], costate, dead, ribbon.reference)
+    known = dict(zip(RECOVERED, ca.vertsplit(at_reference), strict=True))  # in a plane too many
+    found = [known[name] for name in names if name in known] + held.reactions(costate)
     return BoundaryValueProblem(
         position=ribbon.position,
         state=x,
@@ -181,14 +182,6 @@ def dead_force(ribbon: Ribbon) -> ca.SX:
     return force
 
 
-def _loads(start: ca.SX, costate: ca.SX, dead: ca.SX, ribbon: Ribbon) -> list[ca.SX]:
-    """Force and moment about the reference (lab frame) from the costates at the start."""
-    n, q = costate[:3] + dead, ca.vertsplit(start[3:7])
-    basis = ((0, 1, 0, 0), (0, 0, 1, 0), (0, 0, 0, 1))
-    m = ca.vertcat(*(ca.dot(costate[3:7], ca.vertcat(*product(e, q))) / 2 for e in basis))
-    return ca.vertsplit(ca.vertcat(n, m - ca.cross(n, start[:3] - ribbon.reference)))
-
-
 def refusal(ribbon: Ribbon, posed: Posed) -> Refusal | None:
     """Return why a scene's equilibrium cannot be stated as a minimum; None if it can."""
     if not ribbon.law.variational:
@@ -198,5 +191,6 @@ def refusal(ribbon: Ribbon, posed: Posed) -> Refusal | None:
             "formulation",
         )
     if posed.scene.states in WITHOUT:
-        return Refusal(WITHOUT[posed.scene.states], "use states: reduced", "formulation")
+        instead = said(posed.scene).instead if posed.scene.states == "planar" else REDUCED
+        return Refusal(WITHOUT[posed.scene.states], instead, "formulation")
     return without_potential(ribbon)

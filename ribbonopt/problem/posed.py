@@ -17,11 +17,12 @@ from ribbonopt.arrays import Array
 from ribbonopt.classes import dataclass
 from ribbonopt.mechanics.ends.boundary import conditions_of, start_frame, start_position
 from ribbonopt.mechanics.ends.conditions import Condition
-from ribbonopt.mechanics.laws.asymmetry import changed_by_flip, leaves_plane
-from ribbonopt.mechanics.laws.catalogue import fields_of, membrane_numbers, numbers_of
+from ribbonopt.mechanics.laws.asymmetry import changed_by_flip, leaves_plane, never_bent
+from ribbonopt.mechanics.laws.catalogue import bends_alone, fields_of, membrane_numbers, numbers_of
 from ribbonopt.mechanics.loads.load import Load
 from ribbonopt.scene import Loads, Scene
 from ribbonopt.scene.laws import OfWidth
+from ribbonopt.scene.planes import held
 from ribbonopt.scene.units import Units, in_special_units, units_of
 
 if TYPE_CHECKING:
@@ -68,7 +69,7 @@ class Posed:
     @classmethod
     def of(cls, scene: Scene, units: Units | None = None) -> Posed:
         """Pose a scene; in units of another one where they are to be compared number by number."""
-        units = units or units_of(scene)
+        scene, units = held(scene), units or units_of(scene)
         special = in_special_units(scene, units)
         loads: tuple[Load, ...] = ()
         if special.loads != NO_LOADS or special.gravity is not None:
@@ -87,7 +88,7 @@ class Posed:
 
         Where the law alone has others, its ends and loads are not evaluated again.
         """
-        units = units or units_of(scene)
+        scene, units = held(scene), units or units_of(scene)
         special, before = in_special_units(scene, units), self.scene
         kept = (
             value is vars(before)[name] for name, value in vars(special).items() if name != "law"
@@ -103,9 +104,10 @@ class Posed:
         """Return the same ribbon, at the same ends, under other settings of the special scene.
 
         `changes` are fields of the scene other than boundary and interval: another law, another
-        formulation. Numbers that stay are not evaluated again.
+        formulation. Numbers that stay are not evaluated again. States named here are those wanted.
         """
-        special = replace(self.scene, **changes)
+        planar = self.scene.planar and "states" not in changes
+        special = replace(self.scene, **{"planar": planar, **changes})
         conditions, before = self.conditions, self.scene
         looped = special.boundary.loop is not None and special.formulation != before.formulation
         # A loop closes otherwise where energy is minimised; some laws have edges, others none.
@@ -169,7 +171,8 @@ class Posed:
         """What scenes share whose equations are the same, whatever solves them."""
         scene, like = self.scene, self.like
         # In a plane natural strains of a law may take it out of that.
-        if like is not None and scene.states != "planar" and self.theta.keys() == like.theta.keys():
+        same = scene.states != "planar" or never_bent(scene)
+        if like is not None and same and self.theta.keys() == like.theta.keys():
             return like.equations
         conditions = tuple(
             (type(c).__name__, *(v for v in vars(c).values() if isinstance(v, str)))
@@ -179,10 +182,11 @@ class Posed:
         loads += tuple(tuple(type(a) for a in station.actions) for station in self.stations)
         settings = type(scene.law), scene.formulation, scene.states
         # In a plane, which conditions are left depends on what plane it is; natural strains tell
-        # whether there is one, and whether a piece of a loop stands for all of it.
+        # whether there is one, what law holds in it, and whether a piece stands for all of a loop.
         plane: tuple[object, ...] = ()
         if scene.states == "planar":
             plane = *self.start[1][:, 1].round().tolist(), leaves_plane(scene, self.theta)
+            plane = *plane, bends_alone(scene)
         plane = *plane, changed_by_flip(scene, self.theta)
         along = tuple(field.structure for field in fields_of(scene))
         return *settings, tuple(self.theta), conditions, along, loads, scene.boundary.also, plane

@@ -15,11 +15,12 @@ import casadi as ca
 
 from ribbonopt.classes import dataclass
 from ribbonopt.mechanics.ends.conditions import Condition, CrossSection
-from ribbonopt.mechanics.laws.catalogue import relation_of
+from ribbonopt.mechanics.laws.catalogue import held_law, relation_of
 from ribbonopt.mechanics.laws.law import ConstitutiveLaw, Stress
 from ribbonopt.mechanics.loads.load import Load
 from ribbonopt.mechanics.model import RodModel, full_model, least_model
 from ribbonopt.mechanics.section import Section
+from ribbonopt.scene.planes import said
 
 from .posed import Posed
 
@@ -64,7 +65,7 @@ class Ribbon:
     def of(cls, posed: Posed) -> Ribbon:
         """Return the mechanics of a posed scene, its numbers as symbols."""
         theta, position = {name: ca.SX.sym(name) for name in posed.theta}, ca.SX.sym("s")
-        law = relation_of(posed.scene, theta.__getitem__, position)
+        law = held_law(posed.scene, relation_of(posed.scene, theta.__getitem__, position))
         law = law.direct() if posed.scene.formulation == "energy" else law
         model = _model_of(posed, theta)
         parts = posed.conditions, posed.loads, theta, position
@@ -129,7 +130,7 @@ class Ribbon:
         loaded = self.loads or self.stations
         return ("H",) if self.law.variational and self.uniform and not loaded else ()
 
-    @property
+    @cached_property
     def states(self) -> tuple[str, ...]:
         """Names of the states along s: those of the model, then those of the law."""
         return (*self.model.states, *self.law.states)
@@ -194,5 +195,6 @@ def _model_of(posed: Posed, theta: Mapping[str, ca.SX]) -> RodModel:
     if states == "planar":
         from ribbonopt.mechanics.planar import Plane, planar_model  # few scenes are in a plane
 
-        return planar_model(*parts, Plane.of(posed.start[1]), stations)
+        plane = Plane.of(posed.start[1], said(posed.scene))
+        return planar_model(*parts, plane, stations)
     return full_model(*parts, stations) if states == "full" else least_model(*parts, stations)

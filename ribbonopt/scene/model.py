@@ -193,6 +193,8 @@ class Scene:
 
     In a file with `ribbon` the interval is by default all of its length, or the piece of a loop.
     `width` is that along s in units of the ribbon's own, to which Dw and `ribbon.width` belong.
+    `planar` says that the ribbon stays in the plane across d2 at its start: it is solved there, by
+    an angle in the place of a frame, and its stability is judged in space.
     """
 
     name: str
@@ -205,6 +207,7 @@ class Scene:
         "inverted"
     )
     states: Literal["auto", "reduced", "planar", "full"] = "reduced"
+    planar: bool = False
     interval: tuple[float, float] = (0.0, 1.0)
     parameters: dict[str, float] = field(default_factory=dict)
     transcription: Collocation | Shooting = Collocation()

@@ -146,7 +146,7 @@ class Trajectory:
 
     def singular_at_stages(self, phase: int) -> Array:
         """Rows (k, q, 4) of (a, b, size, fades) at the stages of a phase: see `Phase.singular`."""
-        count = self.problem.phases[phase].singular.shape[0]
+        count = self.problem.kept(_counted)[phase]
         if not count:
             return np.empty((0, 0, 4))
         at = self.at_stages.places
@@ -230,6 +230,11 @@ class Trajectory:
 def _extent(problem: BoundaryValueProblem) -> Buffered:
     """Start and lengths on numpy arrays."""
     return Buffered(problem.extent_function)
+
+
+def _counted(problem: BoundaryValueProblem) -> tuple[int, ...]:
+    """Return how many singularities the law has, phase by phase."""
+    return tuple(phase.singular.shape[0] for phase in problem.phases)
 
 
 def _singular(problem: BoundaryValueProblem) -> tuple[Mapped, ...]:

@@ -101,6 +101,11 @@ class Automatic:
         law = capabilities(self.posed.scene)
         return LAST if law.direct() is law else BLUNT
 
+    @cached_property
+    def _alone(self) -> bool:
+        """Whether the ribbon bends about d2 alone: in its plane its own law is as smooth as any."""
+        return capabilities(self.posed.scene).components == (1,)
+
     def _energy(self, law: Law, quick: bool) -> Structure:
         """Return what finds least energies: the numbers of a law may tell which it begins with."""
         if (type(law), quick) not in self._energies:
@@ -162,10 +167,11 @@ class Automatic:
                 if any(abs(least.energy - energy) <= SAME * energy for energy in met):
                     break
                 met.append(least.energy)
-            followed = self._follow(posed, law, least, last, ledger)
+            ahead = own if self._alone else law
+            followed = self._follow(posed, ahead, least, last, ledger)
             if quick and not followed.points:  # on few elements it may be too far from any
                 least = self._least(posed, law, least, ledger, False)
-                followed = self._follow(posed, law, least, last, ledger)
+                followed = self._follow(posed, ahead, least, last, ledger)
             points += followed.points
             if followed.complete or not followed.points or not in_family(law):
                 break
@@ -181,7 +187,7 @@ class Automatic:
 
     def _from_straight(self, posed: Posed, chord: Chord, ledger: Ledger) -> list[Solution]:
         """Equilibria from a straight ribbon as its loads grow, under the law that is linear."""
-        rod = first_law(posed.scene.law, ROD)
+        rod = posed.scene.law if self._alone else first_law(posed.scene.law, ROD)
         last = sharpness(posed.scene.law, self._last)
         return list(self._follow(posed, rod, ShapeGuess(chord), last, ledger).points)
 

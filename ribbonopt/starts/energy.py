@@ -23,7 +23,10 @@ QUICK_SOLVER = Ipopt(tolerance=1e-6, max_iterations=60)
 def least_energy_of(posed: Posed, law: Law, *, quick: bool = False) -> Posed:
     """Return a scene under a law with a smooth energy, as this solve wants it, `quick` or not."""
     mesh, solver = (QUICK_MESH, QUICK_SOLVER) if quick else (MESH, SOLVER)
-    settings = {"formulation": "energy", "states": "reduced", "solver": solver}
+    # In its plane a ribbon that nothing holds between its ends is the smaller problem.
+    inside = posed.scene.states == "planar" and not (posed.stations or posed.scene.boundary.loop)
+    states = "planar" if inside else "reduced"
+    settings = {"formulation": "energy", "states": states, "solver": solver}
     found = posed.under(law=law, transcription=mesh, **settings)
     loads = tuple(load for load in found.loads if not load.without_potential)
     if not found.stations:

@@ -22,11 +22,18 @@ MOMENT = np.array([0.3, 0.7, -0.45])  # without any symmetry
 ALONG = np.array([0.0, 0.4, 1.0])  # of the interval
 
 
+def never_bent(scene: Scene) -> bool:
+    """Whether a ribbon has no natural strains, whatever its numbers are."""
+    return scene.natural is None and always_the_same(scene.law)
+
+
 def leaves_plane(scene: Scene, theta: Mapping[str, float]) -> bool:
     """Whether natural strains take a ribbon out of the plane across its width.
 
     `theta` are the numbers of the scene by name.
     """
+    if never_bent(scene):
+        return False
     start, end = scene.interval
     strain = _natural_strains(scene, theta)
     if strain is None:
@@ -77,7 +84,7 @@ def changed_by_sliding(scene: Scene, odd: bool) -> bool:
             return True
     if odd and loads.pressure:
         return True
-    if scene.natural is None and always_the_same(scene.law):
+    if never_bent(scene):
         return False
     theta = {f"law.{name}": value for name, value in numbers_of(scene.law).items()}
     theta |= {name: value for field in fields_of(scene) for name, value in field.numbers().items()}

@@ -32,6 +32,12 @@ class BlendedLaw(SheetedLaw):
     def weights(self) -> tuple[ca.SX | float, ca.SX]:
         """The numbers rho and epsilon of the family."""
 
+    def in_plane(self) -> ConstitutiveLaw:
+        from .bent import BentLaw  # few scenes are held in a plane
+
+        rho, epsilon = self.weights
+        return BentLaw(self, 1 + rho * epsilon)
+
     def strains(self, m2: ca.SX, m3: ca.SX) -> Components:
         return blended_strain(m2, m3, *self.weights)
 

@@ -172,11 +172,27 @@ def curvature_across(scene: Scene) -> float | None:
     return k22 + (ratio * k11 if isinstance(k11, float) else 0.0)
 
 
+def bends_alone(scene: Scene) -> bool:
+    """Whether a strip that stays in its plane leaps nowhere: not one that is curved across, too.
+
+    A continuation may bring that on, if there are natural strains.
+    """
+    if scene.natural is None:
+        return True
+    return scene.continuation is None and curvature_across(scene) == 0
+
+
+def held_law(scene: Scene, law: ConstitutiveLaw) -> ConstitutiveLaw:
+    """Return the relation of a scene where it holds its ribbon in a plane; else the one given."""
+    return law.in_plane() if scene.states == "planar" and bends_alone(scene) else law
+
+
 def capabilities(scene: Scene) -> ConstitutiveLaw:
     """Return the relation of a scene, its law in numbers, to be asked what it has."""
     known = {f"law.{name}": ca.SX(value) for name, value in numbers_of(scene.law).items()}
     known |= {name: ca.SX(value) for name, value in membrane_numbers(scene).items()}
-    return relation_of(scene, lambda name: known.get(name, ca.SX.sym(name)), ca.SX.sym("s"))
+    law = relation_of(scene, lambda name: known.get(name, ca.SX.sym(name)), ca.SX.sym("s"))
+    return held_law(scene, law)
 
 
 def is_linear(law: Law, up_to: float = math.inf) -> bool:

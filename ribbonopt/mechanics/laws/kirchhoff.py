@@ -6,7 +6,7 @@ import casadi as ca
 
 from ribbonopt.classes import dataclass
 
-from .law import RibbonLaw
+from .law import ConstitutiveLaw, RibbonLaw
 from .relations import Components
 
 
@@ -18,6 +18,11 @@ class KirchhoffLaw(RibbonLaw):
     B3: ca.SX
     linear_at_zero = True
     developable = False
+
+    def in_plane(self) -> ConstitutiveLaw:
+        from .bent import BentLaw  # few scenes are held in a plane
+
+        return BentLaw(self, self.B2)
 
     def strains(self, m2: ca.SX, m3: ca.SX) -> Components:
         return m2 / self.B2, m3 / self.B3

@@ -121,6 +121,14 @@ class ConstitutiveLaw(EnergyForm, ABC):
         """
         return None
 
+    def in_plane(self) -> ConstitutiveLaw:
+        """Return the law of a ribbon that stays in the plane across d2, of no curvature across it.
+
+        There m1 = m3 = 0 and natural strains but that along are zero. The law itself where it is no
+        simpler.
+        """
+        return self
+
     def at_width(self, width: ca.SX) -> ConstitutiveLaw:
         """Return the law, per width, where the ribbon has another width, in units of its own.
 

@@ -152,6 +152,10 @@ class MembraneLaw(ConstitutiveLaw):
         found, there = self.base.stress_of(z[count:], own), self._unscaled(z[:count])
         return found._replace(n=found.n + there.n, m=found.m + there.m)
 
+    def in_plane(self) -> ConstitutiveLaw:
+        # What bends about d1 is across the plane.
+        return replace(self, base=self.base.in_plane(), soft=ca.SX(0))
+
     def sheet_slope(self, stress: Stress, u: ca.SX) -> ca.SX | None:
         return self.base.sheet_slope(stress, u)
 

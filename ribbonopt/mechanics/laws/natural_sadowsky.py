@@ -43,6 +43,11 @@ class NaturalSadowskyLaw(RibbonLaw):
     kinked = True
     switch_name = WORDS
 
+    def in_plane(self) -> ConstitutiveLaw:
+        from .bent import BentLaw  # few scenes are held in a plane
+
+        return BentLaw.naturally_bent(self, self.k)
+
     def strains(self, m2: ca.SX, m3: ca.SX) -> Components:
         T, D, c, R = self.k.combined(m2, m3)
         size = (ca.fabs(T) + R) / (4 * R)

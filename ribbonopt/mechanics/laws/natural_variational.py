@@ -14,7 +14,7 @@ import casadi as ca
 from ribbonopt.classes import dataclass
 
 from .implicit import ImplicitLaw
-from .law import RibbonLaw, Stress
+from .law import ConstitutiveLaw, RibbonLaw, Stress
 from .natural import NaturalStrains
 from .natural_sadowsky import NaturalSadowskyLaw
 from .natural_sides import WORDS, NaturalSides
@@ -31,6 +31,11 @@ class NaturalVariationalLaw(RibbonLaw):
     natural = True
     closed_moment = False
     switch_name = WORDS
+
+    def in_plane(self) -> ConstitutiveLaw:
+        from .bent import BentLaw  # few scenes are held in a plane
+
+        return BentLaw.naturally_bent(self, self.k)
 
     def strains(self, m2: ca.SX, m3: ca.SX) -> Components:
         T, D, c, _ = self.k.combined(m2, m3)

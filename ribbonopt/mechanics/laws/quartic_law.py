@@ -38,6 +38,11 @@ class QuarticLaw(SwitchedLaw):
     def quartic(self) -> Quartic:
         """The energy of these."""
 
+    def in_plane(self) -> ConstitutiveLaw:
+        from .bent import UntwistedLaw  # few scenes are held in a plane
+
+        return UntwistedLaw(self)
+
     def strains(self, m2: ca.SX, m3: ca.SX) -> Components:
         return self.on_side(m2, m3, 0)
 

@@ -35,6 +35,11 @@ class RodLaw(ConstitutiveLaw):
             return True
         return bool(ca.is_equal(self.B[0], self.B[1]) and self.k[:2].is_zero())
 
+    def in_plane(self) -> ConstitutiveLaw:
+        from .bent import BentLaw  # few scenes are held in a plane
+
+        return BentLaw(self, self.B[1], self.k[1])
+
     def strain(self, stress: Stress) -> ca.SX:
         return stress.m / self.B + self.k
 

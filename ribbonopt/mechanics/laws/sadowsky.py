@@ -68,6 +68,11 @@ class SadowskyLaw(SheetedLaw):
 
         return NaturalSadowskyLaw(natural)
 
+    def in_plane(self) -> ConstitutiveLaw:
+        from .bent import BentLaw  # few scenes are held in a plane
+
+        return BentLaw(self)
+
     def implicit(self, stress: Stress) -> ImplicitLaw:
         # The gradient of W_S itself: eqs. (2.4)-(2.5) have solutions in the forbidden region too.
         return bounded(sheet_moment, self.strain(stress), stress.m)

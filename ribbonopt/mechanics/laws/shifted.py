@@ -89,6 +89,9 @@ class ShiftedLaw(ConstitutiveLaw):
     def at_width(self, width: ca.SX) -> ConstitutiveLaw:
         return replace(self, base=self.base.at_width(width))
 
+    def in_plane(self) -> ConstitutiveLaw:
+        return replace(self, base=self.base.in_plane())
+
     def branch(self, kind: int) -> ConstitutiveLaw:
         if kind == 0 and self.sides is not None:
             return NaturalMixtureLaw(self.sides)

@@ -86,6 +86,9 @@ class TaperedLaw(ConstitutiveLaw):
         found = self.law.switching(self._unit(stress))
         return Switch(self.width * found.value, self.width * found.leap)
 
+    def in_plane(self) -> ConstitutiveLaw:
+        return TaperedLaw(self.law.in_plane(), self.width, self.slope)
+
     def branch(self, kind: int) -> ConstitutiveLaw:
         return TaperedLaw(self.law.branch(kind), self.width, self.slope, mixture=kind == 0)
 

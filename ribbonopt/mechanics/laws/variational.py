@@ -28,6 +28,11 @@ class VariationalLaw(RibbonLaw):
 
         return NaturalVariationalLaw(self.delta, natural)
 
+    def in_plane(self) -> ConstitutiveLaw:
+        from .bent import BentLaw  # few scenes are held in a plane
+
+        return BentLaw(self)
+
     def implicit(self, stress: Stress) -> ImplicitLaw:
         return norm_form(self.delta, self.strain(stress), stress.m)
 

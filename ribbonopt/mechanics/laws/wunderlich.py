@@ -53,6 +53,11 @@ class WunderlichLaw(ConstitutiveLaw):
     def naturally(self, natural: NaturalStrains) -> ConstitutiveLaw:
         return replace(self, k=natural)
 
+    def in_plane(self) -> ConstitutiveLaw:
+        from .bent import BentLaw  # few scenes are held in a plane
+
+        return BentLaw(self) if self.k is None else BentLaw.naturally_bent(self, self.k)
+
     def direct(self) -> ConstitutiveLaw:
         return DirectWunderlichLaw(self.width, self.k)
 

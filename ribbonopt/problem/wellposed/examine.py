@@ -153,10 +153,11 @@ def refuse_idle_settings(posed: Posed, ribbon: Ribbon) -> None:
     scene = posed.given
     if isinstance(scene.switching, str) or (ribbon.law.kinked and scene.formulation == "inverted"):
         return
+    plane = " in a plane, where no strains leap" if scene.states == "planar" else ""
     raise ModelError(
         f"switching: {list(scene.switching)} is of no use here: phases are for the inverted "
         "formulation and for laws whose strains may leap or kink (sadowsky, regularized, homotopy, "
-        f"wunderlich, extensible, sano), found {scene.formulation} and {scene.law.type}; leave "
-        "it out",
+        f"wunderlich, extensible, sano), found {scene.formulation} and {scene.law.type}{plane}; "
+        "leave it out",
         "switching",
     )

@@ -13,6 +13,7 @@ from ribbonopt.mechanics.laws.asymmetry import leaves_plane
 from ribbonopt.mechanics.loads.load import Load
 from ribbonopt.problem.posed import Posed
 from ribbonopt.problem.ribbon import Ribbon
+from ribbonopt.scene.planes import Said, said
 
 from .linearized import linearize
 
@@ -28,10 +29,11 @@ def in_plane(ribbon: Ribbon, posed: Posed) -> Ribbon:
     ModelError
         If the scene prescribes something that is not in the plane, or the law twists there.
     """
+    words = said(posed.scene)
     if leaves_plane(posed.scene, posed.theta):
         raise ModelError(
-            f"states: planar, but the natural strains of law {posed.scene.law.type} lead out of "
-            "the plane across d2; use states: reduced, or leave it natural bending about d2 only",
+            f"{words.words}, but the natural strains of law {posed.scene.law.type} lead out of the "
+            f"plane across d2; {words.instead}, or leave it natural bending about d2 only",
             "law.natural",
         )
     conditions = linearize(ribbon, posed)
@@ -40,11 +42,11 @@ def in_plane(ribbon: Ribbon, posed: Posed) -> Ribbon:
     residuals = np.max([np.abs(values) for values, _ in samples], axis=0)
     for name, residual in zip(np.array(conditions.names)[without], residuals[without], strict=True):
         if residual > NOTHING:
-            raise _refusal(str(name), float(residual), str(name).partition(" ")[0])
+            raise _refusal(words, str(name), float(residual), str(name).partition(" ")[0])
     for load in posed.loads:
         across = _across(ribbon, load, conditions.generic(0.3), posed)
         if across > NOTHING:
-            raise _refusal(load.name, across, load.name)
+            raise _refusal(words, load.name, across, load.name)
     return replace(ribbon, idle=frozenset(np.array(conditions.names)[without].tolist()))
 
 
@@ -63,9 +65,9 @@ def _across(ribbon: Ribbon, load: Load, z: Array, posed: Posed) -> float:
     return float(np.abs(np.array(found)).max())
 
 
-def _refusal(name: str, size: float, key: str) -> ModelError:
+def _refusal(words: Said, name: str, size: float, key: str) -> ModelError:
     return ModelError(
-        f"states: planar, but {name} leads out of the plane across d2 (by {size:.2g}); use states: "
-        "reduced, or keep the scene in the plane",
+        f"{words.words}, but {name} leads out of the plane across d2 (by {size:.2g}); "
+        f"{words.instead}, or keep the scene in the plane",
         key,
     )

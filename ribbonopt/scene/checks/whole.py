@@ -79,6 +79,10 @@ def check(scene: Scene, like: Sound | None = None) -> list[Problem]:
         before = None  # what both share is written in the same way, but may be worth something else
     if before is None or (boundary, scene.guess) != (before.boundary, before.guess):
         problems += _ends(scene, values)
+    if scene.planar:
+        from ribbonopt.scene.planes import check_plane  # few scenes are held in a plane
+
+        problems += check_plane(scene)
     if isinstance(scene.law, Sized):
         from .sized import check_sized  # laws that depend on the sizes of the ribbon
 

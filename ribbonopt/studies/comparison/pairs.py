@@ -103,6 +103,7 @@ class Pair:
             scene,
             formulation=FORMULATIONS[self.formulation],
             states=self.states,
+            planar=False,
             transcription=mesh,
             switching="off",
             tolerance=None,

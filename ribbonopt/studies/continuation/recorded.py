@@ -112,7 +112,9 @@ class Recorder:
         if self.measured:
             row[SOFTEST] = _softest(solution) if stage.measured and point.kind == POINT else None
         row["iterations"] = solution.iterations
-        told = (*unknown_of(solution), *solution.given_up, *solution.fell_back)
+        told = [*unknown_of(solution), *solution.given_up, *solution.fell_back]
+        if row["negative"] is not None and solution.scene.states == "planar":
+            told.append(_told_of_plane(solution))
         row["note"] = "; ".join(filter(None, [point.note, *told]))
         return row
 
@@ -214,6 +216,12 @@ def _negative(solution: Solution) -> int | None:
     from ribbonopt.checks.stability import negative_directions  # builds second derivatives
 
     return negative_directions(solution)
+
+
+def _told_of_plane(solution: Solution) -> str:
+    from ribbonopt.checks.stability import told_of_plane  # as above
+
+    return told_of_plane(solution)
 
 
 def _softest(solution: Solution) -> float | None:
