@@ -68,7 +68,8 @@ class Shape:
     def of(cls, study: Mapping[str, Any]) -> Shape:
         """Return the panels of a study: the best have one where it says more than the others."""
         count = len({row["formulation"] for row in study["rows"]})
-        best = count > 1 or (count == 1 and bool(study.get("peers")))
+        peers = bool(count and answered(study.get("peers", ())))
+        best = peers or (count > 1 and bool(shown(study["rows"])))
         columns = max(1, min(COLUMNS, count))
         return cls(max(1, count), max(1, math.ceil(count / columns)), columns, best)
 
@@ -111,8 +112,6 @@ def _times(figure: Figure | SubFigure, study: Mapping[str, Any], shape: Shape) -
     if last is not None:
         time_axes(last, "the best of each, and peers" if peers else "the best of each")
         names[last] = best_of_all(last, good, peers)
-        if not good and not peers:
-            said(last, rows)
     x, y = limits([*good, *peers])
     panels[0].set(xlim=x, ylim=y)
     for i, axes in enumerate(panels):
@@ -122,7 +121,10 @@ def _times(figure: Figure | SubFigure, study: Mapping[str, Any], shape: Shape) -
         for tolerance in study.get("tolerances", ()):
             axes.axvline(tolerance, color=FAINT, lw=0.6, ls=":", zorder=0)
     known = f"; the truth is known to {floor:.0e}" if floor else ""
-    (last or panels[-1]).set_xlabel(f"relative error of n(0), m(0){known}", color=INK)
+    known += "; dotted: asked for" if study.get("tolerances") else ""
+    lowest = [last] if last else panels[-shape.columns :]
+    for axes in lowest:
+        axes.set_xlabel(f"relative error of n(0), m(0){known}", color=INK)
     figure.supylabel(f"time of one solve ({_clock(study)})", fontsize=10, color=INK)
     figure.suptitle(
         drawn(study["name"], 60), x=0.01, ha="left", fontsize=12, fontweight="bold", color=INK

@@ -37,10 +37,10 @@ def time_axes(axes: Axes, name: str) -> None:
 
 def one_formulation(axes: Axes, rows: Rows, good: Rows, every: Rows) -> list[Name]:
     """Draw the good rows of a formulation over the frontier of all; the names of its own."""
-    axes.plot(*xy(best(every, OVERALL)), **BAND)
     if not good:
         said(axes, rows)
         return []
+    axes.plot(*xy(best(every, OVERALL)), **BAND)
     schemes = looks(every, "transcription")
     for line in grouped(good, "pair").values():
         colour, marker = schemes[line[0]["transcription"]]
@@ -81,7 +81,7 @@ def said(axes: Axes, rows: Rows) -> None:
     reasons = dict.fromkeys(row["message"] for row in rows if row["message"])
     words = [fill(drawn(reason, 3 * LETTERS), LETTERS) for reason in list(reasons)[:LINES]]
     more = [f"and {len(reasons) - LINES} more reasons"] if len(reasons) > LINES else []
-    text = "\n\n".join(["no verified solution", *words, *more])
+    text = "\n\n".join(["no verified solution of known error", *words, *more])
     axes.text(
         0.5, 0.5, text, transform=axes.transAxes, ha="center", va="center", fontsize=8, color=INK
     )

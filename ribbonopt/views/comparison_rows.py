@@ -13,6 +13,7 @@ FLOOR = 1e-16  # errors that happen to vanish are drawn here
 # Frontiers that a row may be on: whoever is on one is on those before.
 PAIR, OWN, OVERALL = ("pair", "formulation", "overall"), ("formulation", "overall"), ("overall",)
 TIMES = "\u00d7"  # the sign
+LEAST_X, LEAST_Y = 4.0, 2.0  # decades that a panel shows
 ROOM = 0.16  # of the height of a panel below its points, for names
 SHORT = {"shooting-gauss": "shooting"}
 
@@ -55,7 +56,8 @@ def by_decade(rows: Rows) -> list[Row]:
 
 def scheme_of(row: Row) -> str:
     """Return transcription and mesh: degree x intervals, or intervals x steps."""
-    name: str = SHORT.get(row["transcription"], row["transcription"])
+    own = str(row["transcription"])
+    name = SHORT.get(own, own)
     sizes = [row["degree"], row["intervals"]] if row["degree"] else [row["intervals"]]
     if row["steps"] > 1 or not row["degree"]:
         sizes.append(row["steps"])
@@ -64,19 +66,21 @@ def scheme_of(row: Row) -> str:
 
 
 def limits(rows: Rows) -> tuple[Point, Point]:
-    """Return the limits of errors (large ones left) and of times in ms."""
-    if not rows:
-        return (1.0, 1e-10), (0.1, 1000.0)
-    errors, times = (_logarithms(values) for values in xy(rows))
-    bottom, top = min(times), max(times)
-    height = max(top - bottom, 1.0)
-    x = 10 ** (max(errors) + 0.5), 10 ** (min(errors) - 0.8)
-    return x, (10 ** (bottom - ROOM * height - 0.1), 10 ** (top + 0.08 * height))
+    """Return the limits of errors (large ones left) and of times in ms, with room for names."""
+    errors = [math.log10(row["error"]) for row in rows] or [-1.0, -9.0]
+    spans = [row[key] for row in rows for key in ("solve", "low", "high") if row[key]]
+    times = [math.log10(1e3 * seconds) for seconds in spans] or [0.0, 2.0]
+    left, right = _wide(max(errors) + 0.5, min(errors) - 0.8, LEAST_X)
+    height = max(times) - min(times)
+    bottom, top = _wide(min(times) - ROOM * height - 0.1, max(times) + 0.08 * height, LEAST_Y)
+    return (10**left, 10**right), (10**bottom, 10**top)
 
 
-def _logarithms(values: Sequence[float]) -> list[float]:
-    """Return logarithms to the base of ten."""
-    return [math.log10(value) for value in values]
+def _wide(start: float, end: float, least: float) -> Point:
+    """Return limits at least so far apart that some power of ten lies between them."""
+    lacking = max(0.0, least - abs(end - start)) / 2
+    sign = 1 if end > start else -1
+    return start - sign * lacking, end + sign * lacking
 
 
 def grouped(rows: Rows, key: str) -> dict[Any, list[Row]]:

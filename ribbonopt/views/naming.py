@@ -8,7 +8,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from itertools import pairwise, product
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
 
@@ -136,7 +136,7 @@ def write_names(axes: Axes, names: Sequence[Name], size: float = 7.5) -> None:
     figure = axes.get_figure(root=True)
     assert figure is not None
     scale = figure.dpi / 72
-    canvas = FigureCanvasAgg(figure)
+    canvas: Any = FigureCanvasAgg(figure)
     renderer = canvas.get_renderer()
     anchors = [(float(x), float(y)) for x, y in axes.transData.transform([n.at for n in names])]
     sizes = [_size(axes, name, size, renderer) for name in names]
