@@ -37,6 +37,7 @@ def report(summary: Mapping[str, Any]) -> str:
         *_potential(s),
         _row("H(0)" if _varies(s) else "invariant H(0)", s["H0"], errors["H0"]),
         *(_row(name, value, s["recorded_error"][name]) for name, value in s["recorded"].items()),
+        *_loop(s),
         *_acting(s),
         *_unknown_bars(s),
         *_phases(s),
@@ -54,6 +55,17 @@ def report(summary: Mapping[str, Any]) -> str:
         *(f"    {reason}" for reason in s["skipped"]),
     ]
     return "\n".join(lines)
+
+
+def _loop(summary: Mapping[str, Any]) -> list[str]:
+    """Lines on all of a loop, where a piece of it is solved."""
+    loop, bar = summary.get("loop"), summary["error_estimate"]["energy"]
+    if loop is None or loop["pieces"] == 1:
+        return []
+    count = loop["pieces"]
+    whole = f"1/{count} of the loop is solved, symmetry gives the rest"
+    energy = _row("energy of all of it", loop["energy"], None if bar is None else count * bar)
+    return [f"  {whole} (length {loop['length']:.6g} in all)", energy]
 
 
 def _varies(summary: Mapping[str, Any]) -> bool:

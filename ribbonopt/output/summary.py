@@ -65,6 +65,7 @@ def summarize(solution: Solution) -> dict[str, Any]:
         "phases": list(solution.sheets),
         "switch": switch_of(scene),
         "half_twists": count_half_twists(solution),
+        "loop": _loop(solution),
         "unknowns": dense.blocks.layout.unknowns,
         "intervals": dense.blocks.layout.element_count,
         "degree": dense.blocks.degree,
@@ -96,6 +97,16 @@ def settings_of(scene: Scene) -> dict[str, Any]:
         "parameters": dict(scene.parameters),
         "interval": list(scene.interval),
     }
+
+
+def _loop(solution: Solution) -> dict[str, Any] | None:
+    """Return what is of all of a declared loop, of which one of `pieces` is solved."""
+    loop, (start, end) = solution.scene.boundary.loop, solution.scene.interval
+    if loop is None:
+        return None
+    count = loop.pieces
+    whole = {"length": count * (end - start), "energy": count * solution.energy}
+    return {"half_twists": loop.half_twists, "piece": loop.piece, "pieces": count, **whole}
 
 
 def _equilibrium(solution: Solution) -> dict[str, Any]:

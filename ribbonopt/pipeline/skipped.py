@@ -32,6 +32,7 @@ def skipped(
         result.append("IPOPT and the sparse Jacobian (Newton condenses element by element)")
     if scene.guess != "auto" and not (ledger and ledger.given_up):
         result.append("automatic start (the guess is given)")
+    result += _of_loop(posed)
     if solvers and not sheets:
         result.append("phases (the law is smooth, m2 keeps its sign, or the scene says so)")
     if scene.continuation is not None:
@@ -39,3 +40,16 @@ def skipped(
     if scene.tolerance is None:
         result.append("mesh refinement (no tolerance is asked for)")
     return tuple(result)
+
+
+def _of_loop(posed: Posed) -> list[str]:
+    """Say what symmetry repeats of a loop, or why no more of it."""
+    loop, result = posed.given.boundary.loop, []
+    if loop is not None and loop.pieces > 1:
+        count = loop.pieces
+        rest = "the other half" if count == 2 else f"{count - 1} of {count} pieces"
+        result.append(f"{rest} of the loop (symmetry repeats what is solved)")
+    if loop is not None and posed.undivided:
+        solved = {"whole": "the whole", "half": "a half"}.get(loop.piece, "this one")
+        result.append(f"a smaller piece of the loop than {solved} (piece: auto: {posed.undivided})")
+    return result

@@ -129,16 +129,18 @@ class Loop:
     """A closed band of `half_twists` (2 (twist + writhe) of its directors; negative: mirrored).
 
     The interval is the `piece` that is solved: the whole loop, a half (flip symmetry), or the
-    fundamental one of length L / (2 |half_twists|) of a band with dihedral symmetry.
+    fundamental one of length L / (2 |half_twists|) of a band with dihedral symmetry. With `auto` it
+    is the whole loop, of which the smallest piece is solved that law, loads and guess allow.
     """
 
     half_twists: HalfTwists
-    piece: Literal["whole", "half", "fundamental"] = "whole"
+    piece: Literal["whole", "half", "fundamental", "auto"] = "whole"
 
     @property
     def pieces(self) -> int:
         """How many pieces make the whole loop, one of which is solved."""
-        return {"whole": 1, "half": 2, "fundamental": 2 * max(abs(self.half_twists), 1)}[self.piece]
+        fundamental = 2 * max(abs(self.half_twists), 1)
+        return {"whole": 1, "auto": 1, "half": 2, "fundamental": fundamental}[self.piece]
 
     @property
     def fundamental(self) -> Loop:

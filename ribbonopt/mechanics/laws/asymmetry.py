@@ -79,11 +79,7 @@ def changed_by_sliding(scene: Scene, odd: bool) -> bool:
         return True
     if scene.natural is None and always_the_same(scene.law):
         return False
-    theta = {f"law.{name}": value for name, value in numbers_of(scene.law).items()}
-    theta |= {name: value for field in fields_of(scene) for name, value in field.numbers().items()}
-    theta |= {"interval.start": start, "interval.end": end}
-    theta |= {f"parameters.{name}": value for name, value in scene.parameters.items()}
-    law, m, position = _relation(scene, theta)
+    law, m, position = _relation(scene, numbers_alone(scene))
     u = law.strain(Stress(ca.SX.zeros(3), m, ca.SX.zeros(len(law.states))))
     varied = bool(ca.depends_on(u, position))
     if not (varied or (odd and law.natural)):
@@ -94,6 +90,14 @@ def changed_by_sliding(scene: Scene, odd: bool) -> bool:
     return any(_differs(strain, still, start, s) for s in places) or _differs(
         strain, signs, start, start
     )
+
+
+def numbers_alone(scene: Scene) -> dict[str, float]:
+    """Return the numbers by name that the law of a scene, in units Dw = L = 1, may depend on."""
+    theta = {f"law.{name}": value for name, value in numbers_of(scene.law).items()}
+    theta |= {name: value for field in fields_of(scene) for name, value in field.numbers().items()}
+    theta |= {"interval.start": scene.interval[0], "interval.end": scene.interval[1]}
+    return theta | {f"parameters.{name}": value for name, value in scene.parameters.items()}
 
 
 def _differs(strain: Strain, signs: Array, s: float, image: float) -> bool:
