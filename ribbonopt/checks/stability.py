@@ -3,7 +3,7 @@
 Of all shapes that satisfy the conditions on positions and directors, an equilibrium is one where
 the energy, less the work of dead forces, is stationary; it is stable where it is a minimum. The
 second variation (`variation`) is a quadratic form along the ribbon, whose inertia elimination tells
-(`elimination`). Of a piece of a loop only disturbances with its symmetry are judged.
+(`elimination`). Of a piece of a ribbon only disturbances with its symmetry are judged.
 """
 
 from __future__ import annotations
@@ -42,7 +42,8 @@ class SecondVariation:
     `negative` is the number of its clearly negative eigenvalues, those below -`neutral`. `error` is
     that of eigenvalues, over the largest, which is about `largest`. Units Dw = L = 1. `spins` says
     that one is zero since an isotropic rod spins, which is neither for nor against it; `planar`
-    that only directions in the ribbon's plane were looked at.
+    that only directions in the ribbon's plane were looked at, `symmetric` that only those with the
+    symmetry of which a piece is solved.
     """
 
     negative: int
@@ -51,6 +52,7 @@ class SecondVariation:
     largest: float
     spins: bool = False
     planar: bool = False
+    symmetric: bool = False
 
     @property
     def verdict(self) -> str:
@@ -58,6 +60,7 @@ class SecondVariation:
         count = f"{self.negative} negative direction{'s' if self.negative > 1 else ''}"
         found = f"unstable: {count}" if self.negative else "stable"
         found += " in its plane" if self.planar else ""
+        found += " among disturbances with its symmetry" if self.symmetric else ""
         return f"{found}; neutral: {SPIN}" if self.spins else found
 
 
@@ -103,7 +106,8 @@ def _judged(variation: Variation | str, solution: Solution) -> SecondVariation |
     neutral = max(error, ROUNDING) * largest
     negative = factored(variation.form, neutral).negative
     planar = planar_posed(solution) is not None
-    return SecondVariation(negative, neutral, error, largest, spins(solution), planar)
+    symmetric = solution.scene.boundary.repeats
+    return SecondVariation(negative, neutral, error, largest, spins(solution), planar, symmetric)
 
 
 def variation_of(solution: Solution) -> Variation | str:

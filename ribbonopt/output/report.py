@@ -37,7 +37,7 @@ def report(summary: Mapping[str, Any]) -> str:
         *_potential(s),
         _row("H(0)" if _varies(s) else "invariant H(0)", s["H0"], errors["H0"]),
         *(_row(name, value, s["recorded_error"][name]) for name, value in s["recorded"].items()),
-        *_loop(s),
+        *_symmetry(s),
         *_acting(s),
         *_unknown_bars(s),
         *_phases(s),
@@ -57,15 +57,15 @@ def report(summary: Mapping[str, Any]) -> str:
     return "\n".join(lines)
 
 
-def _loop(summary: Mapping[str, Any]) -> list[str]:
-    """Lines on all of a loop, where a piece of it is solved."""
-    loop, bar = summary.get("loop"), summary["error_estimate"]["energy"]
-    if loop is None or loop["pieces"] == 1:
+def _symmetry(summary: Mapping[str, Any]) -> list[str]:
+    """Lines on all of the ribbon, where a piece of it is solved."""
+    all_of, bar = summary.get("symmetry"), summary["error_estimate"]["energy"]
+    if all_of is None:
         return []
-    count = loop["pieces"]
-    whole = f"1/{count} of the loop is solved, symmetry gives the rest"
-    energy = _row("energy of all of it", loop["energy"], None if bar is None else count * bar)
-    return [f"  {whole} (length {loop['length']:.6g} in all)", energy]
+    count, length = all_of["pieces"], f"{all_of['length']:.6g}"
+    words = f"1/{count} of the {all_of['of']} is solved, symmetry gives the rest"
+    energy = _row("energy of all of it", all_of["energy"], None if bar is None else count * bar)
+    return [f"  {words} (length {length} in all)", energy]
 
 
 def _varies(summary: Mapping[str, Any]) -> bool:

@@ -65,7 +65,7 @@ def summarize(solution: Solution) -> dict[str, Any]:
         "phases": list(solution.sheets),
         "switch": switch_of(scene),
         "half_twists": count_half_twists(solution),
-        "loop": _loop(solution),
+        "symmetry": _symmetry(solution),
         "unknowns": dense.blocks.layout.unknowns,
         "intervals": dense.blocks.layout.element_count,
         "degree": dense.blocks.degree,
@@ -99,14 +99,15 @@ def settings_of(scene: Scene) -> dict[str, Any]:
     }
 
 
-def _loop(solution: Solution) -> dict[str, Any] | None:
-    """Return what is of all of a declared loop, of which one of `pieces` is solved."""
-    loop, (start, end) = solution.scene.boundary.loop, solution.scene.interval
-    if loop is None:
+def _symmetry(solution: Solution) -> dict[str, Any] | None:
+    """Return what is of all of the ribbon, of which one of `pieces` is solved; None if all is."""
+    boundary, (start, end) = solution.scene.boundary, solution.scene.interval
+    count = boundary.pieces
+    if count == 1:
         return None
-    count = loop.pieces
+    of = "strip" if boundary.loop is None else "loop"
     whole = {"length": count * (end - start), "energy": count * solution.energy}
-    return {"half_twists": loop.half_twists, "piece": loop.piece, "pieces": count, **whole}
+    return {"of": of, "pieces": count, **whole}
 
 
 def _equilibrium(solution: Solution) -> dict[str, Any]:

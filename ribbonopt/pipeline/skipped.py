@@ -32,7 +32,7 @@ def skipped(
         result.append("IPOPT and the sparse Jacobian (Newton condenses element by element)")
     if scene.guess != "auto" and not (ledger and ledger.given_up):
         result.append("automatic start (the guess is given)")
-    result += _of_loop(posed)
+    result += _repeated(posed)
     if solvers and not sheets:
         result.append("phases (the law is smooth, m2 keeps its sign, or the scene says so)")
     if scene.continuation is not None:
@@ -42,13 +42,16 @@ def skipped(
     return tuple(result)
 
 
-def _of_loop(posed: Posed) -> list[str]:
-    """Say what symmetry repeats of a loop, or why no more of it."""
-    loop, result = posed.given.boundary.loop, []
-    if loop is not None and loop.pieces > 1:
-        count = loop.pieces
+def _repeated(posed: Posed) -> list[str]:
+    """Say what symmetry repeats of a ribbon, or why no more of a loop."""
+    boundary, result = posed.given.boundary, []
+    loop, count = boundary.loop, boundary.pieces
+    if count > 1:
         rest = "the other half" if count == 2 else f"{count - 1} of {count} pieces"
-        result.append(f"{rest} of the loop (symmetry repeats what is solved)")
+        whole = "strip" if loop is None else "loop"
+        result.append(f"{rest} of the {whole} (symmetry repeats what is solved)")
+    if boundary.repeats:
+        result.append("disturbances without the symmetry (stability is not judged by them)")
     if loop is not None and posed.undivided:
         solved = {"whole": "the whole", "half": "a half"}.get(loop.piece, "this one")
         result.append(f"a smaller piece of the loop than {solved} (piece: auto: {posed.undivided})")

@@ -71,13 +71,13 @@ class Posed:
     @classmethod
     def of(cls, scene: Scene, units: Units | None = None) -> Posed:
         """Pose a scene; in units of another one where they are to be compared number by number."""
-        units, undivided = units or units_of(scene), ""
-        special = in_special_units(scene, units)
-        if scene.boundary.loop is not None and scene.boundary.loop.piece == "auto":
-            from ribbonopt.mechanics.ends.smallest import like, smallest  # few scenes ask for it
+        undivided, loop = "", scene.boundary.loop
+        if scene.symmetric is not False or (loop is not None and loop.piece == "auto"):
+            from ribbonopt.mechanics.ends.smallest import divided  # few scenes ask for it
 
-            special, undivided = smallest(special, scene)
-            scene = like(scene, special)
+            scene, undivided = divided(scene)
+        units = units or units_of(scene)
+        special = in_special_units(scene, units)
         loads: tuple[Load, ...] = ()
         if special.loads != NO_LOADS or special.gravity is not None:
             from ribbonopt.mechanics.loads.catalogue import loads_of  # few scenes have any

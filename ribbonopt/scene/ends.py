@@ -160,3 +160,20 @@ class Boundary:
     end: End = End()
     also: tuple[str, ...] = ()
     loop: Loop | None = None
+
+    @property
+    def flips(self) -> int:
+        """How many ends are at an axis of two-fold symmetry, and say so."""
+        return sum(end.support == "flip" for end in (self.start, self.end))
+
+    @property
+    def pieces(self) -> int:
+        """How many times what is solved makes all of it, where the scene says so."""
+        if self.loop is not None:
+            return self.loop.pieces
+        return 2 if self.flips == 1 else 1
+
+    @property
+    def repeats(self) -> bool:
+        """Whether symmetry repeats what is solved."""
+        return self.pieces > 1 or self.flips > 0

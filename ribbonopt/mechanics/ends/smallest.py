@@ -21,11 +21,27 @@ NO_LOADS = Loads()
 
 
 def settled(scene: Scene) -> Scene:
-    """Return a scene as it is solved: of the smallest piece where its loop's is `auto`."""
+    """Return a scene as it is solved: `divided` where it says so."""
+    return divided(scene)[0] if is_divided(scene) else scene
+
+
+def is_divided(scene: Scene) -> bool:
+    """Whether a scene leaves it to its symmetry what of it is solved."""
     loop = scene.boundary.loop
-    if loop is None or loop.piece != "auto":
-        return scene
-    return like(scene, smallest(in_special_units(scene), scene)[0])
+    return scene.symmetric is not False or (loop is not None and loop.piece == "auto")
+
+
+def divided(scene: Scene) -> tuple[Scene, str]:
+    """Return the part of a scene that is solved, in its own units, and why it is no smaller one."""
+    special = in_special_units(scene)
+    if scene.symmetric is not False:
+        from .boundary import conditions_of
+        from .twofold import halved  # few strips are
+
+        return halved(scene, conditions_of(special)), ""
+    piece, why = smallest(special, scene)
+    assert piece.boundary.loop is not None
+    return _of_piece(scene, piece.boundary.loop), why
 
 
 def smallest(scene: Scene, given: Scene) -> tuple[Scene, str]:
@@ -44,12 +60,6 @@ def smallest(scene: Scene, given: Scene) -> tuple[Scene, str]:
                 return piece, half if loop.piece == "half" else ""
             why = half = f"a flip about {axis} changes the natural strains"
     return _of_piece(scene, _loop(scene, "whole")), why
-
-
-def like(scene: Scene, piece: Scene) -> Scene:
-    """Return a scene in its own units, of the piece that was chosen in others."""
-    assert piece.boundary.loop is not None
-    return _of_piece(scene, piece.boundary.loop)
 
 
 def _pieces(scene: Scene, half: str) -> Iterator[Loop]:

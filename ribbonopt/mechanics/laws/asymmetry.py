@@ -45,16 +45,20 @@ def changed_by_flip(scene: Scene, theta: Mapping[str, float]) -> str:
     loop = scene.boundary.loop
     if loop is None or loop.piece == "whole":
         return ""
-    strain = _natural_strains(scene, theta)
-    if strain is None:
-        return ""
-    start, end = scene.interval
-    places = start + (end - start) * ALONG
     twisted = loop.half_twists % 2 == 1 or (loop.piece == "fundamental" and loop.half_twists != 0)
-    for axis, signs in FLIPS.items():
-        if (axis == "d1" or twisted) and any(_differs(strain, signs, s, s) for s in places):
+    for axis in ("d1", "d2") if twisted else ("d1",):
+        if flipped(scene, theta, axis):
             return axis
     return ""
+
+
+def flipped(scene: Scene, theta: Mapping[str, float], axis: str) -> bool:
+    """Whether a flip about d1 or d2 changes the natural strains of a scene, anywhere along it."""
+    strain, (start, end) = _natural_strains(scene, theta), scene.interval
+    if strain is None:
+        return False
+    places = start + (end - start) * ALONG
+    return any(_differs(strain, FLIPS[axis], float(s), float(s)) for s in places)
 
 
 def changed_by_sliding(scene: Scene, odd: bool) -> bool:

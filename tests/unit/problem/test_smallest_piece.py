@@ -86,8 +86,8 @@ def test_all_of_the_loop_is_told() -> None:
     assert found.verified and found.scene.interval == (0.0, 0.5)
     _, H = VARIATIONAL[0.01]
     summary = summarize(found)
-    assert agrees(summary["loop"]["energy"], H) and summary["loop"]["length"] == 1
-    assert summary["loop"]["pieces"] == 2 and summary["half_twists"] == 1
+    assert agrees(summary["symmetry"]["energy"], H) and summary["symmetry"]["length"] == 1
+    assert summary["symmetry"]["pieces"] == 2 and summary["half_twists"] == 1
     text = report(summary)
     assert "1/2 of the loop is solved, symmetry gives the rest (length 1 in all)" in text
     assert "the other half of the loop" in text and H[:7] in text
