@@ -4,15 +4,28 @@ Truth: the whole strip, solved without its symmetry, and re-integrated independe
 threshold at which the symmetric arch is no longer stable.
 """
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
+from independent.confirm import confirm
+from scipy.spatial.transform import Rotation
 
 from ribbonopt.checks.stability import second_variation
 from ribbonopt.errors import ModelError
 from ribbonopt.pipeline.check import check_scene
 from ribbonopt.pipeline.prepared import prepare, solve
 from ribbonopt.problem import Posed
-from ribbonopt.scene import Scene, loads_scene
+from ribbonopt.scene import (
+    Boundary,
+    Directors,
+    End,
+    LoadGuess,
+    Sadowsky,
+    Scene,
+    Variational,
+    loads_scene,
+)
 from ribbonopt.solution.solution import Solution
 from ribbonopt.studies.continuation.continuation import Continuation
 from ribbonopt.views.subject import subject_of
@@ -46,6 +59,7 @@ def test_half_and_its_image_are_the_whole_arch() -> None:
     assert 2 * half.energy == pytest.approx(whole.energy, rel=1e-9)
     np.testing.assert_allclose(half.n0, whole.n0, atol=1e-6)
     np.testing.assert_allclose(half.m0, whole.m0, atol=1e-6)
+    assert confirm(half) < 1e-9
     subject = subject_of(half, complete=True)
     assert subject.count == 2 and subject.mirrored
     for piece in subject.pieces:
@@ -90,6 +104,45 @@ def test_a_branch_of_symmetric_arches_passes_the_threshold() -> None:
     assert {point.kind for point in points} == {"point"} and points[-1].position == 0.3
     whole = solved(arch("symmetric=false", "parameters.shear=0.3"))
     assert 2 * points[-1].row["energy"] == pytest.approx(whole.energy, rel=1e-8)
+
+
+def between_clamps(seed: int, director: str) -> Scene:
+    """Return a strip between clamps at random places that half a turn maps to each other."""
+    rng = np.random.default_rng(seed)
+    axis, across, chord = np.linalg.qr(rng.normal(size=(3, 3)))[0].T
+    turn = 2 * np.outer(axis, axis) - np.eye(3)
+    width = axis if director == "d2" else np.cross(chord, axis)
+    middle = np.stack([np.cross(width, chord), width, chord], axis=1)
+    first = Rotation.from_rotvec(0.5 * rng.normal(size=3)).as_matrix() @ middle
+    last = turn @ first * ([1, -1, -1] if director == "d1" else [-1, 1, -1])
+    start = rng.normal(size=3)
+    ends = (start, start + 0.7 * chord + 0.1 * across)
+    clamps = [
+        End("clamped", tuple(r), Directors(d1=tuple(F[:, 0]), d2=tuple(F[:, 1])))
+        for r, F in zip(ends, (first, last), strict=True)
+    ]
+    law = Sadowsky() if director == "d2" else Variational(delta=0.1)
+    return Scene("strip", law, Boundary(*clamps), tolerance=1e-8, symmetric=director)  # type: ignore[arg-type]
+
+
+@pytest.mark.parametrize(
+    ("seed", "director"),
+    [
+        (1, "d2"),
+        (2, "d1"),
+        *(pytest.param(n, d, marks=pytest.mark.slow) for n, d in ((3, "d2"), (4, "d1"))),
+    ],
+)
+def test_from_half_a_strip_the_whole_is_found_at_once(seed: int, director: str) -> None:
+    scene = between_clamps(seed, director)
+    half = solved(scene)
+    assert confirm(half) < 1e-8
+    n, m = (tuple(v.tolist()) for v in (half.n0, half.m0))
+    whole = solved(replace(scene, symmetric=False, guess=LoadGuess(n, m)))  # type: ignore[arg-type]
+    assert whole.scene.interval == (0.0, 1.0)
+    assert 2 * half.energy == pytest.approx(whole.energy, rel=1e-8)
+    size = np.abs(whole.n0).max()
+    np.testing.assert_allclose(half.n0, whole.n0, atol=1e-7 * size)
 
 
 @pytest.mark.parametrize(

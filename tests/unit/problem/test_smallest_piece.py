@@ -7,6 +7,7 @@ one that is not allowed is refused where it is asked for by name.
 from typing import Any
 
 import pytest
+from independent.confirm import confirm
 from references import VARIATIONAL, agrees
 
 from ribbonopt.errors import ModelError
@@ -84,6 +85,7 @@ def test_all_of_the_loop_is_told() -> None:
     scene = band(1, "tolerance=1e-9")
     found = solve(scene)
     assert found.verified and found.scene.interval == (0.0, 0.5)
+    assert confirm(found) < 1e-9
     _, H = VARIATIONAL[0.01]
     summary = summarize(found)
     assert agrees(summary["symmetry"]["energy"], H) and summary["symmetry"]["length"] == 1
