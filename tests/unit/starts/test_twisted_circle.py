@@ -38,8 +38,8 @@ def first(scene: Posed) -> tuple[Solution, str]:
     [
         (0, "whole", 0.01),
         (1, "whole", 0.01),
-        (-1, "whole", 0.8),
-        (1, "half", 0.1),
+        pytest.param(-1, "whole", 0.8, marks=pytest.mark.slow),
+        pytest.param(1, "half", 0.1, marks=pytest.mark.slow),
         (3, "fundamental", 0.01),
         (-5, "fundamental", 0.3),
         pytest.param(1, "whole", 0.5, marks=pytest.mark.slow),
