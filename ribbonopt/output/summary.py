@@ -103,8 +103,8 @@ def _symmetry(solution: Solution) -> dict[str, Any] | None:
     """Return what is of all of the ribbon, of which one of `pieces` is solved; None if all is."""
     boundary, (start, end) = solution.scene.boundary, solution.scene.interval
     count = boundary.pieces
-    if count == 1:
-        return None
+    if count == 1 or (boundary.loop is None and solution.posed.loaded):
+        return None  # of loads along half a strip the other half need not have its share
     of = "strip" if boundary.loop is None else "loop"
     whole = {"length": count * (end - start), "energy": count * solution.energy}
     return {"of": of, "pieces": count, **whole}

@@ -46,7 +46,7 @@ def _repeated(posed: Posed) -> list[str]:
     """Say what symmetry repeats of a ribbon, or why no more of a loop."""
     boundary, result = posed.given.boundary, []
     loop, count = boundary.loop, boundary.pieces
-    if count > 1:
+    if count > 1 and (loop is not None or not posed.loaded):
         rest = "the other half" if count == 2 else f"{count - 1} of {count} pieces"
         whole = "strip" if loop is None else "loop"
         result.append(f"{rest} of the {whole} (symmetry repeats what is solved)")

@@ -16,7 +16,9 @@ from .pieces import Piece
 def other_half(solution: Solution) -> Flip | None:
     """Return the flip that gives the other half of a strip, if its end is on an axis of one."""
     end, (start, last) = solution.scene.boundary.end, solution.scene.interval
-    if solution.scene.boundary.pieces != 2 or end.support != "flip" or end.axis not in ("d1", "d2"):
+    if solution.posed.loaded or solution.scene.boundary.pieces != 2:
+        return None
+    if end.support != "flip" or end.axis not in ("d1", "d2"):
         return None
     return flip_at(at_ends(solution), np.array([start, last]), 1, end.axis)
 

@@ -57,8 +57,8 @@ def flipped(scene: Scene, theta: Mapping[str, float], axis: str) -> bool:
     strain, (start, end) = _natural_strains(scene, theta), scene.interval
     if strain is None:
         return False
-    places = start + (end - start) * ALONG
-    return any(_differs(strain, FLIPS[axis], float(s), float(s)) for s in places)
+    places, signs = start + (end - start) * ALONG, FLIPS[axis]
+    return any(_differs(strain, signs, s, s) for s in places)
 
 
 def changed_by_sliding(scene: Scene, odd: bool) -> bool:
