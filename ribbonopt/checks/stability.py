@@ -3,7 +3,7 @@
 Of all shapes that satisfy the conditions on positions and directors, an equilibrium is one where
 the energy, less the work of dead forces, is stationary; it is stable where it is a minimum. The
 second variation (`variation`) is a quadratic form along the ribbon, whose inertia elimination tells
-(`elimination`). Of a piece of a loop only disturbances with its symmetry are judged.
+(`elimination`). Of a piece of a ribbon only disturbances with its symmetry are judged.
 """
 
 from __future__ import annotations
@@ -43,8 +43,9 @@ class SecondVariation:
     `negative` is the number of its clearly negative eigenvalues, those below -`neutral`. `error` is
     that of eigenvalues, over the largest, which is about `largest`. Units Dw = L = 1. `spins` says
     that one is zero since an isotropic rod spins, which is neither for nor against it; `planar`
-    that only directions in the ribbon's plane were looked at. `in_plane` is how many are in that,
-    of an unstable ribbon that is held there; None where it is not known.
+    that only directions in the ribbon's plane were looked at, `symmetric` that only those with the
+    symmetry of which a piece is solved. `in_plane` is how many are in the plane of an unstable
+    ribbon that is held there; None where it is not known.
     """
 
     negative: int
@@ -54,6 +55,7 @@ class SecondVariation:
     spins: bool = False
     planar: bool = False
     in_plane: int | None = None
+    symmetric: bool = False
 
     @property
     def verdict(self) -> str:
@@ -67,6 +69,7 @@ class SecondVariation:
                 if self.in_plane
                 else f"stable in its plane, {found} in space"
             )
+        found += " among disturbances with its symmetry" if self.symmetric else ""
         return f"{found}; neutral: {SPIN}" if self.spins else found
 
 
@@ -126,7 +129,9 @@ def _judged(variation: Variation | str, solution: Solution) -> SecondVariation |
     negative = factored(variation.form, neutral).negative
     planar = planar_posed(solution) is not None
     inside = None if planar or not negative else _negative_in_plane(solution)
-    return SecondVariation(negative, neutral, error, largest, spins(solution), planar, inside)
+    symmetric = solution.scene.boundary.repeats
+    parts = negative, neutral, error, largest, spins(solution), planar
+    return SecondVariation(*parts, inside, symmetric)
 
 
 def _negative_in_plane(solution: Solution) -> int | None:

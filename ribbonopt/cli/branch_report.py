@@ -30,7 +30,10 @@ def report(folder: BranchFolder, continuation: Continuation) -> str:
             if row["kind"] != "point":
                 more = _more(row, before, continuation.stages[stage].switch)
                 lines.append(f"    {row['kind']} at {_place(row, '.10g')}{more}")
-        lines += [f"    {change}" for change in _changes(rows)]
+        changes = list(_changes(rows))
+        lines += [f"    {change}" for change in changes]
+        if changes and continuation.prepared.scene.boundary.repeats:
+            lines.append("    (among disturbances with the symmetry of which a piece is solved)")
     return "\n".join([*lines, f"  written: {one_line(listing(folder.folder))}"])
 
 

@@ -93,6 +93,7 @@ def _checked(found: dict[str, Any]) -> str:
         f"  {found['size']} unknowns once discretised",
         "  will be skipped:",
         *(f"    {reason}" for reason in found["skipped"]),
+        *(f"  hint: {hint}" for hint in found["hints"]),
     ]
     return "\n".join(lines)
 

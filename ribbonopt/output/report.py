@@ -37,6 +37,7 @@ def report(summary: Mapping[str, Any]) -> str:
         *_potential(s),
         _row("H(0)" if _varies(s) else "invariant H(0)", s["H0"], errors["H0"]),
         *(_row(name, value, s["recorded_error"][name]) for name, value in s["recorded"].items()),
+        *_symmetry(s),
         *_acting(s),
         *_unknown_bars(s),
         *_phases(s),
@@ -54,6 +55,17 @@ def report(summary: Mapping[str, Any]) -> str:
         *(f"    {reason}" for reason in s["skipped"]),
     ]
     return "\n".join(lines)
+
+
+def _symmetry(summary: Mapping[str, Any]) -> list[str]:
+    """Lines on all of the ribbon, where a piece of it is solved."""
+    all_of, bar = summary.get("symmetry"), summary["error_estimate"]["energy"]
+    if all_of is None:
+        return []
+    count, length = all_of["pieces"], f"{all_of['length']:.6g}"
+    words = f"1/{count} of the {all_of['of']} is solved, symmetry gives the rest"
+    energy = _row("energy of all of it", all_of["energy"], None if bar is None else count * bar)
+    return [f"  {words} (length {length} in all)", energy]
 
 
 def _varies(summary: Mapping[str, Any]) -> bool:

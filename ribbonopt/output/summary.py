@@ -65,6 +65,7 @@ def summarize(solution: Solution) -> dict[str, Any]:
         "phases": list(solution.sheets),
         "switch": switch_of(scene),
         "half_twists": count_half_twists(solution),
+        "symmetry": _symmetry(solution),
         "unknowns": dense.blocks.layout.unknowns,
         "intervals": dense.blocks.layout.element_count,
         "degree": dense.blocks.degree,
@@ -96,6 +97,17 @@ def settings_of(scene: Scene) -> dict[str, Any]:
         "parameters": dict(scene.parameters),
         "interval": list(scene.interval),
     }
+
+
+def _symmetry(solution: Solution) -> dict[str, Any] | None:
+    """Return what is of all of the ribbon, of which one of `pieces` is solved; None if all is."""
+    boundary, (start, end) = solution.scene.boundary, solution.scene.interval
+    count = boundary.pieces
+    if count == 1 or (boundary.loop is None and solution.posed.loaded):
+        return None  # of loads along half a strip the other half need not have its share
+    of = "strip" if boundary.loop is None else "loop"
+    whole = {"length": count * (end - start), "energy": count * solution.energy}
+    return {"of": of, "pieces": count, **whole}
 
 
 def _equilibrium(solution: Solution) -> dict[str, Any]:

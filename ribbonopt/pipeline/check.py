@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 from ribbonopt.attempt.structure import Structure
+from ribbonopt.mechanics.ends.conditions import Component, Frame
 from ribbonopt.problem import Posed
 from ribbonopt.problem.wellposed.examine import examine, refuse_unreachable, unknown_counts
 from ribbonopt.scene import Scene
@@ -37,4 +38,17 @@ def check_scene(scene: Scene) -> dict[str, Any]:
         "conditions": list(structure.problem.conditions),
         "size": nlp.unknowns,
         "skipped": list(skipped(posed, structure.problem)),
+        "hints": _hints(posed),
     }
+
+
+def _hints(posed: Posed) -> list[str]:
+    """Say what a scene has and does not use: half a turn that maps its clamps to each other."""
+    if any(not isinstance(condition, Component | Frame) for condition in posed.conditions):
+        return []
+    from ribbonopt.mechanics.ends.twofold import axes_of  # scenes between clamps alone
+
+    axes = axes_of(posed.scene, posed.conditions)
+    choice = " or ".join(f"symmetric: {axis.director}" for axis in axes)
+    told = "half a turn maps the ends to each other: equilibria that have this symmetry are found "
+    return [f"{told}on half of the strip by {choice} (others may have less energy)"] if axes else []

@@ -32,6 +32,7 @@ def skipped(
         result.append("IPOPT and the sparse Jacobian (Newton condenses element by element)")
     if scene.guess != "auto" and not (ledger and ledger.given_up):
         result.append("automatic start (the guess is given)")
+    result += _repeated(posed)
     if solvers and not sheets:
         result.append("phases (the law is smooth, m2 keeps its sign, or the scene says so)")
     if scene.continuation is not None:
@@ -39,3 +40,19 @@ def skipped(
     if scene.tolerance is None:
         result.append("mesh refinement (no tolerance is asked for)")
     return tuple(result)
+
+
+def _repeated(posed: Posed) -> list[str]:
+    """Say what symmetry repeats of a ribbon, or why no more of a loop."""
+    boundary, result = posed.given.boundary, []
+    loop, count = boundary.loop, boundary.pieces
+    if count > 1 and (loop is not None or not posed.loaded):
+        rest = "the other half" if count == 2 else f"{count - 1} of {count} pieces"
+        whole = "strip" if loop is None else "loop"
+        result.append(f"{rest} of the {whole} (symmetry repeats what is solved)")
+    if boundary.repeats:
+        result.append("disturbances without the symmetry (stability is not judged by them)")
+    if loop is not None and posed.undivided:
+        solved = {"whole": "the whole", "half": "a half"}.get(loop.piece, "this one")
+        result.append(f"a smaller piece of the loop than {solved} (piece: auto: {posed.undivided})")
+    return result

@@ -43,7 +43,7 @@ class Posed:
     Attributes
     ----------
     given : Scene
-        As the user wrote it.
+        As the user wrote it; of a loop whose piece is `auto` that of the piece.
     scene : Scene
         The same in units Dw = L = 1.
     conditions : tuple of Condition
@@ -56,6 +56,8 @@ class Posed:
         What acts, and holds, at single places between the ends.
     like : Posed or None
         The same but for the numbers of its law: what does not depend on these is taken from there.
+    undivided : str
+        Of a loop whose piece is `auto`, why no smaller one than the scene's is solved, in words.
     """
 
     given: Scene
@@ -65,10 +67,16 @@ class Posed:
     units: Units = SPECIAL
     stations: tuple[Station, ...] = ()
     like: Posed | None = None
+    undivided: str = ""
 
     @classmethod
     def of(cls, scene: Scene, units: Units | None = None) -> Posed:
         """Pose a scene; in units of another one where they are to be compared number by number."""
+        undivided, loop = "", scene.boundary.loop
+        if scene.symmetric is not False or (loop is not None and loop.piece == "auto"):
+            from ribbonopt.mechanics.ends.smallest import divided  # few scenes ask for it
+
+            scene, undivided = divided(scene)
         scene, units = held(scene), units or units_of(scene)
         special = in_special_units(scene, units)
         loads: tuple[Load, ...] = ()
@@ -81,7 +89,8 @@ class Posed:
             from ribbonopt.mechanics.loads.points import stations_of  # as above
 
             stations = stations_of(special)
-        return cls(scene, special, conditions_of(special), loads, units, stations)
+        conditions = conditions_of(special)
+        return cls(scene, special, conditions, loads, units, stations, undivided=undivided)
 
     def moved(self, scene: Scene, units: Units | None = None) -> Posed:
         """Pose a scene that has come from this one by other numbers, in its units unless given.

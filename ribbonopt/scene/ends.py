@@ -129,16 +129,18 @@ class Loop:
     """A closed band of `half_twists` (2 (twist + writhe) of its directors; negative: mirrored).
 
     The interval is the `piece` that is solved: the whole loop, a half (flip symmetry), or the
-    fundamental one of length L / (2 |half_twists|) of a band with dihedral symmetry.
+    fundamental one of length L / (2 |half_twists|) of a band with dihedral symmetry. With `auto` it
+    is the whole loop, of which the smallest piece is solved that law, loads and guess allow.
     """
 
     half_twists: HalfTwists
-    piece: Literal["whole", "half", "fundamental"] = "whole"
+    piece: Literal["whole", "half", "fundamental", "auto"] = "whole"
 
     @property
     def pieces(self) -> int:
         """How many pieces make the whole loop, one of which is solved."""
-        return {"whole": 1, "half": 2, "fundamental": 2 * max(abs(self.half_twists), 1)}[self.piece]
+        fundamental = 2 * max(abs(self.half_twists), 1)
+        return {"whole": 1, "auto": 1, "half": 2, "fundamental": fundamental}[self.piece]
 
     @property
     def fundamental(self) -> Loop:
@@ -158,3 +160,20 @@ class Boundary:
     end: End = End()
     also: tuple[str, ...] = ()
     loop: Loop | None = None
+
+    @property
+    def flips(self) -> int:
+        """How many ends are at an axis of two-fold symmetry, and say so."""
+        return sum(end.support == "flip" for end in (self.start, self.end))
+
+    @property
+    def pieces(self) -> int:
+        """How many times what is solved makes all of it, where the scene says so."""
+        if self.loop is not None:
+            return self.loop.pieces
+        return 2 if self.flips == 1 else 1
+
+    @property
+    def repeats(self) -> bool:
+        """Whether symmetry repeats what is solved."""
+        return self.pieces > 1 or self.flips > 0

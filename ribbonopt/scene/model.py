@@ -195,12 +195,15 @@ class Scene:
     `width` is that along s in units of the ribbon's own, to which Dw and `ribbon.width` belong.
     `planar` says that the ribbon stays in the plane across d2 at its start: it is solved there, by
     an angle in the place of a frame, and its stability is judged in space.
+    `symmetric` solves half of a strip whose clamps half a turn maps to each other; which director
+    is along its axis in the middle, where there are two.
     """
 
     name: str
     law: Law
     boundary: Boundary
     guess: Guess = "auto"
+    symmetric: bool | Literal["d1", "d2", "-d1", "-d2"] = False
     starts: Annotated[int, Bounds(ge=1, most=limits.STARTS)] = 1
     seed: Annotated[int, Bounds(ge=0, most=limits.SEED)] = 0
     formulation: Literal["inverted", "algebraic", "differentiated", "energy"] | Algebraic = (

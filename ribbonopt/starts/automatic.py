@@ -37,7 +37,7 @@ from ribbonopt.solution.solution import Solution
 from .energy import MESH, least_energy_of
 from .first_shape import compresses, follower_loads, indeterminate, loaded, shapes_for
 from .homotopy import HomotopyPath, follow
-from .loops import closed_posed, fundamental_scene
+from .loops import closed_posed, fundamental_scene, newton_suffices
 from .tracking import smooth_of
 from .unfold import unfolded
 
@@ -153,6 +153,10 @@ class Automatic:
             if not started and not loaded(posed):
                 raise indeterminate(posed, shape)
             return started
+        if newton_suffices(posed, shape, law):
+            followed = self._follow(posed, law, guess, last, ledger, "twisted circle, ")
+            if followed.complete:
+                return list(followed.points)
         points: list[Solution] = []
         start: Guess = guess
         # Uneven rods snap on their way, from one equilibrium to the next.
@@ -204,13 +208,13 @@ class Automatic:
         return attempt.best
 
     def _follow(
-        self, posed: Posed, law: Law, guess: Guess, last: float, ledger: Ledger
+        self, posed: Posed, law: Law, guess: Guess, last: float, ledger: Ledger, words: str = ""
     ) -> HomotopyPath:
         started = time.perf_counter()
         followed = follow(self._homotopy(law), posed, law, guess, last)
         reached = _delta(followed.points[-1].scene.law) if followed.points else " (lost at once)"
         lost = "" if followed.complete or not followed.points else " (lost there)"
-        step = f"newton in {followed.steps} steps{reached}{lost}"
+        step = f"{words}newton in {followed.steps} steps{reached}{lost}"
         ledger.note(step, time.perf_counter() - started, followed.iterations)
         return followed
 

@@ -6,14 +6,17 @@ from dataclasses import replace
 
 import numpy as np
 
+from ribbonopt.guess.shapes import Shape, TwistedCircle
+from ribbonopt.mechanics.ends.conditions import Component
 from ribbonopt.mechanics.ends.frames import DIRECTORS, components, frame_of
 from ribbonopt.mechanics.ends.loops import end_turn
 from ribbonopt.mechanics.laws.asymmetry import changed_by_flip
 from ribbonopt.mechanics.laws.catalogue import always_the_same
 from ribbonopt.problem import Posed
-from ribbonopt.scene import Boundary, Loads, Loop, Scene
+from ribbonopt.scene import Boundary, Law, Loads, Loop, Scene, Variational
 
 CLOSE = 1e-9
+MOST_TWISTS = 9  # up to which Newton's method was compared with the least energy
 
 
 def loop_of(scene: Scene) -> Loop | None:
@@ -72,6 +75,29 @@ def fundamental_scene(scene: Scene) -> Scene | None:
     piece = replace(piece, loads=Loads(), gravity=None, supports=(), natural=None, width=None)
     own = always_the_same(scene.law) or not changed_by_flip(piece, Posed.of(piece).theta)
     return piece if own else None
+
+
+def newton_suffices(posed: Posed, shape: Shape, law: Law) -> bool:
+    """Whether Newton's method leads from a twisted circle to what least energy leads to.
+
+    A uniform band under the smooth law, which nothing acts on, has no numbers but delta and its
+    half twists: both were compared. Not with two, where less energy is out of the plane, nor from
+    more of a band than its smallest piece, which least energy untwists.
+    """
+    if not (isinstance(shape, TwistedCircle) and isinstance(law, Variational)):
+        return False
+    scene, loop = posed.scene, loop_of(posed.scene)
+    uneven = (scene.natural, scene.width, scene.membrane) != (None, None, None)
+    if loop is None or posed.loaded or uneven:
+        return False
+    if abs(loop.half_twists) > 1:
+        return loop.piece == "fundamental" and 2 < abs(loop.half_twists) <= MOST_TWISTS
+    if scene.boundary.loop is not None:
+        return not scene.boundary.also
+    # Undeclared it must not slide along itself either: eq. (6.2), section 5.
+    zero = [c for c in posed.conditions if isinstance(c, Component) and not c.value]
+    free = {c.quantity for c in zero if (c.end, c.axis) == ("start", "d1")}
+    return free >= ({"force"} if loop.piece == "whole" else {"force", "moment"})
 
 
 def _ends_across(

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 from dataclasses import field
 
-from ribbonopt.checks.topology import closure
+from ribbonopt.checks.flip import Flip
+from ribbonopt.checks.topology import ClosedBand, closure
 from ribbonopt.classes import dataclass
 from ribbonopt.errors import ViewError
 from ribbonopt.mechanics.laws.catalogue import curvature_across
@@ -14,7 +15,7 @@ from ribbonopt.solution.solution import Solution
 
 from .acting import Acting, acting_of
 from .pieces import ROWS, Piece, in_plane, is_rod, sample_pieces
-from .symmetry import continued
+from .symmetry import continued, image, other_half
 
 ROD_SHARE = 1 / 80  # half-width of the strip that a rod is drawn as, of the length
 FEWEST_ROWS = 81  # of a piece among many
@@ -105,13 +106,14 @@ def subject_of(solution: Solution, complete: bool) -> Subject:
     start, end = solution.scene.interval
     width = own_width(solution.scene)
     band = closure(solution) if complete else None
-    count = 1 if band is None else band.pieces
+    half = other_half(solution) if complete and band is None else None
+    count = 2 if half is not None else 1 if band is None else band.pieces
     solved = sample_pieces(solution, max(FEWEST_ROWS, min(ROWS, 2 * ROWS // count)))
     return Subject(
         name=solution.scene.name,
         interval=(float(start), float(end)),
         solved=solved,
-        mirrored=() if band is None else continued(band, solved),
+        mirrored=_rest(band, half, solved),
         units=solution.units,
         half_width=None if width is None else width / 2,
         count=count,
@@ -119,3 +121,12 @@ def subject_of(solution: Solution, complete: bool) -> Subject:
         rod=is_rod(solution),
         acting=acting_of(solution, ends=band is None),
     )
+
+
+def _rest(
+    band: ClosedBand | None, half: Flip | None, solved: tuple[Piece, ...]
+) -> tuple[Piece, ...]:
+    """Return what follows by symmetry: of a closed band, or of a strip whose half is solved."""
+    if half is not None:
+        return tuple(image(half, piece) for piece in reversed(solved))
+    return () if band is None else continued(band, solved)

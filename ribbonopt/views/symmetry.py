@@ -4,10 +4,23 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from ribbonopt.checks.flip import Flip
+import numpy as np
+
+from ribbonopt.checks.flip import Flip, at_ends, flip_at
 from ribbonopt.checks.topology import ClosedBand
+from ribbonopt.solution.solution import Solution
 
 from .pieces import Piece
+
+
+def other_half(solution: Solution) -> Flip | None:
+    """Return the flip that gives the other half of a strip, if its end is on an axis of one."""
+    end, (start, last) = solution.scene.boundary.end, solution.scene.interval
+    if solution.posed.loaded or solution.scene.boundary.pieces != 2:
+        return None
+    if end.support != "flip" or end.axis not in ("d1", "d2"):
+        return None
+    return flip_at(at_ends(solution), np.array([start, last]), 1, end.axis)
 
 
 def continued(band: ClosedBand, solved: tuple[Piece, ...]) -> tuple[Piece, ...]:

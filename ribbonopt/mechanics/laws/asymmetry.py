@@ -52,16 +52,20 @@ def changed_by_flip(scene: Scene, theta: Mapping[str, float]) -> str:
     loop = scene.boundary.loop
     if loop is None or loop.piece == "whole":
         return ""
-    strain = _natural_strains(scene, theta)
-    if strain is None:
-        return ""
-    start, end = scene.interval
-    places = start + (end - start) * ALONG
     twisted = loop.half_twists % 2 == 1 or (loop.piece == "fundamental" and loop.half_twists != 0)
-    for axis, signs in FLIPS.items():
-        if (axis == "d1" or twisted) and any(_differs(strain, signs, s, s) for s in places):
+    for axis in ("d1", "d2") if twisted else ("d1",):
+        if flipped(scene, theta, axis):
             return axis
     return ""
+
+
+def flipped(scene: Scene, theta: Mapping[str, float], axis: str) -> bool:
+    """Whether a flip about d1 or d2 changes the natural strains of a scene, anywhere along it."""
+    strain, (start, end) = _natural_strains(scene, theta), scene.interval
+    if strain is None:
+        return False
+    places, signs = start + (end - start) * ALONG, FLIPS[axis]
+    return any(_differs(strain, signs, s, s) for s in places)
 
 
 def changed_by_sliding(scene: Scene, odd: bool) -> bool:
@@ -86,11 +90,7 @@ def changed_by_sliding(scene: Scene, odd: bool) -> bool:
         return True
     if never_bent(scene):
         return False
-    theta = {f"law.{name}": value for name, value in numbers_of(scene.law).items()}
-    theta |= {name: value for field in fields_of(scene) for name, value in field.numbers().items()}
-    theta |= {"interval.start": start, "interval.end": end}
-    theta |= {f"parameters.{name}": value for name, value in scene.parameters.items()}
-    law, m, position = _relation(scene, theta)
+    law, m, position = _relation(scene, numbers_alone(scene))
     u = law.strain(Stress(ca.SX.zeros(3), m, ca.SX.zeros(len(law.states))))
     varied = bool(ca.depends_on(u, position))
     if not (varied or (odd and law.natural)):
@@ -101,6 +101,14 @@ def changed_by_sliding(scene: Scene, odd: bool) -> bool:
     return any(_differs(strain, still, start, s) for s in places) or _differs(
         strain, signs, start, start
     )
+
+
+def numbers_alone(scene: Scene) -> dict[str, float]:
+    """Return the numbers by name that the law of a scene, in units Dw = L = 1, may depend on."""
+    theta = {f"law.{name}": value for name, value in numbers_of(scene.law).items()}
+    theta |= {name: value for field in fields_of(scene) for name, value in field.numbers().items()}
+    theta |= {"interval.start": scene.interval[0], "interval.end": scene.interval[1]}
+    return theta | {f"parameters.{name}": value for name, value in scene.parameters.items()}
 
 
 def _differs(strain: Strain, signs: Array, s: float, image: float) -> bool:

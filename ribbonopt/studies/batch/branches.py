@@ -13,6 +13,7 @@ from dataclasses import replace
 from pathlib import Path
 from typing import Any
 
+from ribbonopt.mechanics.ends.smallest import settled
 from ribbonopt.output.declared import BRANCH_PICTURES
 from ribbonopt.output.staging import OWN_FILES, staged_result
 from ribbonopt.pipeline.prepared import Prepared
@@ -53,6 +54,7 @@ def follow(
     wait
         Seconds to wait for another process that writes there.
     """
+    scene = settled(scene)
     stage = asked_of(scene)[0]
     assert stage.from_ is not None
     first = replace(with_value(scene, stage.parameter, stage.from_), continuation=None)

@@ -13,6 +13,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 
 from ribbonopt.errors import ModelError
+from ribbonopt.mechanics.ends.smallest import settled
 from ribbonopt.pipeline.prepared import Prepared, prepare
 from ribbonopt.problem.wellposed.reach import refuse_far_goals
 from ribbonopt.scene import Scene
@@ -53,7 +54,7 @@ class Continuation:
         ModelError
             If the scene has no `continuation`, or cannot be continued.
         """
-        self.scene, self.stages = scene, asked_of(scene)
+        self.scene, self.stages = (scene := settled(scene)), asked_of(scene)
         refuse_far_goals(scene)
         first, before = Curve(scene, self.stages[0]), scene
         self.prepared = prepared or prepare(first.scene_at(first.begin))

@@ -255,7 +255,7 @@ COLLOCATION = {"type": "collocation"}
         (
             {"boundary": {"loop": {"half_twists": 1, "piece": "hal"}}},
             "boundary.loop.piece",
-            "expected 'whole', 'half' or 'fundamental'; did you mean 'half'?",
+            "expected 'whole', 'half', 'fundamental' or 'auto'; did you mean 'half'?",
         ),
     ],
 )
