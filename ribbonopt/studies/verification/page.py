@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from itertools import groupby
-
 from ribbonopt.text import printable
 
 from .run import Verification
@@ -40,7 +38,10 @@ parameter is 0.25; `buckling.1` a buckling load of a straight ribbon.
 def page(study: Verification) -> str:
     """Return the page."""
     lines = [BEFORE, *(f"{printable(text)}.  " for text in sentences(study)), _machine(study)]
-    for source, rows in groupby(study.verdicts, lambda verdict: verdict.claim.source):
+    sources: dict[str, list[Verdict]] = {}
+    for verdict in study.verdicts:
+        sources.setdefault(verdict.claim.source, []).append(verdict)
+    for source, rows in sources.items():
         lines += ["", f"## {_cell(source)}", "", _line(HEAD), _line(("---",) * len(HEAD))]
         lines += [_line(_row(verdict)) for verdict in rows]
     return "\n".join(lines) + "\n"

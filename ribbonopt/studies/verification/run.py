@@ -5,11 +5,12 @@ from __future__ import annotations
 import time
 from collections import Counter
 from collections.abc import Callable, Sequence
-from typing import Any
+from typing import Any, cast
 
 from ribbonopt.classes import dataclass
 from ribbonopt.errors import ModelError, SceneError
 from ribbonopt.output.summary import versions
+from ribbonopt.plain import finite
 from ribbonopt.studies.machine import machine
 
 from .answers import Answers
@@ -50,7 +51,7 @@ class Verification:
 
     def plain(self) -> dict[str, Any]:
         """Return everything as plain data for JSON."""
-        return {
+        plain: dict[str, Any] = {
             "name": NAME,
             "file": self.file,
             "status": "converged" if self.right else "off",
@@ -61,6 +62,7 @@ class Verification:
             "machine": machine(),
             "versions": versions(),
         }
+        return cast("dict[str, Any]", finite(plain))
 
 
 def verify(

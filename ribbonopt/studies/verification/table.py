@@ -13,6 +13,7 @@ from .verdict import OK, Verdict
 
 HEAD = ("scene", "quantity", "source", "ours", "bar", "digits", "CPU s", "")
 MOST = 17  # digits that a double needs
+WIDEST = 44  # column of scenes and what is set in them
 TOLD = "~"  # before a bar that is the scene's tolerance
 
 
@@ -42,7 +43,7 @@ def cells(verdict: Verdict) -> tuple[str, ...]:
     """Return the texts of a row: scene, quantity, source, ours, bar, digits, CPU s, status."""
     claim = verdict.claim
     return (
-        " ".join((claim.scene, *claim.given)),
+        _cut(" ".join((claim.scene, *claim.given))),
         claim.quantity,
         written(claim.value, claim.digits),
         *_ours(verdict),
@@ -64,6 +65,10 @@ def written(value: float, stand: int | None) -> str:
     if not -4 <= exponent < MOST:
         return text
     return f"{value:.{max(0, stand - 1 - exponent)}f}"
+
+
+def _cut(text: str) -> str:
+    return text if len(text) <= WIDEST else f"{text[: WIDEST - 4]} ..."
 
 
 def _ours(verdict: Verdict) -> tuple[str, str]:

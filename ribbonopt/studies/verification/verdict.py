@@ -68,6 +68,8 @@ class Verdict:
         most = min(self.claim.digits or DIGITS, DIGITS)
         if self.gap <= self.slack:
             return most
+        if not math.isfinite(self.gap):
+            return 0
         relative = 2 * self.gap / _unit(self.claim.value)
         return max(0, min(most, 1 + math.floor(-math.log10(relative))))
 
