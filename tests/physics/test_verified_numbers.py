@@ -31,7 +31,9 @@ def test_other_programs_read_the_same() -> None:
 
 def test_the_page_has_the_rows_of_the_file() -> None:
     lines = PAGE.read_text(encoding="utf-8").splitlines()
-    rows = [line.strip("| ").split(" | ") for line in lines if " | `" in line]
+    rows = [
+        line.strip("| ").split(" | ") for line in lines if " | `" in line and line.count(" | ") > 5
+    ]
     shown = sorted((cells[0], *(c.strip() for c in cells[2:4])) for cells in rows)
     assert shown == sorted(
         (c.scene, f"`{c.quantity}`", written(c.value, c.digits)) for c in load_claims()

@@ -15,23 +15,44 @@ BEFORE = """# Numbers with sources, computed again
 
 Made by `ribbonopt verify --out FOLDER`; not written by hand. Scenes and rows are in
 [`verification.yaml`](../ribbonopt/studies/verification/verification.yaml), which stands by itself:
-run it against another program, and cite it. A row is *ok* where
+cite it, and run it against another program.
+
+    ribbonopt verify                       # all rows; exit status 3 if one is off
+    ribbonopt verify half 'fold.*'         # some, by scene or quantity
+    ribbonopt verify --file own.yaml       # rows of your own
+
+A row is *ok* where
 
     |ours - source| <= bar + half a unit of the last digit that the source has.
 
-`ours` has the digits that the bar leaves, `digits` is how many of the source's it agrees with
-(decimals, where the source is zero), `bar` is what the package claims of the error of this very
-answer. `~` before a bar says that there is none for this quantity, and the scene's tolerance stands
-in for it; `-` that it is a count, right or wrong. The CPU time of a row is that of what was not
-there yet: the first of a scene pays for its solution, or for its branch.
+`source` has the digits that stand, as far as a double has them; `ours` those that the bar leaves;
+`digits` is how many of them agree (decimals, where the source is zero). `bar` is what the package
+claims of the error of this very answer; `~` before it says that there is none for this quantity,
+and the scene's tolerance stands in for it; `-` that it is a count, right or wrong. The CPU time of
+a row is that of what was not there yet: the first of a scene pays for its solution or its branch.
 
-Quantities: `n0.x`, `m0.y` force and moment at the start, lab frame; `u0.2` strains there along
-the directors; `r(0.5).x`, `d1(end).z`, `u(0).2`, `m2(0.25)` outputs at an arclength; `energy`, `H`
-(= W_Leg + n3 at the start), `potential`, `twist` (turns); `record.NAME` a formula that the scene
-records; `reaction.2.x` the force of the second support; `switch.1` where the curvature jumps;
-`negative` negative directions of the second variation; `fold.1.value`, `branch_point.2.value` the
-parameter at a special point of the scene's `continuation`; `at(0.25).energy` the branch where the
-parameter is 0.25; `buckling.1` a buckling load of a straight ribbon.
+## The file
+
+`scenes` are whole scenes by name, as `ribbonopt solve` takes them. A row has `scene`, maybe `set`
+(other values in it, by dotted keys), `quantity`, `value`, `digits` (significant digits of the value
+that stand, or `exact`), `source`, maybe `about`. Units are D w = L = 1, or SI where a scene has a
+`ribbon`; d1 is the normal, d2 across the width, d3 the tangent; n and m are in the lab frame.
+
+| quantity | what it is |
+| --- | --- |
+| `n0.x`, `m0.y` | force and moment at the start |
+| `u0.2` | strains there, along the directors |
+| `r(0.5).x`, `d1(end).z`, `u(0).2`, `m2(0.25)` | any output at an arclength |
+| `energy`, `potential`, `H`, `twist` | H = W_Leg + n3 at the start; turns |
+| `record.NAME` | a formula that the scene records |
+| `reaction.2.x` | force of the second support |
+| `switch.1` | arclength where the curvature jumps |
+| `negative`, `switches`, `half_twists` | negative directions of the second variation; how many |
+| `fold.1.value`, `branch_point.2.value` | the parameter at a special point of the `continuation` |
+| `at(0.25).energy` | the branch where the parameter is 0.25 |
+| `buckling.1` | buckling load of a straight ribbon, in the range of the `continuation` |
+
+## All rows
 """
 
 
@@ -42,7 +63,7 @@ def page(study: Verification) -> str:
     for verdict in study.verdicts:
         sources.setdefault(verdict.claim.source, []).append(verdict)
     for source, rows in sources.items():
-        lines += ["", f"## {_cell(source)}", "", _line(HEAD), _line(("---",) * len(HEAD))]
+        lines += ["", f"### {_cell(source)}", "", _line(HEAD), _line(("---",) * len(HEAD))]
         lines += [_line(_row(verdict)) for verdict in rows]
     return "\n".join(lines) + "\n"
 

@@ -111,7 +111,7 @@ def test_only_the_first_row_of_a_scene_pays(study: Verification) -> None:
 def test_the_page_has_all_rows(study: Verification) -> None:
     lines = page(study).splitlines()
     assert sum(line.startswith(("| tip |", "| column |")) for line in lines) == 14
-    assert lines.count("## a book") == 1
+    assert lines.count("### a book") == 1
 
 
 @pytest.mark.parametrize(
