@@ -6,14 +6,12 @@ Each is computed when the first row asks for it, and once.
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import field, replace
+from dataclasses import replace
 from functools import cached_property
 
-from ribbonopt.attempt.structure import Structure
 from ribbonopt.classes import dataclass
 from ribbonopt.errors import ConvergenceError
-from ribbonopt.pipeline.prepared import Prepared, prepare, solve
-from ribbonopt.problem import Posed
+from ribbonopt.pipeline.prepared import solve
 from ribbonopt.scene import Scene
 from ribbonopt.solution.solution import Solution
 from ribbonopt.studies.buckling.buckling import buckling_loads
@@ -22,24 +20,6 @@ from ribbonopt.studies.continuation.continuation import Continuation
 from ribbonopt.studies.continuation.walk.points import Point
 
 from .measured import NoAnswerError
-
-KEPT = 8  # structures that others may need again: rows of one scene are near each other
-
-
-@dataclass(frozen=True, eq=False)
-class Built:
-    """What was built for the last scenes, which serves others that differ in numbers only."""
-
-    _known: dict[object, Structure] = field(default_factory=dict)
-
-    def prepared(self, scene: Scene) -> Prepared:
-        """Return what solves a scene; it remembers no solution of another, as if it was alone."""
-        key = Posed.of(scene).structure
-        if key not in self._known:
-            if len(self._known) >= KEPT:
-                self._known.pop(next(iter(self._known)))
-            self._known[key] = prepare(scene).structure
-        return Prepared(self._known[key], 0.0)
 
 
 @dataclass(frozen=True, eq=False)
@@ -63,18 +43,12 @@ class Answers:
     """The answers of one scene."""
 
     scene: Scene
-    built: Built = field(default_factory=Built)
-
-    @cached_property
-    def _alone(self) -> Scene:
-        return replace(self.scene, continuation=None)
 
     @cached_property
     def solution(self) -> Solution:
         """Its equilibrium; NoAnswerError where none is verified."""
-        scene, alone = self._alone, self._alone.starts == 1
         try:
-            found = self.built.prepared(scene).solve(scene) if alone else solve(scene)
+            found = solve(replace(self.scene, continuation=None))
         except ConvergenceError as error:
             raise NoAnswerError(str(error)) from None
         if not found.verified:
@@ -84,7 +58,7 @@ class Answers:
     @cached_property
     def branch(self) -> Branch:
         """Its branches; NoAnswerError where one ends short of its goal."""
-        continuation = Continuation(self.scene, self.built.prepared(self._alone))
+        continuation = Continuation(self.scene)
         try:
             points = list(continuation)
         except ConvergenceError as error:

@@ -13,7 +13,7 @@ from ribbonopt.output.summary import versions
 from ribbonopt.plain import finite
 from ribbonopt.studies.machine import machine
 
-from .answers import Answers, Built
+from .answers import Answers
 from .claims import Claim
 from .measured import TOLERANCE, NoAnswerError
 from .verdict import OK, Verdict
@@ -88,9 +88,8 @@ def verify(
     for claim in claims:
         cases.setdefault(id(claim.case), []).append(claim)
     found: dict[int, Verdict] = {}
-    built = Built()
     for rows in cases.values():
-        answers = Answers(rows[0].case, built)  # forgotten with its branches when its rows are done
+        answers = Answers(rows[0].case)  # forgotten with its branches when its rows are done
         for claim in rows:
             told(f"row {len(found) + 1} of {len(claims)}: {claim.label}")
             found[claim.number] = _verdict(claim, answers, file)
