@@ -18,7 +18,7 @@ PAGE = Path(__file__).parents[2] / "docs" / "verification.md"
 
 def test_there_are_many_and_each_has_a_source() -> None:
     found = load_claims()
-    assert len(found) >= 300
+    assert len(found) >= 600
     assert len({claim.source for claim in found}) >= 20
     assert len({(c.scene, c.given, c.quantity, c.source) for c in found}) == len(found)
 
