@@ -32,18 +32,18 @@ def recorded_errors(solution: Solution) -> dict[str, float]:
     LinAlgError
         If the equations are singular.
     """
-    if not solution.scene.record:
-        return {}
+    return {name: error_at(solution, text, s) for name, text, s in _formulas(solution)}
+
+
+def error_at(solution: Solution, text: str, s: float) -> float:
+    """Bar of a formula of named outputs at an arclength; see `recorded_errors`."""
     found = analyse(solution)
     better = replace(solution, trajectory=found.other)
     bar = SAFETY * found.more if found.known else math.nan
-    result = {}
-    for name, text, s in _formulas(solution):
-        places = _near(solution, s)
-        ours, theirs = (each.sample(places, text) for each in (solution, better))
-        gap, size = (float(np.abs(v).max()) for v in (ours - theirs, ours))
-        result[name] = bar * max(gap, ROUNDING * size)
-    return result
+    places = _near(solution, s)
+    ours, theirs = (each.sample(places, text) for each in (solution, better))
+    gap, size = (float(np.abs(v).max()) for v in (ours - theirs, ours))
+    return bar * max(gap, ROUNDING * size)
 
 
 def _formulas(solution: Solution) -> list[tuple[str, str, float]]:

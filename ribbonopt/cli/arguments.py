@@ -100,6 +100,16 @@ def _batch(verb: argparse.ArgumentParser) -> None:
     verb.add_argument("--quiet", action="store_true", help="print nothing unless it fails")
 
 
+def _verify(verb: argparse.ArgumentParser) -> None:
+    verb.add_argument(
+        "rows", nargs="*", metavar="ROWS", help="scenes or quantities, such as half 'fold.*'"
+    )
+    verb.add_argument("--file", metavar="YAML", help="other rows (default: those that are shipped)")
+    verb.add_argument("--out", metavar="DIR", help="folder for CSV, JSON and a page")
+    verb.add_argument("--json", action="store_true", help="print exactly one JSON object")
+    verb.add_argument("--quiet", action="store_true", help="print nothing unless it fails")
+
+
 def _schema(verb: argparse.ArgumentParser) -> None:
     """Add nothing."""
 
@@ -199,6 +209,7 @@ VERBS = {
     "bench": ("time against error over degrees and meshes", _bench),
     "continue": ("follow a scene's equilibria as a parameter moves (its `continuation`)", _follow),
     "batch": ("solve all ribbons of a study, on all cores", _batch),
+    "verify": ("compute numbers with sources again, and say which are confirmed", _verify),
     "schema": ("print the JSON schema of scenes, for editors", _schema),
     "plot": ("draw the pictures of a saved result", _plot),
 }

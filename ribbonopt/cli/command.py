@@ -29,6 +29,7 @@ MODULES = {
     "bench": "comparison",
     "continue": "branch",
     "batch": "batch",
+    "verify": "verification",
 }
 
 

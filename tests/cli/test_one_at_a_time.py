@@ -23,6 +23,7 @@ VERBS = {
     "continue": ("continue", "column.yaml"),
     "batch": ("batch", "study.yaml", "--jobs", "1"),
     "plot": ("plot", "result"),
+    "verify": ("verify", "half"),
 }
 
 each_verb = pytest.mark.parametrize("verb", VERBS)

@@ -17,6 +17,7 @@ from ribbonopt.studies.continuation.walk.points import FOLD, Point
         ((1.0, 1.001), 1.001, 0.001),
         ((1.0, 1.1, 1.3, 1.7), 1.7, 0.4),  # never
         ((1.0,), 1.0, None),  # no finer mesh leads on
+        ((80.0, 80.0), 80.0, 80 * special.ROUNDING),  # by accident the same
     ],
 )
 def test_the_bar_is_no_smaller_than_what_the_mesh_before_was_off(
@@ -33,7 +34,7 @@ def test_the_bar_is_no_smaller_than_what_the_mesh_before_was_off(
     first: Any = 0
     found = special._on_finer_meshes(equations, first, points[0], 0.0)
     assert found.position == position
-    assert found.error == (None if error is None else pytest.approx(error))
+    assert found.error == (None if error is None else pytest.approx(error, rel=1e-6, abs=0))
 
 
 def point(position: float) -> Point[Any]:

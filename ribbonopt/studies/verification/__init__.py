@@ -1,0 +1,1 @@
+"""Numbers with sources, each computed again: what this package can vouch for."""
