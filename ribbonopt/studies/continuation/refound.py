@@ -12,7 +12,7 @@ from ribbonopt.solution.solution import Solution
 from .phases import Change
 from .segment import Segment
 from .walk.points import Point
-from .walk.special import ROUNDING
+from .walk.special import ROUNDING, SAFETY
 from .walk.tangents import moved
 
 if TYPE_CHECKING:
@@ -38,7 +38,7 @@ def on_finer_meshes(
             found = None
         if found is None:
             return event
-        error = abs(found.position - event.position)
+        error = SAFETY * abs(found.position - event.position)
         event = replace(found, error=max(error, ROUNDING * abs(found.position)))
         if equations.enough(error, event.position):
             break

@@ -18,6 +18,7 @@ ONE = 1e-6  # arclength within which a fold and a branch point are one: a pitchf
 FROM_THE_SIDE = "pitchfork, met from its side branch"
 ASIDE = 0.03  # arclength on both sides of a special point, between which it is found again
 MESHES = 3  # on finer meshes, at most
+SAFETY = 4.0  # bar over what a finer mesh moves, as of all other numbers
 ROUNDING = 2e-14  # of a position: how exactly the root of a test function is known at best
 
 
@@ -111,8 +112,8 @@ def _on_finer_meshes(
             return point
         beside, arc = again
         found = _point(beside, point.kind, arc)
-        # Of the coarser of the two, and so a bound of that of the finer.
-        error = abs(found.position - point.position)
+        # Of the coarser of the two: that of the finer is less, but for an accident of both.
+        error = SAFETY * abs(found.position - point.position)
         # But two may agree by accident.
         point = replace(found, error=max(error, ROUNDING * abs(found.position)))
         if equations.enough(error, point.position):
