@@ -23,6 +23,7 @@ RESERVED_NAMES = frozenset(
         *("branch.csv", "comparison.csv", "comparison.json", "comparison.png"),
         *("benchmark.csv", "benchmark.json", "benchmark.png"),
         *("laws.csv", "laws.json", "laws.png", "special.csv", "special.png"),
+        *("stress.csv", "stress.json", "stress.png"),
     )
 )
 _EXECUTED = frozenset("=+-@")

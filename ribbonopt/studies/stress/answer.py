@@ -97,7 +97,7 @@ def gap_between(one: Answer, other: Answer) -> Gap:
 
 
 def image_gap(one: Answer, other: Answer) -> Gap:
-    """Return the gap of two answers, one of which may be turned, shifted along a band or mirrored."""
+    """Return the gap of two answers, one of which may be turned, shifted or mirrored."""
     ours, theirs = one.image, other.image
     parts = {name: abs(ours[name] - theirs[name]) for name in ours}
     # Bars are of components, of which a size has three.
@@ -105,9 +105,7 @@ def image_gap(one: Answer, other: Answer) -> Gap:
     return _worst(parts, one, other, {name: OF.get(name, name) for name in parts})
 
 
-def _worst(
-    parts: Mapping[str, float], one: Answer, other: Answer, names: Mapping[str, str]
-) -> Gap:
+def _worst(parts: Mapping[str, float], one: Answer, other: Answer, names: Mapping[str, str]) -> Gap:
     over, relative, known = {}, {}, True
     for part, gap in parts.items():
         name = names[part]
@@ -121,7 +119,9 @@ def _worst(
         if not math.isfinite(over[part]):
             over[part] = relative[part] = math.inf
     worst = max(over, key=over.__getitem__)
-    return Gap(over[worst], max(relative[p] for p in relative if names[p] in ("n0", "m0")), worst, known)
+    return Gap(
+        over[worst], max(relative[p] for p in relative if names[p] in ("n0", "m0")), worst, known
+    )
 
 
 def _over(bar: float | None, unit: float) -> float | None:

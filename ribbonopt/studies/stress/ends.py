@@ -35,7 +35,7 @@ def half_twists(scene: Scene, quick: bool) -> Trials:
 
 
 def distances(scene: Scene, quick: bool) -> Trials:
-    """Ends that are moved along the line between them, until the ribbon is straight, or they meet."""
+    """Move the ends along the line between them, until they meet, or the ribbon is straight."""
     start, end = scene.boundary.start.position, scene.boundary.end.position
     if not (isinstance(start, tuple) and isinstance(end, tuple)):
         return "its ends are not both held in place"
@@ -52,5 +52,3 @@ def distances(scene: Scene, quick: bool) -> Trials:
         ends = replace(scene.boundary, end=replace(scene.boundary.end, position=(x, y, z)))
         found.append(Trial(f"{name} of its length", replace(scene, boundary=ends), name))
     return found
-
-

@@ -42,5 +42,5 @@ def kinds_of(names: Iterable[str] | None = None) -> dict[str, Kind]:
     unknown = [repr(name) for name in chosen if name not in KINDS]
     if unknown or not chosen:
         found = ", ".join(unknown) or "none"
-        raise SceneError(f"only: found {found}; expected some of {', '.join(KINDS)}")
+        raise SceneError(f"--only: found {found}; expected some of {', '.join(KINDS)}")
     return {name: KINDS[name] for name in chosen}

@@ -4,14 +4,16 @@ from __future__ import annotations
 
 import re
 from dataclasses import fields, is_dataclass, replace
-from typing import Any
+from typing import Any, TypeVar
 
-from ribbonopt.scene import Kirchhoff, Membrane, Rod, Sano, Scene
+from ribbonopt.scene import End, Kirchhoff, Membrane, PointLoad, Rod, Sano, Scene
 from ribbonopt.scene.along import scaled
 from ribbonopt.scene.formulas.parsing import evaluate_value
 from ribbonopt.scene.units import Units, in_special_units
 
 from .trial import Trial, Trials, one_of
+
+T = TypeVar("T", End, PointLoad)
 
 SMOOTHING = ("epsilon", "delta")
 #: what a formula of `also` may not name, where it is to hold in another unit of length
@@ -67,7 +69,7 @@ def loads(scene: Scene, quick: bool) -> Trials:
 
 
 def lengths(scene: Scene, quick: bool) -> Trials:
-    """The scene in another unit of length: the same ribbon."""
+    """Put the scene in another unit of length: the same ribbon."""
     if scene.loads.own or not _without_units(scene):
         return "what it declares itself has units that cannot be changed from outside"
     values = one_of(quick, (1e-9, 1e9), [10.0**k for k in range(-9, 10, 3) if k])
@@ -75,27 +77,25 @@ def lengths(scene: Scene, quick: bool) -> Trials:
     for value in values:
         # Without `ribbon` stiffnesses keep their numbers; with it they grow with the sizes.
         unit = Units(value, value**2 if scene.ribbon else value**-2)
-        found.append(Trial(f"times {value:.0e}", longer(scene, value), f"{value:.0e}", True, None, unit))
+        found.append(
+            Trial(f"times {value:.0e}", longer(scene, value), f"{value:.0e}", True, None, unit)
+        )
     return found
 
 
 def longer(scene: Scene, by: float) -> Scene:
     """Return the scene in a unit of length that is 1 / `by` of its own; of another size in SI."""
-    unit = Units(1 / by, by**-2 if scene.ribbon else by**2)
-    other = in_special_units(replace(scene, ribbon=None), unit)
-    kept = {"parameters": scene.parameters, "record": {}, "continuation": None}
     ribbon = scene.ribbon
+    unit = Units(1 / by, by**-2 if ribbon else by**2)
+    weight = _multiplied(scene.gravity, 1 / by if ribbon else by**-3, scene)
+    other = in_special_units(replace(scene, ribbon=None), unit)
+    # What `also` says has no unit here.
+    other = replace(other, gravity=weight, parameters=scene.parameters)
     if ribbon is None:
-        heavier = 1 / by**3
-        return replace(other, gravity=_multiplied(scene.gravity, heavier, scene), **kept)
-    sizes = {name: by * getattr(ribbon, name) for name in ("length", "width", "thickness")}
-    weight = _multiplied(scene.gravity, 1 / by, scene)
-    return replace(other, ribbon=replace(ribbon, **sizes), gravity=weight, law=_sized(scene, by), **kept)
-
-
-def _sized(scene: Scene, by: float) -> Any:
-    law = scene.law
-    return law.in_units(1.0, 1 / by) if hasattr(law, "of_sizes") else law
+        return other
+    length, width, thickness = (by * v for v in (ribbon.length, ribbon.width, ribbon.thickness))
+    ribbon = replace(ribbon, length=length, width=width, thickness=thickness)
+    return replace(other, ribbon=ribbon, membrane=scene.membrane)
 
 
 def _without_units(scene: Scene) -> bool:
@@ -109,32 +109,23 @@ def _decades(most: int) -> list[float]:
 def _times(scene: Scene, factor: float) -> Scene:
     """Return a scene with everything that acts on it times a factor."""
     along, boundary = scene.loads, scene.boundary
-    ends = {
-        name: replace(
-            end,
-            force=_multiplied(end.force, factor, scene),
-            moment=_multiplied(end.moment, factor, scene),
-        )
-        for name, end in (("start", boundary.start), ("end", boundary.end))
-    }
-    points = tuple(
-        replace(
-            point,
-            force=_multiplied(point.force, factor, scene),
-            moment=_multiplied(point.moment, factor, scene),
-        )
-        for point in along.points
+    force, couple, pressure = (
+        _along(v, factor) for v in (along.force, along.couple, along.pressure)
     )
-    more = {
-        name: _along(getattr(along, name), factor) for name in ("force", "couple", "pressure")
-    }
+    points = tuple(_acting(point, factor, scene) for point in along.points)
+    start, end = (_acting(end, factor, scene) for end in (boundary.start, boundary.end))
     return replace(
         scene,
-        boundary=replace(boundary, **ends),
-        loads=replace(along, points=points, **more),
+        boundary=replace(boundary, start=start, end=end),
+        loads=replace(along, points=points, force=force, couple=couple, pressure=pressure),
         gravity=_multiplied(scene.gravity, factor, scene),
-        continuation=None,
     )
+
+
+def _acting(place: T, factor: float, scene: Scene) -> T:
+    """Return an end or a point load with its force and moment times a factor."""
+    force, moment = (_multiplied(value, factor, scene) for value in (place.force, place.moment))
+    return replace(place, force=force, moment=moment)
 
 
 def _along(value: Any, factor: float) -> Any:

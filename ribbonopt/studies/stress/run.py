@@ -15,14 +15,23 @@ from ribbonopt.pipeline.prepared import prepare, solve
 from ribbonopt.plain import Row, finite
 from ribbonopt.solution.solution import Solution
 
-from .answer import Answer
+from .answer import Answer, gap_between
 from .condition import condition_of
 from .limit import OutOfTimeError, limited
 from .trial import Trial
 from .verdict import Judged, Verdict, judge
 from .witness import witnesses
 
-COLUMNS = ("kind", "value", "label", "verdict", "digits_lost", "error", "over_bars", "condition")
+COLUMNS: tuple[str, ...] = (
+    "kind",
+    "value",
+    "label",
+    "verdict",
+    "digits_lost",
+    "error",
+    "over_bars",
+    "condition",
+)
 COLUMNS += ("cpu", "intervals", "status", "message")
 EPSILON = float(np.finfo(float).eps)
 
@@ -134,18 +143,19 @@ def _solved(trial: Trial) -> Solution:
     return prepared.solve(guess=trial.start(prepared))
 
 
-def _judged(
-    trial: Trial, found: Solution, truth: Answer | None, examine: Examine | None
-) -> Judged:
+def _judged(trial: Trial, found: Solution, truth: Answer | None, examine: Examine | None) -> Judged:
     # Witnesses are asked in units of the trial.
     answer = Answer.of(found, trial.units)
     others = (Answer.of(witness, trial.units) for witness in witnesses(found))
-    judged = judge(answer, truth if trial.same else None, others)
+    known = truth if trial.same else None
+    if known is not None and gap_between(answer, known).agree:
+        return judge(answer, known, ())  # the truth was examined itself
+    judged = judge(answer, known, others)
     fault = None if examine is None or judged.verdict.bad else examine(found)
     if fault:
         return Judged(Verdict.WRONG, fault, judged.error, judged.over_bars)
     if fault == "" and judged.verdict is Verdict.UNCONFIRMED:
-        return Judged(Verdict.SOLVED if truth is None else Verdict.OTHER)
+        return Judged(Verdict.SOLVED if known is None else Verdict.OTHER)
     return judged
 
 

@@ -66,7 +66,7 @@ def noise(scene: Scene, quick: bool) -> list[Trial]:
 
 
 def degenerate(scene: Scene, quick: bool) -> list[Trial]:
-    """Starts that are straight, without loads, or as symmetric as can be: nothing is singled out."""
+    """Start straight, without loads, or as symmetric as can be: nothing is singled out."""
     starts = {
         "straight, no loads": LoadGuess(NOTHING, NOTHING),
         "no strains": StrainGuess((0.0, 0.0)),

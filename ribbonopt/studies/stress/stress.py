@@ -96,7 +96,7 @@ def stress(
     kinds = kinds_of(only)
     scene = replace(scene, continuation=None, record={})
     tell("the scene as it is")
-    truth, source = truth_of(scene, seconds)
+    truth, source = truth_of(scene, seconds, examine)
     rows: list[Outcome] = []
     none: dict[str, str] = {}
     for name, kind in kinds.items():
@@ -110,10 +110,13 @@ def stress(
     return Stress(scene.name, tuple(rows), none, source)
 
 
-def truth_of(scene: Scene, seconds: float) -> tuple[Answer | None, str]:
+def truth_of(
+    scene: Scene, seconds: float, examine: Examine | None = None
+) -> tuple[Answer | None, str]:
     """Return what a scene's answer should be, and in words how that is known; None if it is not.
 
-    That of another scheme, sharper than the scene's own answer, with which it agrees.
+    That of another scheme, sharper than the scene's own answer, with which it agrees; and in which
+    who examines it finds no fault.
     """
     with suppress(OutOfTimeError, RibbonoptError, np.linalg.LinAlgError), limited(3 * seconds):
         found = solve(scene)
@@ -123,6 +126,8 @@ def truth_of(scene: Scene, seconds: float) -> tuple[Answer | None, str]:
         for witness in witnesses(found):
             other = Answer.of(witness)
             if gap_between(own, other).agree:
+                if fault := examine and examine(witness):
+                    return None, f"not known: {fault}"
                 mesh = witness.scene.transcription
                 name = f"{mesh.scheme} {mesh.type} on {len(witness.nodes) - 1} intervals"
                 return other, f"the scene's own answer, sharpened by {name}"

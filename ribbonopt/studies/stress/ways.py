@@ -12,7 +12,7 @@ from .trial import Trial
 
 SCHEMES = ("gauss", "radau", "lobatto", "rk4", "rk8", "shooting-gauss")
 STEPS = {"rk4": 8, "rk8": 2}
-SOLVERS = {"newton": Newton(), "ipopt": Ipopt()}
+SOLVERS: dict[str, Ipopt | Newton] = {"newton": Newton(), "ipopt": Ipopt()}
 
 
 def ways(scene: Scene, quick: bool) -> list[Trial]:
