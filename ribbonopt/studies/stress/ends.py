@@ -21,7 +21,8 @@ def half_twists(scene: Scene, quick: bool) -> Trials:
     found = []
     whole = (scene.interval[1] - scene.interval[0]) * loop.pieces
     for count in counts:
-        other = replace(loop, half_twists=count)
+        small = count < 2 and loop.piece == "fundamental"  # which such a band has not
+        other = replace(loop, half_twists=count, piece="half" if small else loop.piece)
         start = scene.interval[0]
         changed = replace(
             scene,
