@@ -7,7 +7,7 @@ from dataclasses import fields, is_dataclass, replace
 from typing import Any, TypeVar
 
 from ribbonopt.scene import End, Kirchhoff, Membrane, PointLoad, Rod, Sano, Scene
-from ribbonopt.scene.along import scaled
+from ribbonopt.scene.along import Scaled, Table, scaled
 from ribbonopt.scene.formulas.parsing import evaluate_value
 from ribbonopt.scene.units import Units, in_special_units
 
@@ -16,6 +16,7 @@ from .trial import Trial, Trials, one_of
 T = TypeVar("T", End, PointLoad)
 
 SMOOTHING = ("epsilon", "delta")
+ARCLENGTH = re.compile(r"\bs\b")
 #: what a formula of `also` may not name, where it is to hold in another unit of length
 WITH_UNITS = re.compile(r"\b(r|n|m|u|[nmu][123]|H|energy|eta)\b")
 
@@ -90,12 +91,31 @@ def longer(scene: Scene, by: float) -> Scene:
     weight = _multiplied(scene.gravity, 1 / by if ribbon else by**-3, scene)
     other = in_special_units(replace(scene, ribbon=None), unit)
     # What `also` says has no unit here.
-    other = replace(other, gravity=weight, parameters=scene.parameters)
+    other: Scene = _written(replace(other, gravity=weight, parameters=scene.parameters))
     if ribbon is None:
         return other
     length, width, thickness = (by * v for v in (ribbon.length, ribbon.width, ribbon.thickness))
     ribbon = replace(ribbon, length=length, width=width, thickness=thickness)
     return replace(other, ribbon=ribbon, membrane=scene.membrane)
+
+
+def _written(value: Any) -> Any:
+    """Return a scene, or a part of one, in which numbers along the ribbon are as a user has them.
+
+    Not in other units, which only Python can say.
+    """
+    if isinstance(value, Scaled):
+        given, unit, length = value.value, value.unit, value.length
+        if isinstance(given, str):
+            return f"({ARCLENGTH.sub(f'(s*{length!r})', given)})/{unit!r}"
+        return Table(tuple(s / length for s in given.s), tuple(v / unit for v in given.values))
+    if isinstance(value, tuple):
+        return tuple(map(_written, value))
+    if not is_dataclass(value) or isinstance(value, type):
+        return value
+    parts = {f.name: getattr(value, f.name) for f in fields(value)}
+    changed = {name: new for name, old in parts.items() if (new := _written(old)) is not old}
+    return replace(value, **changed) if changed else value
 
 
 def _without_units(scene: Scene) -> bool:
@@ -114,12 +134,14 @@ def _times(scene: Scene, factor: float) -> Scene:
     )
     points = tuple(_acting(point, factor, scene) for point in along.points)
     start, end = (_acting(end, factor, scene) for end in (boundary.start, boundary.end))
-    return replace(
+    changed = replace(
         scene,
         boundary=replace(boundary, start=start, end=end),
         loads=replace(along, points=points, force=force, couple=couple, pressure=pressure),
         gravity=_multiplied(scene.gravity, factor, scene),
     )
+    found: Scene = _written(changed)
+    return found
 
 
 def _acting(place: T, factor: float, scene: Scene) -> T:
