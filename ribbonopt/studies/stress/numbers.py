@@ -89,9 +89,9 @@ def longer(scene: Scene, by: float) -> Scene:
     ribbon = scene.ribbon
     unit = Units(1 / by, by**-2 if ribbon else by**2)
     weight = _multiplied(scene.gravity, 1 / by if ribbon else by**-3, scene)
-    other = in_special_units(replace(scene, ribbon=None), unit)
+    divided = in_special_units(replace(scene, ribbon=None), unit)
     # What `also` says has no unit here.
-    other: Scene = _written(replace(other, gravity=weight, parameters=scene.parameters))
+    other: Scene = _written(replace(divided, gravity=weight, parameters=scene.parameters))
     if ribbon is None:
         return other
     length, width, thickness = (by * v for v in (ribbon.length, ribbon.width, ribbon.thickness))
