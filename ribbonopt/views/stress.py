@@ -33,6 +33,9 @@ COLOURS = {
 }
 DIGITS, CONDITION = "#1f5fa8", "#8a6d00"
 WIDTH, ROW, HEAD = 13.0, 1.25, 1.0  # inches
+TOLD = ("wrong", "crashed")  # over the bar, however few they are
+SMALL: dict[str, Any] = {"ha": "center", "fontsize": 7}
+THIN = 0.13  # share of a bar that has no room for a number
 LETTERS = 26  # of a value under its bar
 SPREAD = 0.3  # of dots beside each other, over the distance of bars
 MOST, LARGEST = 16.0, 1e20  # digits; conditions that are drawn
@@ -67,7 +70,7 @@ def save_figure(study: Mapping[str, Any], path: str | Path) -> None:
 
 
 def _verdicts(axes: Axes, kind: str, rows: Rows, labels: list[str]) -> None:
-    """Draw a bar of shares for each value, and the number of trials that are not solved on it."""
+    """Draw a bar of shares for each value, on it how many are not solved, over it what is wrong."""
     for at, label in enumerate(labels):
         counts = Counter(row["verdict"] for row in rows if row["label"] == label)
         bottom, whole = 0.0, counts.total()
@@ -76,17 +79,10 @@ def _verdicts(axes: Axes, kind: str, rows: Rows, labels: list[str]) -> None:
                 continue
             share = count / whole
             axes.bar(at, share, 0.86, bottom, color=colour, linewidth=0)
-            if verdict != "solved" and whole > 1:
-                colours = {"another equilibrium": INK, "honest failure": INK, "unconfirmed": INK}
-                axes.text(
-                    at,
-                    bottom + share / 2,
-                    str(count),
-                    ha="center",
-                    va="center",
-                    fontsize=7,
-                    color=colours.get(verdict, "white"),
-                )
+            if whole > 1 and verdict in TOLD:
+                axes.text(at, 1.02, f"{count} {verdict}", color=colour, va="bottom", **SMALL)
+            elif verdict != "solved" and share > THIN:
+                axes.text(at, bottom + share / 2, str(count), color=INK, va="center", **SMALL)
             bottom += share
     axes.set_ylim(0, 1)
     axes.set_yticks([])

@@ -47,7 +47,7 @@ def judge(found: Answer, truth: Answer | None, witnesses: Iterable[Answer]) -> J
     """
     apart = None if truth is None else gap_between(found, truth)
     if apart is not None and apart.agree:
-        return Judged(Verdict.SOLVED, "", apart.relative, apart.over_bars)
+        return Judged(Verdict.SOLVED, _doubt(apart), apart.relative, apart.over_bars)
     nearest = _nearest(gap_between(found, witness) for witness in witnesses)
     if nearest is None:
         return Judged(Verdict.UNCONFIRMED, "no other scheme solves it from here")
@@ -55,7 +55,7 @@ def judge(found: Answer, truth: Answer | None, witnesses: Iterable[Answer]) -> J
         return Judged(Verdict.WRONG, _words(nearest), nearest.relative, nearest.over_bars)
     same = truth is None or image_gap(found, truth).agree
     verdict = Verdict.SOLVED if same else Verdict.OTHER
-    return Judged(verdict, "", nearest.relative, nearest.over_bars)
+    return Judged(verdict, _doubt(nearest), nearest.relative, nearest.over_bars)
 
 
 def _nearest(gaps: Iterable[Gap]) -> Gap | None:
@@ -67,6 +67,10 @@ def _nearest(gaps: Iterable[Gap]) -> Gap | None:
         if best.agree:
             break
     return best
+
+
+def _doubt(gap: Gap) -> str:
+    return "" if gap.known else "without bars"
 
 
 def _words(gap: Gap) -> str:

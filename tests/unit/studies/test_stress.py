@@ -164,5 +164,5 @@ def test_gaps_without_bars_are_told(answer: Solution) -> None:
     unknown = replace(found, bars=dict.fromkeys(found.bars))
     gap = gap_between(unknown, off(found, 1e4))
     assert gap.agree and not gap.known
-    n0 = found.values["n0"] + 0.1 * found.sizes["n0"]
+    n0 = found.values["n0"] + 0.5 * found.sizes["n0"]
     assert not gap_between(unknown, replace(found, values={**found.values, "n0": n0})).agree
