@@ -64,6 +64,18 @@ def _bench(verb: argparse.ArgumentParser) -> None:
     verb.add_argument("--quick", action="store_true", help="reduced states, low degrees only")
 
 
+def _stress(verb: argparse.ArgumentParser) -> None:
+    _scene(verb)
+    verb.add_argument(
+        "--only", action="append", metavar="KIND", help="such as noise or mesh (may be repeated)"
+    )
+    verb.add_argument("--quick", action="store_true", help="a few values of each kind")
+    verb.add_argument(
+        "--seconds", default="20", metavar="N", help="of the processor, for each trial"
+    )
+    verb.add_argument("--out", metavar="DIR", help="folder for CSV, JSON and figure")
+
+
 def _follow(verb: argparse.ArgumentParser) -> None:
     verb.formatter_class = _help_as_written
     verb.epilog = _branch_columns()
@@ -207,6 +219,7 @@ VERBS = {
         _compare,
     ),
     "bench": ("time against error over degrees and meshes", _bench),
+    "stress": ("try a scene far from what it was made for, and judge every answer", _stress),
     "continue": ("follow a scene's equilibria as a parameter moves (its `continuation`)", _follow),
     "batch": ("solve all ribbons of a study, on all cores", _batch),
     "verify": ("compute numbers with sources again, and say which are confirmed", _verify),

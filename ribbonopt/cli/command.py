@@ -27,6 +27,7 @@ MODULES = {
     "schema": "scene",
     "compare": "comparison",
     "bench": "comparison",
+    "stress": "stress",
     "continue": "branch",
     "batch": "batch",
     "verify": "verification",

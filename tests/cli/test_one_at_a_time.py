@@ -20,6 +20,7 @@ VERBS = {
     "solve": ("solve", "scene.yaml"),
     "compare": ("compare", "scene.yaml"),
     "bench": ("bench", "scene.yaml"),
+    "stress": ("stress", "scene.yaml"),
     "continue": ("continue", "column.yaml"),
     "batch": ("batch", "study.yaml", "--jobs", "1"),
     "plot": ("plot", "result"),
@@ -96,7 +97,7 @@ def test_no_place(run: Run, folder: Path, never: None, verb: str, place: str) ->
     is_refused(run(*VERBS[verb], "--out", place), "", folder, before)
 
 
-@pytest.mark.parametrize("verb", ["solve", "compare", "bench"])
+@pytest.mark.parametrize("verb", ["solve", "compare", "bench", "stress"])
 def test_the_working_folder_is_not_replaced(
     run: Run, folder: Path, never: None, verb: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:

@@ -12,6 +12,7 @@ from ribbonopt.output.staging import OWN_FILES
 from ribbonopt.scene.text.yamltext import read
 from ribbonopt.studies.batch.cells import as_cell, of_cell
 from ribbonopt.studies.comparison.files import files_of
+from ribbonopt.studies.stress.files import FILES as STRESSED
 from ribbonopt.studies.verification.files import FILES as VERIFIED
 from ribbonopt.text import (
     RESERVED_NAMES,
@@ -88,7 +89,7 @@ def test_what_our_folders_hold_is_reserved() -> None:
     ours = {*OWN_FILES, MANIFEST, *BATCH_PICTURES, *BRANCH_PICTURES, "solutions"}
     ours |= {"rows.jsonl", "table.csv", "study.json", "branch.jsonl", "branch.csv"}
     ours |= {*files_of("comparison"), *files_of("benchmark"), "special.csv"}
-    ours |= {"laws.csv", "laws.json", "laws.png", *VERIFIED}
+    ours |= {"laws.csv", "laws.json", "laws.png", *VERIFIED, *STRESSED}
     assert ours == RESERVED_NAMES
     assert all(name_fault(name.upper()) for name in ours)
 
