@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -54,7 +55,8 @@ def verify(solution: Solution, ribbon: Ribbon) -> Verification:
     if solution.sheets:
         from .phase_margins import phase_problems  # few scenes have phases
 
-        problems += phase_problems(solution, ribbon, TOLERANCE + residual, _moment_error(solution))
+        error = partial(_moment_error, solution)
+        problems += phase_problems(solution, ribbon, TOLERANCE + residual, error)
     elif not ribbon.law.smooth and not solution.problem.recovered:
         from .arcs import sign_changes
 
