@@ -44,6 +44,8 @@ class Tried:
         Whether these needed a graded mesh, so that what starts from them does.
     wound : bool
         Whether the last guess had so many turns that it needed more intervals.
+    later : bool
+        Whether what converges without phases is verified when it is refined, and not before.
     """
 
     posed: Posed
@@ -54,6 +56,7 @@ class Tried:
     last: Attempt | None = None
     layered: bool = False
     wound: bool = False
+    later: bool = False
 
     @cached_property
     def plain(self) -> Attempt:
@@ -124,6 +127,13 @@ class Tried:
         scene = self.posed.scene
         allowed = scene.formulation == "inverted" and scene.switching != "off"
         return allowed and self.structure.ribbon.law.kinked
+
+    @property
+    def refined_alone(self) -> bool:
+        """Whether a solution without phases is refined before anything else is made of it."""
+        scene = self.posed.scene
+        square = self.structure.problem.square and not self.structure.problem.recovered
+        return scene.tolerance is not None and square and not self.phases_help
 
     @property
     def has_signs(self) -> bool:
