@@ -159,6 +159,9 @@ class Latest:
         found = origin.beside(search)
         if found is None:
             return None
+        search.ledger.spare("a pass on the scene's own mesh (the guess has one for its tolerance)")
+        if search.ledger.reports and not search.ledger.reports[0].factorizations:
+            search.ledger.spare("factors of the equations (those of the guess serve)")
         told = with_costs(found.solution, search, origin.prepared, started)
         return self.keep(replace(found, solution=told), origin)
 

@@ -56,7 +56,7 @@ class Search(Tried):
         """
         if isinstance(guess, Solution) and guess.sheets and self.phases_help:
             if self.run_in(arcs_of(guess), guess):
-                return True
+                return self.in_phases_at_once("the guess has phases")
         if self.needs_phases and not isinstance(guess, Solution) and is_mixture(guess):
             if self.run_in(MIXTURE, Balanced(guess)):
                 return True
@@ -72,7 +72,7 @@ class Search(Tried):
         if signs and crosses(self.plain, w):
             arcs = phases_shown(self.plain, w)
             if arcs is not None and self.run_in(arcs, self.plain.restored(w), most=FEW):
-                return True
+                return self.in_phases_at_once("the guess shows them")
             # Without phases until they show, no further: the rest would be solved again in them.
             first = self.structure.attempt(self.posed, self.ledger, self.plain.mesh)
             led = first.run_from(w, quick=True, check=False, loose=SETTLED)

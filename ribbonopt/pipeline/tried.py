@@ -140,6 +140,11 @@ class Tried:
         """Whether sides of the switch in a guess may tell the phases of a solution."""
         return self.phases_help and not self.posed.stations
 
+    def in_phases_at_once(self, why: str) -> bool:
+        """Say why nothing was solved without phases first; True."""
+        self.ledger.spare(f"a pass without phases ({why})")
+        return True
+
     def on_mesh(
         self, sheets: tuple[int, ...], mesh: Mesh, switches: Array | None = None
     ) -> Attempt:
