@@ -43,6 +43,9 @@ DOUBTFUL = 3.0  # times the difference of the schemes, from which on errors are 
 BARRIER = 30.0
 ACCIDENT = 0.01  # of the relative error of the loads of a minimum: least of its energy
 SMALL = 1e-4  # unless they are smaller than this all the same
+#: of the local errors: less is left of them in a number of the start by accident alone, where those
+#: of a layer and of the rest cancel in the difference of two schemes
+CANCELLED = 1 / 300
 BLURRED = 1e-14  # of the length: by how much rounding moves a layer, over that by which it may
 #: what each bar is of, where that has a unit
 QUANTITY = {"n0": "n", "m0": "m", "u0": "u", "u": "u", "H0": "H", "potential": "m", "energy": "m"}
@@ -177,6 +180,8 @@ def _analysed(solution: Solution, near: Factors | None, keep: bool) -> Analysis:
         # Errors in states of the law's own show in the rod where they matter to it.
         of_rod, _ = more_of(summed(defects[:, rod].max(axis=1), split), witnessed)
     errors["states"] = max(errors["states"], float(of_rod.max()))
+    for name in ("n0", "m0", "u0", "energy"):
+        errors[name] = max(errors[name], CANCELLED * sizes[name] * float(of_rod.sum()))
     known = doubt <= DOUBTFUL or _worst(errors, sizes)[0] <= SMALL
     parts = trajectory, better, local, inside, errors, sizes, more, known, near_by
     return Analysis(*parts, found.factors)

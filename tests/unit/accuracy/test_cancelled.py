@@ -1,0 +1,32 @@
+"""Bars on meshes that see a layer badly: errors may cancel in a difference of two schemes."""
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from ribbonopt.accuracy.estimate import estimate_error
+from ribbonopt.pipeline.prepared import solve
+from ribbonopt.scene import load_scene
+from ribbonopt.solution.solution import Solution
+
+SCENE = Path(__file__).parents[3] / "configs" / "band_three.yaml"
+
+
+@pytest.fixture(scope="module")
+def exact() -> Solution:
+    """The same band by Radau's scheme, to 1e-12."""
+    return solve(load_scene(SCENE, ["transcription.scheme=radau", "tolerance=1e-12"]))
+
+
+# Where n0 or u0 of the degree used and of the next agree by accident.
+@pytest.mark.parametrize(("degree", "intervals"), [(2, 16), (3, 4), (3, 5)])
+def test_no_bar_is_small_by_accident(exact: Solution, degree: int, intervals: int) -> None:
+    mesh = [f"transcription.degree={degree}", f"transcription.intervals={intervals}"]
+    found = solve(load_scene(SCENE, mesh))
+    bars = estimate_error(found)
+    assert exact.verified and found.verified
+    assert np.abs(found.n0 - exact.n0).max() <= bars["n0"]
+    assert np.abs(found.m0 - exact.m0).max() <= bars["m0"]
+    assert np.abs(found.start["u"] - exact.start["u"]).max() <= bars["u0"]
+    assert abs(found.energy - exact.energy) <= bars["energy"]
