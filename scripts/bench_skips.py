@@ -42,14 +42,14 @@ from ribbonopt.studies.machine import machine
 LEAST = 0.02  # seconds that a turn of either way takes at least
 SAME = 1e-6  # of n(0), m(0), by which both ways may differ: the loosest tolerance of a case
 EVERY = """
-import contextlib, importlib, pkgutil, sys, ribbonopt, tempfile
+import contextlib, importlib, pkgutil, sys, ribbonopt
+import matplotlib.figure, matplotlib.backends.backend_agg
 for found in pkgutil.walk_packages(ribbonopt.__path__, "ribbonopt."):
     if not found.name.endswith("__main__"):
-        with contextlib.suppress(ImportError):  # of what is not installed
+        with contextlib.suppress(Exception):  # of what is not installed
             importlib.import_module(found.name)
-import matplotlib.figure, matplotlib.backends.backend_agg
 from ribbonopt.cli import main
-main(["solve", sys.argv[1], "--quiet"])
+sys.exit(main(["solve", sys.argv[1], "--quiet"]))
 """
 ONE = "import sys\nfrom ribbonopt.cli import main\nmain(['solve', sys.argv[1], '--quiet'])"
 

@@ -87,7 +87,7 @@ def gaps_between(
 ) -> tuple[dict[str, float], Array]:
     """Errors of states and strains inside elements, and each element's (N,), relative."""
     result = np.zeros(len(trajectory.nodes) - 1)
-    fractions, elements = between(trajectory, near_by, growth)
+    fractions, elements, watched = between(trajectory, near_by, growth)
     if not len(fractions):
         return {}, result
     ours, theirs = (t.looked_at(fractions) for t in (trajectory, better))
@@ -97,9 +97,11 @@ def gaps_between(
     size = max(float(np.abs(ours["u"]).max()), LEAST)
     resolved = np.where(clear(fractions), strains, 0.0)
     np.maximum.at(result, elements, np.maximum(states, resolved / size))
+    result[~watched] = 0.0  # whose nodes know as much
     found = {"states": states, "u": strains, RESOLVED: resolved}
-    # The largest of so many places is not the largest of all.
-    return {name: MISSED * float(values.max()) for name, values in found.items()}, result
+    # Next to layers the largest of so many places is not the largest of all.
+    share = np.where(watched[elements], MISSED, 1.0)
+    return {name: float((share * values).max()) for name, values in found.items()}, result
 
 
 def compared(trajectory: Trajectory) -> Array:
