@@ -97,19 +97,22 @@ def gaps_between(
 ) -> tuple[dict[str, float], Array]:
     """Errors of states and strains inside elements, and each element's (N,), relative."""
     result = np.zeros(len(trajectory.nodes) - 1)
-    fractions, elements = between(trajectory, near_by, growth)
+    fractions, elements, watched = between(trajectory, near_by, growth)
     if not len(fractions):
         return {}, result
     ours, theirs = (t.looked_at(fractions) for t in (trajectory, better))
     gaps = {k: np.abs(theirs[k] - ours[k]).max(axis=1) for k in ("r", "d1", "d2", "d3", "u")}
-    strains = np.where(_same_side(ours, theirs), gaps.pop("u"), 0.0)
+    told = watched[elements]  # of others the nodes know as much, but for states
+    strains = np.where(_same_side(ours, theirs) & told, gaps.pop("u"), 0.0)
     states = np.max(list(gaps.values()), axis=0)
-    size = max(float(np.abs(ours["u"]).max()), LEAST)
+    size = max(float(np.abs(ours["u"][told]).max(initial=0.0)), LEAST)
     resolved = np.where(clear(fractions), strains, 0.0)
     np.maximum.at(result, elements, np.maximum(states, resolved / size))
+    result[~watched] = 0.0
     found = {"states": states, "u": strains, RESOLVED: resolved}
-    # The largest of so many places is not the largest of all.
-    return {name: MISSED * float(values.max()) for name, values in found.items()}, result
+    # Next to layers the largest of so many places is not the largest of all.
+    share = np.where(told, MISSED, 1.0)
+    return {name: float((share * values).max()) for name, values in found.items()}, result
 
 
 def compared(trajectory: Trajectory) -> Array:

@@ -25,6 +25,7 @@ SHARE = 0.1  # of a change of strains that a step over it may cost
 BESIDE = 0.3  # steps between stages, by which the nearest pair may miss a singularity
 NEAR = 2.5  # ellipse of an element between whose nodes errors may be larger than at them
 WATCHED = 1.5  # exponent of an element, from which on it is looked at between its nodes
+LOW = 8  # order up to which the error of an element is looked at inside it too
 FADED = 10.0  # how much less than it may a layer shows where strains count again
 FAINT = 1e-6  # of the largest change of strains: what is no layer
 THINNEST = 1e-12  # of a phase: distance to a singularity that counts as none
@@ -178,10 +179,11 @@ def clear_of(
 
 def between(
     trajectory: Trajectory, found: tuple[Layers, ...], growth: Array
-) -> tuple[Array, NDArray[np.intp]]:
+) -> tuple[Array, NDArray[np.intp], NDArray[np.bool_]]:
     """Return where to look at a solution between nodes: fractions (k,) and their elements (k,).
 
-    In elements of large `growth` (N,), and next to layers and in them.
+    In elements of large `growth` (N,), and next to layers and in them: which that are is (N,) told
+    too. In all of a low order without z, at whose ends errors may be far less than inside.
     """
     degree, nodes, ends = trajectory.dense.blocks.degree, trajectory.nodes, trajectory.ends
     chosen, extra = growth > WATCHED, [np.empty(0)]
@@ -192,15 +194,17 @@ def between(
             a + (b - a) * near.places.real
             for a, b, near in zip(ends[:-1], ends[1:], found, strict=True)
         ]
-    elements = np.flatnonzero(chosen)
+    blocks = trajectory.dense.blocks
+    every = blocks.order <= LOW and blocks.layout.nz == 0
+    elements = np.arange(len(nodes) - 1) if every else np.flatnonzero(chosen)
     if not len(elements):
-        return np.empty(0), elements
+        return np.empty(0), elements, chosen
     # The error of a collocation polynomial is largest at its stages.
     inside = _inside(max(3, degree))
     regular = (nodes[elements, None] + np.diff(nodes)[elements, None] * inside).ravel()
     fractions = np.concatenate([regular, *extra])
     fractions = fractions[(fractions > 0) & (fractions < 1)]
-    return fractions, np.clip(np.searchsorted(nodes, fractions) - 1, 0, len(nodes) - 2)
+    return fractions, np.clip(np.searchsorted(nodes, fractions) - 1, 0, len(nodes) - 2), chosen
 
 
 @lru_cache

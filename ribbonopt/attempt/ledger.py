@@ -18,13 +18,14 @@ class Ledger:
 
     Steps on the way to a guess are notes: their iterations are their own. What a user asked for and
     was not done is given up, in words; what was tried first on the way and led nowhere is what the
-    search fell back from, by what was tried.
+    search fell back from, by what was tried; what turned out to be needless is spared, with why.
     """
 
     steps: list[Step] = field(default_factory=list)
     reports: list[SolveReport] = field(default_factory=list)
     given_up: list[str] = field(default_factory=list)
     fell_back: dict[str, str] = field(default_factory=dict)
+    spared: list[str] = field(default_factory=list)
 
     def note(self, step: str, seconds: float, iterations: int | None = None) -> None:
         """Note a step that needed no solver of the scene itself."""
@@ -34,6 +35,10 @@ class Ledger:
     def give_up(self, what: str) -> None:
         """Say what was asked for and is not what led to the answer."""
         self.given_up.append(what)
+
+    def spare(self, what: str) -> None:
+        """Say what was not done because something that is known serves in its place."""
+        self.spared.append(what)
 
     def fall_back(self, tried: str, words: str) -> None:
         """Say what was tried, led nowhere, and what was done instead; the last word counts."""

@@ -96,9 +96,14 @@ class Structure:
             )
         return self._programs[elements]
 
-    def build(self) -> None:
-        """Build everything for the scene's own number of intervals now."""
-        self.on(self.mesh(None).elements)[1].build()
+    def build(self, *, now: bool = True) -> None:
+        """Make program and solver for the scene's own number of intervals, their functions `now`.
+
+        Else these are built when something is solved.
+        """
+        solver = self.on(self.mesh(None).elements)[1]
+        if now:
+            solver.build()
 
     def attempt(
         self,

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from typing import NamedTuple
 
 import numpy as np
@@ -18,22 +19,24 @@ MARGIN = 1e-6  # of the largest moment: how far below zero a margin of the law m
 
 
 def phase_problems(
-    solution: Solution, ribbon: Ribbon, accuracy: float, moments: float = np.inf
+    solution: Solution, ribbon: Ribbon, accuracy: float, moments: Callable[[], float]
 ) -> list[str]:
     """Say where a solution in phases is not one of the law: wrong side of its switch, no mixture.
 
     Margins of a law are compared in units Dw = L = 1. `accuracy` is that of the equations, relative
-    to the largest load: what must be zero is so to that. `moments` is the error of the moments:
-    what must not be negative is so to that.
+    to the largest load: what must be zero is so to that. `moments` gives the error of the moments,
+    which what must not be negative is so to; it is asked only where more than rounding is.
     """
     at_stages = solution.trajectory.at_stages
     scale, force = at_stages.largest("m"), at_stages.largest("n")
     loads = max(scale, force)
-    margin = min(MARGIN * scale, max(moments, ROUNDED * scale))
     start, end = solution.scene.interval
     ends = start + (end - start) * solution.trajectory.ends
-    problems = []
-    for i, (names, count, least) in enumerate(_least(solution, ribbon)):
+    problems, phases = [], _least(solution, ribbon)
+    margin = ROUNDED * scale
+    if any((least[:count] < -margin).any() for _, count, least in phases):
+        margin = min(MARGIN * scale, max(moments(), margin))
+    for i, (names, count, least) in enumerate(phases):
         allowed = np.where(np.arange(len(names)) < count, margin, accuracy * loads)
         if (least < -allowed).any():
             where = f"between s = {ends[i]:.4g} and {ends[i + 1]:.4g}"
@@ -76,14 +79,18 @@ def _least_of(
     )
     states = np.concatenate([v[rows], solution.dense.at_nodes[nodes]])[:, : len(ribbon.states)]
     constants = solution.constants[: len(ribbon.constants)]
-    names, count, margins = ribbon.kept(_margins)[kind]
+    known = ribbon.kept(_margins)
+    if kind not in known:
+        names, count, function = margins_function(ribbon, kind)
+        known[kind] = names, count, Mapped(function)
+    names, count, margins = known[kind]
     (values,) = margins(states, constants, solution.dense.theta, places)
     return names, count, values.reshape(-1, len(names)).min(axis=0)
 
 
-def _margins(ribbon: Ribbon) -> dict[int, tuple[tuple[str, ...], int, Mapped]]:
-    """Names of the margins of every kind of phase, how many are none of zeros, and all values."""
-    found = {kind: margins_function(ribbon, kind) for kind in (-1, 0, 1)}
-    return {
-        kind: (names, count, Mapped(function)) for kind, (names, count, function) in found.items()
-    }
+def _margins(_: Ribbon) -> dict[int, tuple[tuple[str, ...], int, Mapped]]:
+    """Names of the margins of each kind of phase, how many are none of zeros, and all values.
+
+    Filled in as solutions have phases of these kinds: most have none with a mixture.
+    """
+    return {}

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import replace
+from functools import partial
 from typing import NamedTuple
 
 import numpy as np
@@ -23,9 +24,12 @@ from ribbonopt.solution.solution import Solution
 from ribbonopt.solution.verification import NO_LENGTH, Verification, unverified
 from ribbonopt.transcription.buffered import Buffered
 
+from .zero_moment import SHORTEST, unbent_share
+
 TOLERANCE = 1e-8
 SPARE, MOST = 10.0, 1e-2  # times the estimated error; of the strains: how far off the law may be
 ROUNDED = 1e-13  # of the largest moment: none
+STRAIGHT = 1e-6  # by which the equations of a straight ribbon may be off between the stages
 JUMP = 1e-6  # of the largest moment, on either side of a jump of the law
 
 
@@ -54,7 +58,8 @@ def verify(solution: Solution, ribbon: Ribbon) -> Verification:
     if solution.sheets:
         from .phase_margins import phase_problems  # few scenes have phases
 
-        problems += phase_problems(solution, ribbon, TOLERANCE + residual, _moment_error(solution))
+        error = partial(_moment_error, solution)
+        problems += phase_problems(solution, ribbon, TOLERANCE + residual, error)
     elif not ribbon.law.smooth and not solution.problem.recovered:
         from .arcs import sign_changes
 
@@ -86,7 +91,8 @@ def verify(solution: Solution, ribbon: Ribbon) -> Verification:
                 f"{what} = {eta.max():.4g} at s = {s:.4g}, beyond 1: eq. (4.1) forbids it; the "
                 "ribbon wants to switch sheets there (law: sadowsky, regularized or variational)"
             )
-    problems += (*_off_the_law(solution, ribbon), *found.of_loop)
+    problems += (*_off_the_law(solution, ribbon), *_unseen(solution, ribbon, residual))
+    problems += found.of_loop
     law = trajectory.at_stages.largest("law_residual")
     law /= max(nodes.largest("u"), LEAST)  # a straight ribbon has no strains
     return Verification(tuple(problems), worst, residual, law, drift)
@@ -149,6 +155,16 @@ def _off_the_law(solution: Solution, ribbon: Ribbon) -> list[str]:
     return [
         f"the strains at s = {s:.4g} are off the law by {found:.1e} of the largest: refine the "
         "mesh (transcription), or use formulation: inverted, which holds the law exactly"
+    ]
+
+
+def _unseen(solution: Solution, ribbon: Ribbon, residual: float) -> list[str]:
+    """Say whether a state without a moment, of which no bar can tell, is one at the stages only."""
+    if residual <= STRAIGHT or not unbent_share(solution, ribbon.law) > 1 - SHORTEST:
+        return []
+    return [
+        f"the equations are off by {residual:.2g} between the stages of a ribbon without a moment "
+        "at any, and no bar is known there: refine the mesh (transcription)"
     ]
 
 

@@ -34,6 +34,11 @@ def _solve(verb: argparse.ArgumentParser) -> None:
     verb.add_argument(
         "--plot", action="store_true", help="draw pictures (into --out, or results/NAME)"
     )
+    verb.add_argument(
+        "--verbose",
+        action="store_true",
+        help="print what each step took, and what was skipped and why",
+    )
 
 
 def _check(verb: argparse.ArgumentParser) -> None:

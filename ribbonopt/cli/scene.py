@@ -20,6 +20,9 @@ if TYPE_CHECKING:
 
 def solve(options: argparse.Namespace) -> int:
     """Solve a scene and report its numbers."""
+    if options.verbose and (options.json or options.quiet):
+        other = "--json" if options.json else "--quiet"
+        raise SceneError(f"--verbose: found {other} as well, which prints nothing but its own")
     scene, import_seconds = load(options)
     from ribbonopt.pipeline.prepared import solve
 
@@ -60,7 +63,11 @@ def _tell(
     if options.json:
         say_json(summary)
     elif not options.quiet:
-        say(report(summary))
+        say(report(summary, steps=not options.verbose))
+        if options.verbose:
+            from ribbonopt.output.steps import steps_of
+
+            say(steps_of(summary, drawn=options.plot, written=written is not None))
         if written:
             say_line(f"  written: {listing(written)}")
     if solution.verified:

@@ -12,8 +12,11 @@ from .digits import digits, upwards
 SMALL = 1e-3  # largest component of what is written with powers of ten
 
 
-def report(summary: Mapping[str, Any]) -> str:
-    """Return the report of a summary; digits beyond the estimated error are left out."""
+def report(summary: Mapping[str, Any], *, steps: bool = True) -> str:
+    """Return the report of a summary; digits beyond the estimated error are left out.
+
+    Without `steps` where they are told apart, and what was skipped.
+    """
     s = summary
     said = {k: v for k, v in s["law"].items() if k != "type" and v is not None}
     law = ", ".join(f"{k} = {_plain(v)}" for k, v in said.items())
@@ -46,13 +49,11 @@ def report(summary: Mapping[str, Any]) -> str:
         f"  conditions hold to {_short(s['worst_condition'])}, equations between the stages to "
         f"{_short(s['residual_between_nodes'])} (relative), "
         f"the law to {_short(s['law_residual'])}",
-        f"  {_steps(s['path'])}",
-        f"  {_times(s['timings'])}",
+        *([f"  {_steps(s['path'])}", f"  {_times(s['timings'])}"] if steps else []),
         *_others(s["equilibria"]),
         f"  units {s['units']}",
         *(f"  warning: {text}" for text in s["warnings"]),
-        "  skipped:",
-        *(f"    {reason}" for reason in s["skipped"]),
+        *(["  skipped:", *(f"    {reason}" for reason in s["skipped"])] if steps else []),
     ]
     return "\n".join(lines)
 

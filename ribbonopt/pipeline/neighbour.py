@@ -142,21 +142,35 @@ class Latest:
         self._kept = tuple(each for each in kept if each is not None)
         return found.solution
 
-    def beside(self, guess: object, posed: Posed) -> Solution | None:
-        """Return a scene's solution beside one that is kept, if that is the guess; None if not.
+    def beside(self, guess: Solution, posed: Posed, prepared: Means, step: str) -> Solution | None:
+        """Return a scene's solution beside one that is kept, or that has a mesh; None if none is.
 
-        Nor without a tolerance: the answer is to be on the mesh that is asked for then.
+        Nor without a tolerance: the answer is to be on the mesh that is asked for then. `step` is
+        what to call the guess.
         """
-        origin = next((each for each in self._kept if each.solution is guess), None)
-        if origin is None or posed.scene.tolerance is None:
+        if posed.scene.tolerance is None:
+            return None
+        kept = (each for each in self._kept if each.solution is guess)
+        origin = next(kept, None) or _of_mesh(guess, posed, prepared)
+        if origin is None:
             return None
         started, search = time.perf_counter(), origin.prepared.search(posed)
-        search.ledger.note("guess: given", 0.0)
+        search.ledger.note(step, 0.0)
         found = origin.beside(search)
         if found is None:
             return None
+        search.ledger.spare("a pass on the scene's own mesh (the guess has one for its tolerance)")
+        if search.ledger.reports and not search.ledger.reports[0].factorizations:
+            search.ledger.spare("factors of the equations (those of the guess serve)")
         told = with_costs(found.solution, search, origin.prepared, started)
         return self.keep(replace(found, solution=told), origin)
+
+
+def _of_mesh(guess: Solution, posed: Posed, prepared: Means) -> Neighbour | None:
+    """Return a solution to begin with on its own mesh, if that is one for a tolerance."""
+    same = guess.verified and guess.posed.structure == posed.structure
+    met = same and guess.scene.tolerance is not None
+    return Neighbour(prepared, guess) if met else None
 
 
 def _in_order(found: Solution) -> bool:

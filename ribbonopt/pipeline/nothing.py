@@ -84,6 +84,8 @@ def instead_of(
     nowhere: ConvergenceError | None = None
     try:
         search = from_nothing(search, guesses, prepare)
+        if guess is not None and search.settled:
+            ledger.spare("IPOPT from the guess (the automatic start led on)")
     except ConvergenceError as error:  # no equilibrium to start from
         nowhere = error
     if guess is not None and not search.settled and search.run_slowly(guess):

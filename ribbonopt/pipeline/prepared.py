@@ -7,27 +7,29 @@ so that other numbers (epsilon, loads, prescribed values, meshes) are solved wit
 from __future__ import annotations
 
 import time
-from collections.abc import Callable
-from dataclasses import field, replace
+from dataclasses import field
 from functools import cached_property, partial
 from typing import TYPE_CHECKING
 
 from ribbonopt.arrays import Array
+from ribbonopt.attempt.attempt import verified
 from ribbonopt.attempt.structure import Structure
 from ribbonopt.checks.zero_moment import unbent_share
 from ribbonopt.classes import dataclass
 from ribbonopt.errors import ConvergenceError
-from ribbonopt.guess import Guess, guess_of, words
+from ribbonopt.guess import Guess
 from ribbonopt.problem import BoundaryValueProblem, Posed, Ribbon
 from ribbonopt.problem.wellposed.examine import examine, refuse_idle_settings, refuse_unreachable
-from ribbonopt.scene import Scene, SolutionGuess, validate_scene
+from ribbonopt.scene import Scene, validate_scene
 from ribbonopt.solution.solution import Solution
 from ribbonopt.solvers import Status
 from ribbonopt.transcription import NLP
 
+from .given import own_guess, saved, step_of
 from .neighbour import Latest, Neighbour
+from .once import completed, no_start, solve_posed
 from .search import Search
-from .told import judged, of_finer_mesh, of_starts, regularized, with_costs
+from .told import of_finer_mesh, of_starts
 
 if TYPE_CHECKING:
     from ribbonopt.solvers import Solver
@@ -89,9 +91,9 @@ class Prepared:
 
         `guess` is where to start, instead of the scene's own guess; `fallback` whether to go on
         from the automatic start where that leads nowhere; `quick` whether to leave it at Newton's
-        method from the guess, where that can be. From the solution found last, or the one that
-        it was found from, mesh, phases and factors are kept as in a batch, where a scene near by
-        has a tolerance.
+        method from the guess, where that can be. Where a scene has a tolerance, mesh and phases
+        of a solution near by are kept as in a batch, and the factors of the one found last or of
+        that which it was found from.
 
         Raises
         ------
@@ -102,9 +104,11 @@ class Prepared:
         """
         posed = self.posed(scene)
         refuse_unreachable(posed)
-        if not quick and (near := self._latest.beside(guess, posed)) is not None:
-            return near
-        found = self._once(posed, guess, fallback, quick)
+        if not quick and isinstance(known := guess or saved(posed), Solution):
+            near = self._latest.beside(known, posed, self, step_of(guess, posed))
+            if near is not None:
+                return near
+        found = solve_posed(self, prepare, posed, guess, fallback=fallback, quick=quick)
         if found.status is Status.TOLERANCE_MISSED and guess is None:
             from ribbonopt.pipeline.refinement import on_finer_mesh  # after a failure only
 
@@ -113,14 +117,15 @@ class Prepared:
 
     def solve_once(self) -> Solution:
         """Solve the prepared scene on its own number of intervals, and on no finer mesh anew."""
-        return self._once(self.structure.posed, None, fallback=True, quick=False)
+        posed = self.structure.posed
+        return solve_posed(self, prepare, posed, None, fallback=True, quick=False)
 
     def polish(self, guess: Guess, scene: Scene | Posed | None = None) -> Solution:
         """Solve a scene (default: the prepared one) from one guess that is thought to be near."""
         started = time.perf_counter()
         search = self.search(scene)
         done = search.run_smooth(guess) if isinstance(guess, Solution) else search.run(guess)
-        return self._with_costs(search, started, done)
+        return completed(search, self, prepare, started, done=done)
 
     def search(self, scene: Scene | Posed | None = None) -> Search:
         """Return a search for solutions of a scene of this structure; nothing is solved."""
@@ -135,8 +140,10 @@ class Prepared:
         scene, if given, remembers what it took.
         """
         tolerance = solution.scene.tolerance
-        if tolerance is None or not solution.verified or unbent_share(solution, self.ribbon.law):
+        if tolerance is None or not solution.verified:
             return solution
+        if unbent_share(solution, self.ribbon.law):
+            return solution if solution.verification.known else verified(solution, self.ribbon)
         from ribbonopt.pipeline.refinement import AIM, refine  # for scenes with a tolerance
 
         on_mesh = partial((search or self.search(solution.posed)).on_mesh, solution.sheets)
@@ -150,10 +157,10 @@ class Prepared:
     def guess(self, scene: Scene | Posed | None = None) -> Guess:
         """Return the first guess for a scene: its own, or the first of the automatic start."""
         search = self.search(scene)
-        own = self._own_guess(search.posed)
+        own = own_guess(search.posed, self.ribbon)
         own = own or next(self.automatic.guesses(search.posed, search.ledger), None)
         if own is None:
-            raise _no_start()
+            raise no_start()
         return own
 
     @cached_property
@@ -162,46 +169,6 @@ class Prepared:
         from ribbonopt.starts.automatic import Automatic  # IPOPT, which many scenes do without
 
         return Automatic(self.structure.posed, self.structure)
-
-    def _once(self, posed: Posed, guess: Guess | None, fallback: bool, quick: bool) -> Solution:
-        started, search = time.perf_counter(), self.search(posed)
-        own = guess or self._own_guess(posed)
-        if own is not None:
-            step = "guess: given" if guess else f"guess: {words(posed.scene.guess)}"
-            search.ledger.note(step, time.perf_counter() - started)
-        led = done = own is not None and search.run(own, quick=quick or fallback)
-        if not led and (own is None or fallback):
-            from .nothing import from_nothing, instead_of  # IPOPT, which many do without
-
-            after: Callable[..., Search] = from_nothing
-            if own is not None:
-                what = "the guess given" if guess else f"the guess ({words(posed.scene.guess)})"
-                after = partial(instead_of, what, None if quick else own)
-            search = after(search, partial(self.automatic.guesses, posed, search.ledger), prepare)
-            done = search.settled
-        return self._with_costs(search, started, done)
-
-    def _with_costs(self, search: Search, started: float, done: bool) -> Solution:
-        """Return the best solution found, with what it has cost."""
-        ledger, best = search.ledger, search.best
-        if best is None:
-            raise _no_start()
-        best = replace(best, steps=tuple(ledger.steps))
-        found = regularized(best, search.smooth_instead, prepare)
-        best = found or self.refined(best if done else judged(best, search))
-        in_vain = bool(best.sheets) and not best.verified
-        if in_vain or best.status is Status.TOLERANCE_MISSED:
-            from .sharpening import without_phases  # after a failure only
-
-            best = without_phases(search, self, prepare) or best
-        return with_costs(best, search, self, started)
-
-    def _own_guess(self, posed: Posed) -> Guess | None:
-        if isinstance(posed.scene.guess, SolutionGuess):
-            from ribbonopt.output.results import load_solution  # reading files costs imports
-
-            return load_solution(posed.scene.guess.solution)
-        return guess_of(posed, self.ribbon)
 
 
 def solve(scene: Scene) -> Solution:
@@ -223,7 +190,7 @@ def solve(scene: Scene) -> Solution:
     from ribbonopt.starts.equilibria import equilibria  # few scenes ask for it
 
     refuse_unreachable(prepared.posed())
-    first, failed = None, _no_start()
+    first, failed = None, no_start()
     try:
         first = prepared.solve()
     except ConvergenceError as error:  # other starts may lead somewhere
@@ -235,15 +202,12 @@ def solve(scene: Scene) -> Solution:
 
 
 def prepare(scene: Scene) -> Prepared:
-    """Build everything of a scene that does not depend on its numbers."""
+    """Build what any solve of a scene needs and its numbers do not change."""
     started = time.perf_counter()
     posed = Posed.of(validate_scene(scene))
     structure = Structure.of(posed)
     refuse_idle_settings(posed, structure.ribbon)
     examine(structure.ribbon, structure.problem, posed)
-    structure.build()
+    # In phases nothing may be solved without them: what a search needs it builds.
+    structure.build(now=not Search(posed, structure).phases_help)
     return Prepared(structure, time.perf_counter() - started)
-
-
-def _no_start() -> ConvergenceError:
-    return ConvergenceError(Status.NO_START.value, Status.NO_START.name.lower())

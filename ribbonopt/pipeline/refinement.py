@@ -87,12 +87,13 @@ def refine(
             error, _ = relative_error(solution)
         except np.linalg.LinAlgError:
             lost = Status.SINGULAR
+            solution = solution if solution.verification.known else verified(solution, ribbon)
             return replace(solution, status=lost, message=lost.value, steps=tuple(steps))
         if error < smallest:
             best, smallest = solution, error
         if error <= tolerance:
             # In phases the signs of m2 are judged by the error, which is known only now.
-            same = solution is first and not solution.sheets
+            same = solution is first and not solution.sheets and solution.verification.known
             done = solution if same else verified(solution, ribbon)
             return done if same else replace(done, steps=tuple(steps))
         least = analyse(solution).least

@@ -48,14 +48,15 @@ COARSER = 3  # intervals of starts, of degree 3, to one of a scene
 class Search(Tried):
     """The search on one scene: guess after guess."""
 
-    def run(self, guess: Guess, *, quick: bool = False) -> bool:
+    def run(self, guess: Guess, *, quick: bool = False, shown: bool = True) -> bool:
         """Try a guess without phases, and in phases if m2 changes sign in what comes out.
 
-        A guess that has phases itself is tried in these first.
+        A guess that has phases itself is tried in these first, and in those that it shows, unless
+        the phases `shown` by a solution have been tried.
         """
         if isinstance(guess, Solution) and guess.sheets and self.phases_help:
             if self.run_in(arcs_of(guess), guess):
-                return True
+                return self.in_phases_at_once("the guess has phases")
         if self.needs_phases and not isinstance(guess, Solution) and is_mixture(guess):
             if self.run_in(MIXTURE, Balanced(guess)):
                 return True
@@ -65,12 +66,13 @@ class Search(Tried):
             # From shapes of many turns IPOPT takes long, and leads nowhere.
             self.wound = quick = True
             guess = guess.balanced() if isinstance(guess, ShapeGuess) else guess
-        w, signs = self.plain.unknowns(guess), not isinstance(guess, Solution) and self.has_signs
+        known = isinstance(guess, Solution) and (bool(guess.sheets) or not shown)
+        w, signs = self.plain.unknowns(guess), not known and self.has_signs
         led, factors = True, None
         if signs and crosses(self.plain, w):
             arcs = phases_shown(self.plain, w)
             if arcs is not None and self.run_in(arcs, self.plain.restored(w), most=FEW):
-                return True
+                return self.in_phases_at_once("the guess shows them")
             # Without phases until they show, no further: the rest would be solved again in them.
             first = self.structure.attempt(self.posed, self.ledger, self.plain.mesh)
             led = first.run_from(w, quick=True, check=False, loose=SETTLED)
@@ -80,7 +82,7 @@ class Search(Tried):
                 w, factors = first.best.dense.w, first.factors
             else:
                 self.plain = self._kept(first)
-        check = not self.phases_help
+        check = not (self.phases_help or self.later)
         if not (led and self.plain.run_from(w, quick=True, check=check, factors=factors)):
             return (signs and self._on_one_side(w)) or (not quick and self.run_slowly(guess))
         return self._in_shown_phases()
@@ -90,7 +92,7 @@ class Search(Tried):
         if intervals_for(guess, self.posed.scene) is not None:
             return False
         attempt, before = self.structure.attempt(self.posed, self.ledger), self.plain.best
-        led = attempt.run_slowly(guess, check=not self.phases_help)
+        led = attempt.run_slowly(guess, check=not (self.phases_help or self.later))
         if led or (attempt.best is not None and not (before and before.status.converged)):
             self.plain = self._kept(attempt)
         return led and self._in_shown_phases()
@@ -100,7 +102,8 @@ class Search(Tried):
         found = self.flattened(self.plain.best)
         if found is not None and self._in_given_phases(found):
             return True
-        return self.plain.check() and found is not None and not self.jumps(found)
+        sound = self.later or self.plain.check()
+        return sound and found is not None and not self.jumps(found)
 
     def _on_one_side(self, w: Array) -> bool:
         """Try unknowns w (nw,) on the side of the law's switch on which they are, but for noise.
@@ -176,10 +179,10 @@ class Search(Tried):
             self._take(None)
             self.wound = False
         if not self.phases_help:
-            return self.plain.run(guess, quick=True)
+            return self.plain.run(guess, quick=True, check=not self.later)
         if sharpest is None:
             return self._in_given_phases(guess) or (
-                not self.jumps(guess) and self.run(guess, quick=True)
+                not self.jumps(guess) and self.run(guess, quick=True, shown=False)
             )
         sharp, blunt = sorted((guess, sharpest), key=bluntness)
         if sharp is guess or len(self.smooth) == 2:
@@ -191,7 +194,7 @@ class Search(Tried):
                     return True
                 if 0 not in arcs.kinds:  # mixtures are nearer from sharper laws
                     self.tried.add(arcs.kinds)
-        return sharp is not guess and self.run(guess, quick=True)
+        return sharp is not guess and self.run(guess, quick=True, shown=False)
 
     def run_minimum(self, guess: Solution) -> bool:
         """Try what minimises the energy of the law itself, in the phases that it shows."""
@@ -199,7 +202,7 @@ class Search(Tried):
             if self.run_in(sign_changes(guess), guess):
                 return True
         # In one phase it is less exact, but need not know where the sign changes.
-        return self.run(guess, quick=True)
+        return self.run(guess, quick=True, shown=False)
 
     def run_all(self, guesses: Iterable[Guess]) -> bool:
         """Try the guesses of an automatic start, equilibria of the smooth law among them."""

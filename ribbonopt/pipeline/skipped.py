@@ -2,21 +2,28 @@
 
 from __future__ import annotations
 
-from ribbonopt.attempt.ledger import Ledger
+from typing import TYPE_CHECKING
+
 from ribbonopt.problem import BoundaryValueProblem, Posed
+
+if TYPE_CHECKING:
+    from ribbonopt.solution.solution import Solution
+
+    from .search import Search
 
 
 def skipped(
     posed: Posed,
     problem: BoundaryValueProblem,
-    ledger: Ledger | None = None,
-    sheets: tuple[int, ...] = (),
+    search: Search | None = None,
+    found: Solution | None = None,
 ) -> tuple[str, ...]:
     """Say what a scene does not need and what is therefore not made, each with its reason.
 
-    `ledger` is what a solve has cost, `sheets` the phases it ended in; before it there are none.
+    `search` is what has led to a solution, `found` that after refinement; before it there is none.
     """
     result, scene = [], posed.given
+    ledger = None if search is None else search.ledger
     solvers = () if ledger is None else ledger.solvers
     if scene.states != "full":
         if not posed.loaded:
@@ -33,12 +40,17 @@ def skipped(
     if scene.guess != "auto" and not (ledger and ledger.given_up):
         result.append("automatic start (the guess is given)")
     result += _repeated(posed)
-    if solvers and not sheets:
-        result.append("phases (the law is smooth, m2 keeps its sign, or the scene says so)")
+    if search is not None and found is not None and solvers and not found.sheets:
+        result.append(f"phases ({_no_phases(search)})")
+    result += [] if ledger is None else ledger.spared
     if scene.continuation is not None:
         result.append("continuation (ribbonopt continue follows it)")
     if scene.tolerance is None:
         result.append("mesh refinement (no tolerance is asked for)")
+    elif search is not None and found is not None and found.verified and solvers:
+        best = search.best
+        if best is not None and found.trajectory is best.trajectory:
+            result.append("mesh refinement (the first mesh meets the tolerance)")
     return tuple(result)
 
 
@@ -56,3 +68,13 @@ def _repeated(posed: Posed) -> list[str]:
         solved = {"whole": "the whole", "half": "a half"}.get(loop.piece, "this one")
         result.append(f"a smaller piece of the loop than {solved} (piece: auto: {posed.undivided})")
     return result
+
+
+def _no_phases(search: Search) -> str:
+    """Say why a solution has no phases."""
+    scene, law = search.posed.scene, search.structure.ribbon.law
+    if not law.kinked:
+        return "the law is smooth"
+    if scene.formulation != "inverted":
+        return "only the inverted formulation has any"
+    return "the scene says so" if scene.switching == "off" else f"{law.switch_name} keeps its sign"

@@ -81,7 +81,7 @@ def with_costs(found: Solution, search: Search, prepared: Means, started: float)
         iterations=ledger.iterations,
         given_up=(*ledger.given_up, *other_phases(search)),
         fell_back=tuple(ledger.fell_back.values()),
-        skipped=skipped(search.posed, problem, ledger, found.sheets),
+        skipped=skipped(search.posed, problem, search, found),
     )
 
 

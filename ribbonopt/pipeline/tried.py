@@ -44,6 +44,8 @@ class Tried:
         Whether these needed a graded mesh, so that what starts from them does.
     wound : bool
         Whether the last guess had so many turns that it needed more intervals.
+    later : bool
+        Whether what converges without phases is verified when it is refined, and not before.
     """
 
     posed: Posed
@@ -54,6 +56,7 @@ class Tried:
     last: Attempt | None = None
     layered: bool = False
     wound: bool = False
+    later: bool = False
 
     @cached_property
     def plain(self) -> Attempt:
@@ -126,9 +129,21 @@ class Tried:
         return allowed and self.structure.ribbon.law.kinked
 
     @property
+    def refined_alone(self) -> bool:
+        """Whether a solution without phases is refined before anything else is made of it."""
+        scene = self.posed.scene
+        square = self.structure.problem.square and not self.structure.problem.recovered
+        return scene.tolerance is not None and square and not self.phases_help
+
+    @property
     def has_signs(self) -> bool:
         """Whether sides of the switch in a guess may tell the phases of a solution."""
         return self.phases_help and not self.posed.stations
+
+    def in_phases_at_once(self, why: str) -> bool:
+        """Say why nothing was solved without phases first; True."""
+        self.ledger.spare(f"a pass without phases ({why})")
+        return True
 
     def on_mesh(
         self, sheets: tuple[int, ...], mesh: Mesh, switches: Array | None = None

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 
 from ribbonopt.classes import dataclass
@@ -34,6 +35,11 @@ class Verification:
     residual_between_nodes: float
     law_residual: float
     drift: Mapping[str, float]
+
+    @property
+    def known(self) -> bool:
+        """Whether anything was checked."""
+        return not math.isnan(self.worst_condition) or bool(self.problems)
 
     @property
     def invariant(self) -> float:

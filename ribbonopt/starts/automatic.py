@@ -64,7 +64,9 @@ class Automatic:
 
         What was done is noted in the ledger. `shape` is used instead of the scene's own.
         """
-        follower = follower_loads(posed) if shape is None else None
+        same = posed.structure == self.posed.structure
+        mechanics = (lambda _: self._inverted) if same else Ribbon.of
+        follower = follower_loads(posed, mechanics) if shape is None else None
         if follower is not None:
             ledger.note("integrated from the loads of the end", 0.0)
             yield follower
@@ -78,7 +80,7 @@ class Automatic:
         last = slice(-1, None) if in_family(posed.scene.law) else slice(None)
         straight: list[Solution] = []
         met: list[float] = []
-        ribbon = self._spatial if posed.structure == self.posed.structure else None
+        ribbon = self._spatial if same else None
         for number, start in enumerate([shape] if shape else shapes_for(posed, ribbon)):
             if number:
                 what = "shape that fits the ends" if number == 1 else "shapes that fit the ends"
@@ -122,6 +124,13 @@ class Automatic:
     def _spatial(self) -> Ribbon:
         """Mechanics in space, by which shapes find their ends."""
         return Ribbon.of(self.posed.under(states="reduced"))
+
+    @cached_property
+    def _inverted(self) -> Ribbon:
+        """Mechanics by which known loads are integrated."""
+        own, plain = self.structure, self.posed.under(formulation="inverted", states="reduced")
+        same = plain.equations == self.posed.equations
+        return own.ribbon if own is not None and same else Ribbon.of(plain)
 
     @cached_property
     def _piece(self) -> Automatic | None:

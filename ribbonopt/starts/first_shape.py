@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping
 from dataclasses import replace
 
 import numpy as np
@@ -94,10 +94,13 @@ def compresses(posed: Posed, chord: Chord) -> bool:
     return bool(force @ along < -ACROSS * np.linalg.norm(force) * np.linalg.norm(along))
 
 
-def follower_loads(posed: Posed) -> FollowerLoads | IntegratedLoads | None:
+def follower_loads(
+    posed: Posed, mechanics: Callable[[Posed], Ribbon] = Ribbon.of
+) -> FollowerLoads | IntegratedLoads | None:
     """Return the ribbon that known loads along the end's directors bend, if the start is clamped.
 
-    Loads that vanish are known in any frame, and so is a moment without a force.
+    Loads that vanish are known in any frame, and so is a moment without a force. `mechanics` gives
+    those in space of the scene in the inverted formulation.
     """
     conditions = posed.conditions
     if posed.loaded:
@@ -113,18 +116,20 @@ def follower_loads(posed: Posed) -> FollowerLoads | IntegratedLoads | None:
         }
         zero = set(given) == set("xyz") and not any(given.values())
         if quantity == "moment" and clamped and set(given) == set("xyz") and not zero:
-            return _rolled(posed, given) if not found["force"].any() else None
+            return _rolled(posed, given, mechanics) if not found["force"].any() else None
         if not zero and set(given) != set(DIRECTORS):
             return None
         found[quantity] = np.array(list(given.values()))
     if not clamped or not any(v.any() for v in found.values()):
         return None
     plain = posed.under(formulation="inverted", states="reduced")
-    return FollowerLoads(Ribbon.of(plain), plain, found["force"], found["moment"])
+    return FollowerLoads(mechanics(plain), plain, found["force"], found["moment"])
 
 
-def _rolled(posed: Posed, moment: Mapping[str, float]) -> IntegratedLoads:
+def _rolled(
+    posed: Posed, moment: Mapping[str, float], mechanics: Callable[[Posed], Ribbon]
+) -> IntegratedLoads:
     """Return the ribbon under a moment alone, lab frame, which is the same all along it."""
     plain = posed.under(formulation="inverted", states="reduced")
     x, y, z = (moment[axis] for axis in "xyz")
-    return IntegratedLoads(Ribbon.of(plain), plain, LoadGuess((0.0, 0.0, 0.0), (x, y, z)))
+    return IntegratedLoads(mechanics(plain), plain, LoadGuess((0.0, 0.0, 0.0), (x, y, z)))
