@@ -53,4 +53,4 @@ class Means(Protocol):
 
 
 #: builds the means to solve a scene
-Prepare: TypeAlias = Callable[[Scene], Means]
+Prepare: TypeAlias = Callable[[Scene | Posed], Means]

@@ -16,6 +16,7 @@ from ribbonopt.errors import ConvergenceError
 from ribbonopt.guess import Guess
 from ribbonopt.guess.flat import Flattened, nearly_flat
 from ribbonopt.mechanics.ends.winding import winding
+from ribbonopt.problem import Posed
 from ribbonopt.starts.first_shape import shapes_for
 from ribbonopt.starts.helix import helix_between, wound_evenly
 from ribbonopt.starts.loops import fundamental_scene
@@ -49,7 +50,7 @@ def from_nothing(
     posed = search.posed
     scene = fundamental_scene(posed.scene) if search.needs_phases else None
     if scene is not None:
-        piece = prepare(replace(scene, tolerance=None)).solve_once()
+        piece = prepare(Posed.of(replace(scene, tolerance=None))).solve_once()
         search.ledger.steps.extend(piece.steps)
         if piece.verified and _run_unfolded(search, unfolded(piece, posed)):
             return search

@@ -201,10 +201,13 @@ def solve(scene: Scene) -> Solution:
     return of_starts(first, found)
 
 
-def prepare(scene: Scene) -> Prepared:
-    """Build what any solve of a scene needs and its numbers do not change."""
+def prepare(scene: Scene | Posed) -> Prepared:
+    """Build what any solve of a scene needs and its numbers do not change.
+
+    One that is posed already is valid: in units Dw = L = 1 it may be none that a user could write.
+    """
     started = time.perf_counter()
-    posed = Posed.of(validate_scene(scene))
+    posed = scene if isinstance(scene, Posed) else Posed.of(validate_scene(scene))
     structure = Structure.of(posed)
     refuse_idle_settings(posed, structure.ribbon)
     examine(structure.ribbon, structure.problem, posed)

@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 
 from ribbonopt.guess import Guess
 from ribbonopt.mechanics.laws.smooth import in_family, sharpened
+from ribbonopt.problem import Posed
 from ribbonopt.scene import Collocation, Newton
 from ribbonopt.solution.solution import Solution
 
@@ -47,7 +48,7 @@ def sharper(blunt: Solution, prepare: Prepare) -> Iterator[Solution]:
     """Yield ever sharper equilibria of the smooth law, each on a mesh that resolves its layers."""
     scene = replace(blunt.posed.scene, guess="auto", starts=1, switching="off", solver=SOLVER)
     scene = replace(scene, transcription=MESH, tolerance=TOLERANCE)
-    prepared, mesh = prepare(scene), None
+    prepared, mesh = prepare(Posed.of(scene)), None
     for delta in DELTAS:
         posed = prepared.posed(replace(scene, law=sharpened(scene.law, delta)))
         search = prepared.search(posed)

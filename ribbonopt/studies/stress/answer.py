@@ -18,6 +18,7 @@ from ribbonopt.solution.solution import Solution
 PLACES = 65  # where states are compared
 LEAST = 1e-3  # of loads and strains, in units Dw = L = 1: below that errors count absolutely
 LOOSE = 0.3  # relative error of an answer without bars, which claims nothing: that it is one at all
+SHARP = 1e-10  # relative: bars of a witness that need not be smaller
 IMAGES = ("energy", "size of n", "n . m")
 OF = {"size of n": "n0", "n . m": "m0"}
 
@@ -63,6 +64,17 @@ class Answer:
         sizes = {"n0": load * force, "m0": load * moment, "u0": strain * units.length}
         sizes |= {"energy": max(abs(float(found["energy"])), LEAST * moment), "states": 1.0}
         return cls(found, bars, sizes)
+
+    def tells(self, other: Answer) -> bool:
+        """Whether its own bars are small enough to tell whether those of another one hold."""
+        for name, size in self.sizes.items():
+            own, bar = self.bars[name], other.bars[name]
+            if own is None or math.isnan(own):
+                return False
+            asked = LOOSE * size if bar is None or math.isnan(bar) else bar
+            if own > max(asked, SHARP * size):
+                return False
+        return True
 
     @property
     def image(self) -> dict[str, float]:

@@ -43,14 +43,18 @@ def judge(found: Answer, truth: Answer | None, witnesses: Iterable[Answer]) -> J
     """Return the verdict on a verified answer.
 
     `truth` is what it should be, None where that is not known; `witnesses` are answers near it by
-    other schemes, of which none is asked for where the truth is met.
+    other schemes, of which none is asked for where the truth is met, and only those tell whose own
+    bars are small enough.
     """
     apart = None if truth is None else gap_between(found, truth)
     if apart is not None and apart.agree:
         return Judged(Verdict.SOLVED, _doubt(apart), apart.relative, apart.over_bars)
-    nearest = _nearest(gap_between(found, witness) for witness in witnesses)
+    telling = (witness for witness in witnesses if witness.tells(found))
+    nearest = _nearest(gap_between(found, witness) for witness in telling)
     if nearest is None:
-        return Judged(Verdict.UNCONFIRMED, "no other scheme solves it from here")
+        return Judged(
+            Verdict.UNCONFIRMED, "no other scheme solves it from here, exactly enough to tell"
+        )
     if not nearest.agree:
         return Judged(Verdict.WRONG, _words(nearest), nearest.relative, nearest.over_bars)
     same = truth is None or image_gap(found, truth).agree
