@@ -8,9 +8,8 @@ from __future__ import annotations
 
 import math
 import time
-from collections.abc import Callable, Iterable, Sequence
-from dataclasses import asdict, replace
-from statistics import median
+from collections.abc import Iterable, Sequence
+from dataclasses import asdict
 from typing import Any
 
 import numpy as np
@@ -21,35 +20,19 @@ from ribbonopt.scene import Scene
 from ribbonopt.studies.machine import machine
 
 from .compare import TOLERANCES
+from .findings import Cheapest, cheapest, sentences_of
 from .measure import Measurement, Repeated, measure
 from .pairs import Mesh, Pair, pairs_of
-from .profile import Profile, errors_of
-from .rows import PairRow, cheapest, row_of
-from .truth import UNKNOWN, Numbers, SourcedLoads, fine_solves, reference_of, truth_of
+from .peers import Peer, PeerRow, rows_of_peers
+from .rows import PairRow, rows_of
+from .timing import Conditions, Contender, interleaved
+from .truth import UNKNOWN, SourcedLoads, fine_solves, reference_of, truth_of
+
+__all__ = ["Benchmark", "Peer", "PeerRow", "Slope", "benchmark", "slopes_of"]
 
 # Relative errors between which a slope is an order.
 ROUNDING, COARSE = 1e-12, 1e-1
-SLOW = 0.5  # seconds of a solve from which it is timed once only
-PATIENCE = 20.0
-
-
-@dataclass(frozen=True)
-class Peer:
-    """Another program's solve of the same problem; `run` returns n and m at the start."""
-
-    name: str
-    detail: str
-    run: Callable[[], tuple[Numbers, Numbers]]
-
-
-@dataclass(frozen=True)
-class PeerRow:
-    """A peer, timed: seconds of one solve and relative error of n(0), m(0)."""
-
-    name: str
-    detail: str
-    solve: float
-    error: float | None
+PATIENCE = 20.0  # CPU seconds after which a pair goes to no further mesh
 
 
 @dataclass(frozen=True)
@@ -64,13 +47,15 @@ class Slope:
 
 @dataclass(frozen=True)
 class Benchmark:
-    """What was measured; `rows` as in a comparison, `solve` the median of `repeat` solves."""
+    """What was measured; `rows` as in a comparison, `solve` the median of `repeat` rounds."""
 
     name: str
     truth: str
     repeat: int
     rows: tuple[PairRow, ...]
     rivals: tuple[PeerRow, ...]
+    truth_error: float = 0.0
+    timing: Conditions = Conditions()
 
     @property
     def slopes(self) -> tuple[Slope, ...]:
@@ -79,8 +64,13 @@ class Benchmark:
 
     @property
     def sentences(self) -> tuple[str, ...]:
-        """The cheapest pair at each error."""
-        return tuple(cheapest(self.rows, tolerance).sentence for tolerance in TOLERANCES)
+        """The cheapest pair at each error, and who wins among peers."""
+        return sentences_of(self.cheapest, self.truth_error)
+
+    @property
+    def cheapest(self) -> tuple[Cheapest, ...]:
+        """The cheapest pair at each error, and the cheapest of the peers."""
+        return tuple(cheapest(self.rows, tolerance, self.rivals) for tolerance in TOLERANCES)
 
     @property
     def solved(self) -> bool:
@@ -95,8 +85,11 @@ class Benchmark:
             "repeat": self.repeat,
             "rows": [row.plain() for row in self.rows],
             "slopes": [asdict(slope) for slope in self.slopes],
-            "peers": [asdict(rival) for rival in self.rivals],
+            "peers": [rival.plain() for rival in self.rivals],
             "sentences": list(self.sentences),
+            "truth_error": self.truth_error,
+            "cheapest": [found.plain() for found in self.cheapest],
+            "timing": self.timing.plain(),
             "machine": machine(),
             "versions": versions(),
         }
@@ -120,7 +113,7 @@ def benchmark(
     formulations, transcriptions
         As for `compare`.
     repeat
-        Solves of which the median is taken.
+        Rounds of which the median is taken.
     quick
         Reduced states and the lowest two degrees only.
     reference
@@ -131,19 +124,15 @@ def benchmark(
     pairs = [p for p in pairs_of(formulations, transcriptions) if not quick or p.states != "full"]
     fine = fine_solves(scene, ROUNDING)
     found = [one for pair in pairs for one in _on_grid(pair, scene, quick)]
-    seconds, peer_seconds = _timed([built for _, built in found], peers, repeat)
+    ours = [Contender(built) for _, built in found if built]
+    times, timing = interleaved([*ours, *(peer.contender for peer in peers)], repeat)
     reference = reference or reference_of(scene)
     truth = truth_of([*fine, *(one for one, _ in found)], reference)
-    profile, source = (truth.profile, truth.source) if truth else (None, UNKNOWN)
-    rows = tuple(
-        _with_time(row_of(one, profile), value)
-        for (one, _), value in zip(found, seconds, strict=True)
-    )
-    rivals = tuple(
-        PeerRow(peer.name, peer.detail, value, _peer_error(peer, profile))
-        for peer, value in zip(peers, peer_seconds, strict=True)
-    )
-    return Benchmark(scene.name, source, repeat, rows, rivals)
+    profile = truth.profile if truth else None
+    source, error = (truth.source, truth.error) if truth else (UNKNOWN, 0.0)
+    rows = rows_of(found, profile, times[: len(ours)])
+    rivals = rows_of_peers(peers, times[len(ours) :], profile)
+    return Benchmark(scene.name, source, repeat, rows, rivals, error, timing)
 
 
 def slopes_of(rows: Sequence[PairRow]) -> tuple[Slope, ...]:
@@ -171,11 +160,11 @@ def _on_grid(pair: Pair, scene: Scene, quick: bool) -> list[tuple[Measurement, R
     degrees = sorted({getattr(mesh, "degree", 0) for mesh in pair.family.grid})
     meshes = [m for m in pair.family.grid if not quick or m.degree in degrees[:2]]
     found: list[tuple[Measurement, Repeated | None]] = []
-    started = time.perf_counter()
+    started = time.process_time()
     for mesh in meshes:
-        if _exact(found, mesh) or time.perf_counter() - started > PATIENCE:
+        if _exact(found, mesh) or time.process_time() - started > PATIENCE:
             continue
-        found.append(measure(pair, scene, mesh, repeat=1))
+        found.append(measure(pair, scene, mesh))
         if found[-1][0].refused and len(found) == 1:
             break
     return found
@@ -187,33 +176,3 @@ def _exact(found: Sequence[tuple[Measurement, Repeated | None]], mesh: Mesh) -> 
         one.mesh.degree == mesh.degree and one.estimate is not None and one.estimate < ROUNDING
         for one, _ in found
     )
-
-
-def _timed(
-    built: Sequence[Repeated | None], peers: Sequence[Peer], repeat: int
-) -> tuple[list[float | None], list[float]]:
-    """Median seconds of one solve of each, every round through all of them."""
-    ours: list[list[float]] = [[] for _ in built]
-    theirs: list[list[float]] = [[] for _ in peers]
-    for _ in range(repeat):
-        for prepared, seconds in zip(built, ours, strict=True):
-            if prepared is not None and not (seconds and seconds[0] > SLOW):
-                seconds.append(prepared.cost().solve)
-        for peer, seconds in zip(peers, theirs, strict=True):
-            if not (seconds and seconds[0] > SLOW):
-                start = time.perf_counter()
-                peer.run()
-                seconds.append(time.perf_counter() - start)
-    return [median(s) if s else None for s in ours], [median(s) for s in theirs]
-
-
-def _with_time(row: PairRow, seconds: float | None) -> PairRow:
-    return row if seconds is None else replace(row, solve=seconds)
-
-
-def _peer_error(peer: Peer, truth: Profile | None) -> float | None:
-    if truth is None:
-        return None
-    n0, m0 = peer.run()
-    errors = errors_of(replace(truth, n0=np.array(n0), m0=np.array(m0)), truth)
-    return max(errors["error_n0"], errors["error_m0"])

@@ -8,9 +8,7 @@ fine solve of the inverted form is among the candidates.
 from __future__ import annotations
 
 import time
-from collections.abc import Iterable, Iterator, Sequence
-from dataclasses import replace
-from statistics import median
+from collections.abc import Iterable, Iterator
 from typing import Any
 
 from ribbonopt.classes import dataclass
@@ -18,10 +16,12 @@ from ribbonopt.output.summary import versions
 from ribbonopt.scene import Scene
 from ribbonopt.studies.machine import machine
 
+from .findings import Cheapest, cheapest, sentences_of
 from .measure import Measurement, Repeated, measure
 from .pairs import Pair, pairs_of
 from .profile import errors_of
-from .rows import Cheapest, PairRow, cheapest, row_of
+from .rows import PairRow, rows_of
+from .timing import Conditions, Contender, interleaved
 from .truth import UNKNOWN, SourcedLoads, Truth, fine_solves, reference_of, truth_of
 
 TOLERANCES = (1e-4, 1e-6, 1e-8, 1e-10)
@@ -29,8 +29,7 @@ TOLERANCES = (1e-4, 1e-6, 1e-8, 1e-10)
 # after which it gives up: coarse meshes may fail where finer ones do not.
 PATIENCE = 3.0
 FAILURES = 4
-# Rows up to NEAR times as slow as the quickest are timed again, ROUNDS times.
-NEAR, ROUNDS = 3.0, 7
+ROUNDS = 7
 
 
 @dataclass(frozen=True)
@@ -49,6 +48,8 @@ class Comparison:
         Relative errors of n(0), m(0) that were wanted.
     rows : tuple of PairRow
         One for each solve.
+    timing : Conditions
+        How times were taken.
     """
 
     name: str
@@ -56,6 +57,7 @@ class Comparison:
     truth_error: float
     tolerances: tuple[float, ...]
     rows: tuple[PairRow, ...]
+    timing: Conditions = Conditions()
 
     @property
     def cheapest(self) -> tuple[Cheapest, ...]:
@@ -65,13 +67,7 @@ class Comparison:
     @property
     def sentences(self) -> tuple[str, ...]:
         """What the rows say, in plain words."""
-        return tuple(
-            found.sentence
-            if found.tolerance >= self.truth_error
-            else f"To {found.tolerance:.0e}: not decided, the truth is known to "
-            f"{self.truth_error:.0e} only; give a reference."
-            for found in self.cheapest
-        )
+        return sentences_of(self.cheapest, self.truth_error)
 
     @property
     def solved(self) -> bool:
@@ -88,6 +84,7 @@ class Comparison:
             "rows": [row.plain() for row in self.rows],
             "cheapest": [found.plain() for found in self.cheapest],
             "sentences": list(self.sentences),
+            "timing": self.timing.plain(),
             "machine": machine(),
             "versions": versions(),
         }
@@ -128,28 +125,9 @@ def compare(
     truth = truth_of([*fine, *(measurement for measurement, _ in found)], reference)
     profile = truth.profile if truth else None
     source, error = (truth.source, truth.error) if truth else (UNKNOWN, 0.0)
-    rows = [row_of(measurement, profile) for measurement, _ in found]
-    rows = _leaders_again(rows, [prepared for _, prepared in found], wanted)
-    return Comparison(scene.name, source, error, wanted, tuple(rows))
-
-
-def _leaders_again(
-    rows: list[PairRow], built: Sequence[Repeated | None], tolerances: Iterable[float]
-) -> list[PairRow]:
-    """Time those that might be cheapest again, interleaved: a busy machine should not decide."""
-    leaders: set[int] = set()
-    for tolerance in tolerances:
-        good = {i: row.solve for i, row in enumerate(rows) if row.solve and row.meets(tolerance)}
-        near = NEAR * min(good.values(), default=0.0)
-        leaders.update(i for i, value in good.items() if value <= near)
-    seconds: dict[int, list[float]] = {i: [] for i in sorted(leaders)}
-    for _ in range(ROUNDS):
-        for i, values in seconds.items():
-            prepared = built[i]
-            if prepared is not None:
-                values.append(prepared.cost().solve)
-    again = {i: median(values) for i, values in seconds.items() if values}
-    return [replace(row, solve=again.get(i, row.solve)) for i, row in enumerate(rows)]
+    times, timing = interleaved([Contender(built) for _, built in found if built], ROUNDS)
+    rows = rows_of(found, profile, times)
+    return Comparison(scene.name, source, error, wanted, rows, timing)
 
 
 def _climb(

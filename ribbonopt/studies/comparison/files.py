@@ -28,7 +28,9 @@ def save_study(study: Comparison | Benchmark, folder: str | Path, name: str) -> 
     """
     folder = Path(folder)
     try:
-        write_table(folder / f"{name}.csv", COLUMNS, (row.plain() for row in study.rows))
+        timing = study.timing.columns  # beside every time what the machine was doing
+        rows = (row.plain() | timing for row in study.rows)
+        write_table(folder / f"{name}.csv", (*COLUMNS, *timing), rows)
         (folder / f"{name}.json").write_text(json_text(study.plain()), encoding="utf-8")
     except OSError as error:
         raise OutputError(f"{folder}: cannot be written ({error.strerror})") from error

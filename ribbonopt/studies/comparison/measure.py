@@ -1,14 +1,13 @@
-"""One solve of a comparison, measured: cost, own error estimate, drifts, samples along s.
+"""One solve of a comparison, measured: size, own error estimate, drifts, samples along s.
 
 What is refused or does not converge is a measurement too, with the message that says why.
 """
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+import time
 from dataclasses import replace
 from functools import cached_property
-from statistics import median
 from typing import Any
 
 import casadi as ca
@@ -33,8 +32,6 @@ from ribbonopt.solution.solution import Solution
 from .pairs import Mesh, Pair
 from .profile import SAMPLES, Profile, errors_of, relative
 
-SLOW = 0.1  # seconds of a solve that is not repeated for a median
-
 
 @dataclass(frozen=True, eq=False)
 class Measurement:
@@ -47,7 +44,7 @@ class Measurement:
     status, message, verified : str, str, bool
         How it ended; the message in one line.
     numbers : mapping of str to int, float or None
-        `unknowns`, `nonzeros`, `iterations`; seconds `build`, `evaluate`, `linear`, `solve`;
+        `unknowns`, `nonzeros`, `iterations`; CPU seconds `build`, and `solve` of the whole try;
         `drift_invariant`, `drift_law`, `drift_frame`. Empty where nothing was solved.
     profile : Profile or None
         None unless the equations are solved.
@@ -93,15 +90,6 @@ class LawResidual:
         return ca.Function("strain", [ca.vertcat(n, m, own, ribbon.position)], [u])
 
 
-@dataclass(frozen=True)
-class Cost:
-    """Seconds of one solve from the scene's guess: functions, linear algebra, all."""
-
-    evaluate: float
-    linear: float
-    solve: float
-
-
 @dataclass(frozen=True, eq=False)
 class Repeated:
     """A prepared scene that is solved again and again, from one guess."""
@@ -113,31 +101,33 @@ class Repeated:
         """The first guess, made once."""
         return self.prepared.guess()
 
-    def cost(self) -> Cost:
-        """Solve again; guess and checks, the same for all pairs, are left out of the cost."""
-        reports = self.prepared.solver.solve(*self.prepared.start(guess=self.guess)).tried
-        return Cost(
-            sum(report.evaluate for report in reports),
-            sum(report.linear for report in reports),
-            sum(report.total for report in reports),
-        )
+    @cached_property
+    def start(self) -> tuple[Array, Array]:
+        """Unknowns and parameters of the guess, made once: the same for all pairs."""
+        return self.prepared.start(guess=self.guess)
+
+    def __call__(self) -> tuple[float, float]:
+        """Solve again, checks left out; return the shares of functions and of linear algebra."""
+        reports = self.prepared.solver.solve(*self.start).tried
+        total = sum(report.total for report in reports) or 1.0
+        evaluate, linear = (r.evaluate for r in reports), (r.linear for r in reports)
+        return sum(evaluate) / total, sum(linear) / total
 
 
-def measure(
-    pair: Pair, scene: Scene, mesh: Mesh, repeat: int = 3
-) -> tuple[Measurement, Repeated | None]:
-    """Solve a scene by a pair on a mesh; times are medians of `repeat` further solves.
+def measure(pair: Pair, scene: Scene, mesh: Mesh) -> tuple[Measurement, Repeated | None]:
+    """Solve a scene by a pair on a mesh.
 
-    What was built is returned too, to solve again; None where it was refused.
+    What was built is returned too, to be timed; None where there is no verified solution.
     """
     try:
+        started = time.process_time()
         built = Repeated(prepare(pair.scene(scene, mesh)))
+        middle = time.process_time()
         # The one guess: a pair that needs another start than the rest has failed here.
         solution = built.prepared.solve(guess=built.guess, fallback=False)
-        costs = [built.cost()]
-        while len(costs) < repeat and costs[0].solve < SLOW:
-            costs.append(built.cost())
-        return _measured(pair, mesh, built.prepared, solution, costs), built
+        seconds = {"build": middle - started, "solve": time.process_time() - middle}
+        found = _measured(pair, mesh, built.prepared, solution, seconds)
+        return found, built if found.verified else None
     except ConvergenceError as error:
         return _failed(pair, mesh, error.status, error), None
     except np.linalg.LinAlgError as error:
@@ -147,16 +137,13 @@ def measure(
 
 
 def _measured(
-    pair: Pair, mesh: Mesh, prepared: Prepared, solution: Solution, costs: Sequence[Cost]
+    pair: Pair, mesh: Mesh, prepared: Prepared, solution: Solution, seconds: dict[str, float]
 ) -> Measurement:
     numbers: dict[str, Any] = {
         "unknowns": prepared.nlp.unknowns,
         "nonzeros": prepared.nlp.functions.jacobian.sparsity_out(1).nnz(),
         "iterations": solution.iterations,
-        "build": prepared.seconds,
-        "evaluate": median(cost.evaluate for cost in costs),
-        "linear": median(cost.linear for cost in costs),
-        "solve": median(cost.solve for cost in costs),
+        **seconds,
     }
     profile = estimate = None
     if solution.status.converged:

@@ -2,16 +2,21 @@
 
 from __future__ import annotations
 
-import math
 from collections.abc import Sequence
-from dataclasses import asdict, fields
+from dataclasses import asdict, fields, replace
 from typing import Any
+
+import numpy as np
 
 from ribbonopt.classes import dataclass
 from ribbonopt.plain import finite
 
-from .measure import Measurement
+from .frontier import frontier
+from .measure import Measurement, Repeated
 from .profile import Profile, errors_of
+from .timing import Span, Times, span_of
+
+OVERALL, OWN = "overall", "formulation"  # frontiers that a row may be on
 
 
 @dataclass(frozen=True)
@@ -27,7 +32,8 @@ class PairRow:
     unknowns, nonzeros, iterations : int
         Size of the program, nonzeros of its Jacobian, iterations of the solver.
     build, evaluate, linear, solve : float
-        Seconds: to build; of one solve, in functions, in linear algebra, in all.
+        CPU seconds: to build; of one solve, in functions, in linear algebra, in all. Medians of
+        the rounds; of what is not verified `solve` alone, of the whole try.
     error_n0, error_m0, error_u : float
         Errors relative to |n(0)|, |m(0)|, and of u along s relative to its largest component.
     drift_invariant, drift_law, drift_frame : float
@@ -37,6 +43,13 @@ class PairRow:
         The solution's own estimate of its relative error.
     verified, status, message : bool, str, str
         How it ended.
+    low, high : float
+        Quartiles of `solve` over the rounds; None where those were few.
+    rounds : int
+        How many times it was timed.
+    frontier : str
+        "overall" if no verified row is as quick and as accurate, "formulation" if none of its
+        formulation is, else "".
     """
 
     formulation: str
@@ -62,6 +75,10 @@ class PairRow:
     verified: bool = False
     status: str = ""
     message: str = ""
+    low: float | None = None
+    high: float | None = None
+    rounds: int = 0
+    frontier: str = ""
 
     @property
     def name(self) -> str:
@@ -76,6 +93,25 @@ class PairRow:
         return f"{degree}{self.intervals} intervals{steps}"
 
     @property
+    def size(self) -> str:
+        """The mesh, short: degree x intervals, or intervals x steps of an explicit scheme."""
+        if not self.degree:
+            return f"{self.intervals} x {self.steps} steps"
+        steps = f" x {self.steps} steps" if self.steps > 1 else ""
+        return f"{self.degree} x {self.intervals}{steps}"
+
+    @property
+    def label(self) -> str:
+        """Pair and mesh, short."""
+        states = "" if self.states == "reduced" else f" ({self.states} states)"
+        return f"{self.formulation}{states} + {self.transcription} {self.size}"
+
+    @property
+    def span(self) -> Span:
+        """Where its time is believed."""
+        return span_of(self.solve or 0.0, self.low, self.high)
+
+    @property
     def error(self) -> float | None:
         """Relative error of n(0), m(0), the larger: what tolerances mean; None if not known."""
         if self.error_n0 is None or self.error_m0 is None:
@@ -88,10 +124,30 @@ class PairRow:
 
     def plain(self) -> dict[str, Any]:
         """Columns by name, for JSON and figures."""
-        return {"pair": self.name} | asdict(self) | {"error": self.error}
+        values = {"pair": self.name} | asdict(self) | {"error": self.error}
+        return {name: values[name] for name in COLUMNS}
 
 
-COLUMNS = ("pair", *(f.name for f in fields(PairRow)), "error")
+_NEW = ("low", "high", "rounds", "frontier")  # columns stay where they were
+COLUMNS = (
+    "pair",
+    *(f.name for f in fields(PairRow) if f.name not in _NEW),
+    *("error", *_NEW),
+)
+
+
+def rows_of(
+    found: Sequence[tuple[Measurement, Repeated | None]],
+    truth: Profile | None,
+    times: Sequence[Times],
+) -> tuple[PairRow, ...]:
+    """Return the rows of measurements, with the times of those that can be solved again."""
+    taken = iter(times)
+    rows = []
+    for one, built in found:
+        row = row_of(one, truth)
+        rows.append(row if built is None else with_times(row, next(taken)))
+    return with_frontiers(rows)
 
 
 def row_of(found: Measurement, truth: Profile | None) -> PairRow:
@@ -117,59 +173,33 @@ def row_of(found: Measurement, truth: Profile | None) -> PairRow:
     )
 
 
-@dataclass(frozen=True)
-class Cheapest:
-    """The quickest row within a tolerance, and the quickest of another pair; None if there is none.
-
-    `ratio` is the time of the runner-up over that of the winner.
-    """
-
-    tolerance: float
-    winner: PairRow | None
-    runner_up: PairRow | None
-
-    @property
-    def ratio(self) -> float | None:
-        """Time of the runner-up over that of the winner."""
-        if self.winner is None or self.runner_up is None:
-            return None
-        return _time(self.runner_up) / _time(self.winner)
-
-    @property
-    def sentence(self) -> str:
-        """The finding, to be read."""
-        if self.winner is None:
-            return f"To {self.tolerance:.0e}: no pair gets there."
-        won = f"To {self.tolerance:.0e}: {self.winner.name} is cheapest, {_cost(self.winner)}"
-        if self.runner_up is None:
-            return f"{won}; no other pair gets there."
-        return (
-            f"{won}; next {self.runner_up.name}, {_cost(self.runner_up)}: "
-            f"{self.ratio:.1f} times as long."
-        )
-
-    def plain(self) -> dict[str, Any]:
-        """Return numbers for JSON."""
-        return {
-            "tolerance": self.tolerance,
-            "pair": self.winner and self.winner.name,
-            "seconds": self.winner and self.winner.solve,
-            "runner_up": self.runner_up and self.runner_up.name,
-            "ratio": self.ratio,
-        }
+def with_times(row: PairRow, times: Times) -> PairRow:
+    """Return the row with medians and quartiles of its rounds; a failure in one is its failure."""
+    if times.failure:
+        return replace(row, verified=False, status="not_repeated", message=times.failure)
+    if not times.seconds:
+        return row
+    found = times.numbers
+    evaluate, linear = np.median(times.answers, axis=0) * found["solve"]
+    return replace(row, evaluate=float(evaluate), linear=float(linear), **found)
 
 
-def cheapest(rows: Sequence[PairRow], tolerance: float) -> Cheapest:
-    """Find the quickest pair within a tolerance, and the next."""
-    good = sorted((row for row in rows if row.meets(tolerance)), key=_time)
-    winner = good[0] if good else None
-    others = [row for row in good if winner and row.name != winner.name]
-    return Cheapest(tolerance, winner, others[0] if others else None)
+def with_frontiers(rows: Sequence[PairRow]) -> tuple[PairRow, ...]:
+    """Mark the rows that are on the frontier of all, and of their formulation."""
+    marks: dict[int, str] = {}
+    for name in dict.fromkeys(row.formulation for row in rows):
+        marks |= dict.fromkeys(_best(rows, name), OWN)
+    marks |= dict.fromkeys(_best(rows), OVERALL)
+    return tuple(replace(row, frontier=marks.get(i, "")) for i, row in enumerate(rows))
 
 
-def _time(row: PairRow) -> float:
-    return math.inf if row.solve is None else row.solve
-
-
-def _cost(row: PairRow) -> str:
-    return f"{1e3 * _time(row):.1f} ms ({row.mesh})"
+def _best(rows: Sequence[PairRow], formulation: str | None = None) -> list[int]:
+    """Places of the rows on the frontier, of one formulation or of all."""
+    places: list[int] = []
+    points: list[tuple[float, float]] = []
+    for i, row in enumerate(rows):
+        asked = formulation is None or row.formulation == formulation
+        if asked and row.verified and row.error is not None and row.solve is not None:
+            places.append(i)
+            points.append((row.error, row.solve))
+    return [places[k] for k in frontier(points)]

@@ -6,13 +6,16 @@ from collections.abc import Iterable, Mapping, Sequence
 
 from .benchmark import Benchmark
 from .compare import Comparison
+from .findings import milliseconds
+from .peers import PeerRow
 from .rows import PairRow
 
 HEAD = (
     *("pair", "mesh", "unknowns", "nonzeros", "iter"),
-    *("build", "eval", "linear", "solve", "n(0)", "m(0)", "u(s)", "H", "law", "frame", "status"),
+    *("build", "eval", "linear", "CPU ms", "quartiles"),
+    *("n(0)", "m(0)", "u(s)", "H", "law", "frame", "status"),
 )
-UNITS = "times in ms; errors of n(0), m(0), u(s) relative; drifts of H, law and directors along s"
+UNITS = "errors of n(0), m(0), u(s) relative; drifts of H, law and directors along s"
 LEFT = 2  # columns of words before those of numbers
 
 
@@ -24,7 +27,8 @@ def table(study: Comparison | Benchmark) -> str:
 def _comparison(comparison: Comparison) -> str:
     """Return one line for each pair, its finest mesh; then failures and findings."""
     finest = _finest(comparison.rows)
-    lines = [f"{comparison.name}: {UNITS}", f"truth: {comparison.truth}", ""]
+    lines = [f"{comparison.name}: {comparison.timing.words}; {UNITS}"]
+    lines += [f"truth: {comparison.truth}", ""]
     lines += aligned([HEAD, *(_cells(row) for row in finest if row.unknowns is not None)])
     reasons: dict[str, list[str]] = {}
     for row in finest:
@@ -38,7 +42,7 @@ def _comparison(comparison: Comparison) -> str:
 
 def _benchmark(benchmark: Benchmark) -> str:
     """Return measured orders and times at each error."""
-    lines = [f"{benchmark.name}: medians of {benchmark.repeat} interleaved solves"]
+    lines = [f"{benchmark.name}: {benchmark.timing.words}; interleaved"]
     lines += [f"truth: {benchmark.truth}", ""]
     orders: dict[str, list[str]] = {}
     for slope in benchmark.slopes:
@@ -48,12 +52,14 @@ def _benchmark(benchmark: Benchmark) -> str:
     lines += aligned([("pair", "measured order by degree"), *cells], left=1)
     lines += ["", *benchmark.sentences]
     if benchmark.rivals:
-        lines += ["", "peers:"]
-        peers = [
-            (r.name, r.detail, f"{1e3 * r.solve:.2f} ms", _short(r.error)) for r in benchmark.rivals
-        ]
-        lines += aligned(peers)
+        head = ("peer", "detail", "CPU ms", "quartiles", "error", "")
+        lines += ["", *aligned([head, *map(_peer, benchmark.rivals)])]
     return "\n".join(lines)
+
+
+def _peer(row: PeerRow) -> tuple[str, ...]:
+    times = (_ms(row.solve), _quartiles(row))
+    return (row.name, row.detail, *times, _short(row.error), row.message)
 
 
 def aligned(rows: Sequence[Sequence[str]], left: int = LEFT) -> list[str]:
@@ -87,7 +93,8 @@ def _cells(row: PairRow) -> tuple[str, ...]:
     return (
         *(row.name, _mesh(row)),
         *("-" if count is None else str(count) for count in counts),
-        *("-" if time is None else f"{1e3 * time:.1f}" for time in times),
+        *map(_ms, times),
+        _quartiles(row),
         *(_short(values[name]) for name in names),
         row.status.replace("_", " "),
     )
@@ -101,3 +108,11 @@ def _mesh(row: PairRow) -> str:
 
 def _short(value: float | None) -> str:
     return "-" if value is None else f"{value:.0e}"
+
+
+def _ms(seconds: float | None) -> str:
+    return "-" if seconds is None else milliseconds(seconds)
+
+
+def _quartiles(row: PairRow | PeerRow) -> str:
+    return "-" if row.low is None or row.high is None else f"{_ms(row.low)}-{_ms(row.high)}"

@@ -54,7 +54,7 @@ def fine_solves(scene: Scene, wanted: float) -> list[Measurement]:
     found = []
     for intervals in FINE_INTERVALS:
         mesh = Collocation(scheme="gauss", degree=10, intervals=intervals)
-        found.append(measure(FINE, scene, mesh, repeat=1)[0])
+        found.append(measure(FINE, scene, mesh)[0])
         if found[-1].refused or (found[-1].estimate or 1.0) < wanted / 10:
             break
     return found
