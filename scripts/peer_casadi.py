@@ -39,7 +39,10 @@ class Collocated:
         defects.append(parts["end"](ca.vertcat(node, c)))
         x, g = ca.vertcat(*unknowns), ca.vertcat(*defects)
         starts = h * np.arange(intervals + 1)
-        along = [starts[:1], *(np.append(start + h * np.array(tau), start + h) for start in starts[:-1])]
+        along = [
+            starts[:1],
+            *(np.append(start + h * np.array(tau), start + h) for start in starts[:-1]),
+        ]
         states = ribbon.guess_at(np.concatenate(along))
         self._guess = np.concatenate([states[0, moving:], states[:, :moving].ravel()])
         first = len(states[0, moving:]) or moving

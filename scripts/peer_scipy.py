@@ -60,7 +60,10 @@ class Scipy:
         return np.concatenate([np.array(self._f[e](np.append(x, c))).ravel() for e, x in ends])
 
     def _slopes_of_conditions(self, a: np.ndarray, b: np.ndarray, *c: np.ndarray) -> tuple:
-        start, end = np.array(self._f["start_x"](np.append(a, c))), np.array(self._f["end_x"](np.append(b, c)))
+        start, end = (
+            np.array(self._f["start_x"](np.append(a, c))),
+            np.array(self._f["end_x"](np.append(b, c))),
+        )
         moving, none = len(a), np.zeros
         found = [
             np.vstack([start[:, :moving], none((len(end), moving))]),

@@ -15,43 +15,58 @@ SCIPY, AUTO, COLNEW = "scipy solve_bvp", "AUTO", "COLNEW"
 HALF = Ribbon(False), Ribbon(False, 18)
 WHOLE = Ribbon(True), Ribbon(True, 18)
 
+
+def _both(ribbons: tuple[Ribbon, Ribbon], settings: list[Any]) -> dict[Ribbon, list[Any]]:
+    """Return the same settings for both numbers of states."""
+    return {ribbon: settings for ribbon in ribbons}
+
+
 # stages, intervals of the first mesh, tolerance
 _COLNEW: dict[Ribbon, list[tuple[int, int, float]]] = {
     HALF[0]: [
-        *((4, 2, 1e-2), (5, 2, 1e-2), (4, 4, 1e-2), (7, 2, 1e-2), (5, 4, 1e-2), (6, 4, 1e-2)),
-        *((7, 4, 1e-2), (7, 4, 1e-4), (6, 8, 1e-4)),
+        *((4, 2, 1e-2), (5, 2, 1e-2), (4, 3, 1e-2), (5, 3, 1e-2), (6, 3, 1e-2), (5, 5, 1e-2)),
+        *((5, 6, 1e-2), (7, 4, 1e-4), (6, 6, 1e-4), (6, 8, 1e-4)),
     ],
     HALF[1]: [
         *((4, 2, 1e-3), (5, 2, 1e-2), (4, 4, 1e-3), (5, 4, 1e-2), (4, 8, 1e-2), (7, 4, 1e-3)),
         (6, 8, 1e-3),
     ],
     WHOLE[0]: [
-        *((5, 2, 1e-2), (5, 2, 1e-3), (5, 8, 1e-4), (4, 24, 1e-2), (6, 16, 1e-2), (4, 8, 1e-6)),
-        *((3, 8, 1e-6), (5, 4, 1e-8), (4, 8, 1e-10)),
+        *((5, 2, 1e-2), (5, 2, 1e-3), (6, 4, 1e-5), (5, 4, 1e-5), (4, 6, 1e-5), (4, 4, 1e-5)),
+        *((3, 6, 3e-6), (4, 6, 3e-6), (3, 6, 1e-7), (4, 4, 1e-7), (4, 4, 3e-8), (5, 4, 1e-8)),
+        (4, 8, 1e-10),
     ],
     WHOLE[1]: [
-        *((5, 2, 1e-2), (5, 2, 1e-3), (5, 8, 1e-4), (4, 24, 1e-2), (4, 8, 1e-6), (5, 4, 1e-8)),
-        (4, 8, 1e-10),
+        *((4, 4, 1e-3), (4, 4, 1e-4), (5, 4, 1e-5), (5, 16, 1e-2), (5, 24, 1e-3), (4, 4, 1e-6)),
+        *((5, 24, 1e-6), (5, 6, 1e-7), (4, 8, 1e-7), (5, 4, 1e-8)),
     ],
 }
 # intervals, stages, tolerance, steps to the closed end
 _AUTO: dict[Ribbon, list[tuple[int, int, float, int]]] = {
-    **dict.fromkeys(HALF, [(4, 4, 1e-6, 1), (5, 5, 1e-6, 1), (8, 5, 1e-8, 1), (10, 5, 1e-8, 1)]),
-    **dict.fromkeys(WHOLE, [(16, 5, 1e-8, 2), (32, 5, 1e-8, 2), (64, 5, 1e-8, 2)]),
+    HALF[0]: [
+        *((4, 4, 1e-8, 1), (5, 5, 1e-8, 1), (6, 5, 1e-8, 1), (6, 6, 1e-6, 1), (8, 5, 1e-8, 1)),
+        *((10, 5, 1e-8, 1), (16, 5, 1e-6, 1)),
+    ],
+    HALF[1]: [
+        *((4, 4, 1e-8, 1), (4, 5, 1e-8, 1), (4, 6, 1e-6, 1), (6, 5, 1e-8, 1), (6, 6, 1e-8, 1)),
+        (8, 6, 1e-6, 1),
+    ],
+    WHOLE[0]: [(16, 3, 1e-8, 2), (32, 3, 1e-8, 3), (64, 3, 1e-8, 3), (64, 5, 1e-8, 2)],
+    WHOLE[1]: [(16, 3, 1e-8, 2), (64, 3, 1e-8, 2), (96, 4, 1e-8, 2), (64, 6, 1e-8, 2)],
 }
 # intervals, degree, tolerance of the solver
 _NEWTON = {
-    **dict.fromkeys(HALF, [(6, 3, 1e-7), (6, 4, 1e-7), (6, 6, 1e-9), (8, 6, 1e-10)]),
-    **dict.fromkeys(WHOLE, [(6, 4, 1e-7), (16, 4, 1e-7), (16, 6, 1e-9), (32, 6, 1e-9)]),
+    **_both(HALF, [(6, 3, 1e-7), (6, 4, 1e-7), (6, 6, 1e-9), (8, 6, 1e-10)]),
+    **_both(WHOLE, [(6, 4, 1e-7), (16, 4, 1e-7), (16, 6, 1e-9), (32, 6, 1e-9)]),
 }
 _IPOPT = {
-    **dict.fromkeys(HALF, [(n, 3, 1e-10) for n in (6, 10, 20, 40, 80)]),
-    **dict.fromkeys(WHOLE, [(n, 3, 1e-10) for n in (6, 10, 20, 40, 80)]),
+    **_both(HALF, [(n, 3, 1e-10) for n in (6, 10, 20, 40, 80)]),
+    **_both(WHOLE, [(n, 3, 1e-10) for n in (6, 10, 20, 40, 80)]),
 }
 # of solve_bvp's residuals; the last of the half ribbon takes seconds
 _SCIPY = {
-    **dict.fromkeys(HALF, [1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-9]),
-    **dict.fromkeys(WHOLE, [1e-3, 1e-4, 1e-5, 1e-6, 1e-7]),
+    **_both(HALF, [1e-3, 1e-4, 1e-5, 1e-6, 1e-7, 1e-9]),
+    **_both(WHOLE, [1e-3, 1e-4, 1e-5, 1e-6, 1e-7]),
 }
 SETTINGS: dict[str, dict[Ribbon, list[Any]]] = {
     COLNEW: _COLNEW,
@@ -60,9 +75,10 @@ SETTINGS: dict[str, dict[Ribbon, list[Any]]] = {
     IPOPT: _IPOPT,
     SCIPY: _SCIPY,
 }
-# Along the branch of the half ribbon in epsilon, by the number of states.
+# Along the branch of the half ribbon in epsilon, by the number of states: for errors at its end of
+# about 2e-9 (AUTO on 18 states 6e-9).
 BRANCH: dict[str, dict[int, Any]] = {
-    COLNEW: {13: (7, 8, 1e-8), 18: (7, 8, 1e-8)},
-    AUTO: {13: (16, 6, 1e-8, 1), 18: (16, 6, 1e-8, 1)},
+    COLNEW: {13: (7, 8, 1e-8), 18: (5, 8, 1e-7)},
+    AUTO: {13: (24, 4, 1e-8, 1), 18: (16, 6, 1e-8, 1)},
     SCIPY: {13: 1e-6, 18: 1e-6},
 }
