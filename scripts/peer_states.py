@@ -23,11 +23,12 @@ from scipy.integrate import solve_ivp
 NODES = 21
 FORCE, MOMENT = (0.0, 40.0, 40.0), (0.0, 2.0, -9.0)
 FLAGS = ("-O2", "-w", "-fno-math-errno")
-# n(0), m(0): of the half ribbon 28 digits by a Taylor series; of the whole one, epsilon = 0.01, the
-# half-interval solution of the same law (configs/moebius_regularized.yaml).
+# n(0), m(0): of the half ribbon 28 digits by a Taylor series; of the whole one, epsilon = 0.01, 21
+# digits of the half-interval solution of the same law (tests/references.py).
 HALF = [0, 43.4964080173984993703, 42.0522517129717208281]
 HALF += [0, 2.00545099623122820984, -8.86920396209993570631]
-WHOLE = [0, 43.0906492266307, 42.9691476231505, 0, 2.14648365639865, -8.64714758544218]
+WHOLE = [0, 43.0906492266307374351, 42.9691476231505101214]
+WHOLE += [0, 2.14648365639864840470, -8.64714758544218312320]
 
 
 @dataclass(frozen=True)
