@@ -1,56 +1,51 @@
-"""Figures of comparisons: time against error, and error against mesh with measured orders.
+"""Figures of comparisons: CPU time against error, a panel for each formulation and one of the best.
 
-They take rows as plain mappings, as `comparison.json` and `benchmark.json` hold them.
+They take rows as plain mappings, as `comparison.json` and `benchmark.json` hold them; which of them
+are on a frontier the rows say.
 """
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from functools import partial
-from itertools import cycle
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
-from ribbonopt.plain import Row, Rows
+from ribbonopt.classes import dataclass
 from ribbonopt.text import drawn
 
-from .style import FAINT, INK, blank, draw_all, tidy, title
+from .comparison_panels import best_of_all, one_formulation, said, time_axes
+from .comparison_rows import answered, grouped, limits, shown
+from .comparison_style import legend_of
+from .naming import Names, write_all
+from .orders import draw_orders, ordered
+from .style import FAINT, INK, blank, draw_all
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-    from matplotlib.axis import Axis
-    from matplotlib.figure import Figure
+    from matplotlib.figure import Figure, SubFigure
 
-
-# A colour for each formulation, a marker for each transcription, a dash for the states.
-COLOURS = ("#1f5fa8", "#c2410c", "#2f7d32", "#7b3fa0", "#8a6d00", "#444444")
-MARKERS = "osD^vP*X"
-PEERS = ("black", "#777777", "#b0b0b0")
-STATES: dict[str, Any] = {"reduced": "-", "full": (0, (3, 1.5))}
-FLOOR = 1e-16  # errors that happen to vanish are drawn here
+# Of a figure; of a row of panels, of that of the best, of title and legend (inches).
+WIDTH, HEIGHT, LAST, MARGIN = 12.0, 3.4, 5.0, 1.0
+COLUMNS = 3
 
 
 def plot_study(study: Mapping[str, Any]) -> Figure:
-    """Plot time against error, one line for each pair; of a benchmark, orders beside it."""
-    return _benchmark(study) if "slopes" in study else _comparison(study)
-
-
-def _comparison(study: Mapping[str, Any]) -> Figure:
-    figure = blank(9.5, 6.0)
-    axes = figure.subplots()
-    _work_precision(axes, study["rows"], study.get("peers", ()))
-    for tolerance in study.get("tolerances", ()):
-        axes.axvline(tolerance, color=FAINT, lw=0.5, ls=":", zorder=0)
-    title(axes, study["name"])
-    return figure
-
-
-def _benchmark(study: Mapping[str, Any]) -> Figure:
-    figure = blank(16.0, 6.5)
-    left, right = figure.subplots(1, 2)
-    _work_precision(left, study["rows"], study["peers"])
-    _orders(right, study)
-    title(left, study["name"])
+    """Plot CPU time against error, frontiers named; of a benchmark, measured orders below."""
+    orders = ordered(study.get("slopes", ()), study["rows"])
+    shape = Shape.of(study)
+    if not orders:
+        figure = blank(WIDTH, shape.height)
+        names = _times(figure, study, shape)
+    else:
+        below = HEIGHT * math.ceil(len(orders) / COLUMNS) + MARGIN
+        figure = blank(WIDTH, shape.height + below)
+        grid = figure.add_gridspec(2, 1, height_ratios=[shape.height, below])
+        above = figure.add_subfigure(grid[0, 0])
+        under = figure.add_subfigure(grid[1, 0])
+        names = _times(above, study, shape) | draw_orders(under, orders, COLUMNS)
+    write_all(figure, names)
     return figure
 
 
@@ -60,124 +55,92 @@ def save_figure(study: Mapping[str, Any], path: str | Path) -> None:
     draw_all({path.name: partial(plot_study, study)}, path.parent)
 
 
-def _work_precision(axes: Axes, rows: Rows, peers: Rows) -> None:
-    rows = _drawn(rows)
-    styles = _styles(rows)
-    for (pair,), points in _grouped(rows, ("pair",)).items():
-        xy = sorted((max(row["error"], FLOOR), 1e3 * row["solve"]) for row in points)
-        axes.plot(*zip(*_front(xy), strict=True), **styles[pair])
-    for shade, ((name,), points) in zip(PEERS, _grouped(peers, ("name",)).items(), strict=False):
-        xy = sorted((max(peer["error"], FLOOR), 1e3 * peer["solve"]) for peer in points)
-        axes.plot(
-            *zip(*xy, strict=True), label=drawn(name), color=shade, marker="x", ls=":", lw=1.6
-        )
-    axes.set(xscale="log", yscale="log")
-    axes.invert_xaxis()
-    axes.set_xlabel("relative error of n(0), m(0)")
-    axes.set_ylabel("time of one solve (ms)")
-    axes.grid(True, which="major", alpha=0.25)
-    _plain_ticks(axes.yaxis)
-    tidy(axes)
-    _legend(axes, rows)
+@dataclass(frozen=True)
+class Shape:
+    """Numbers of panels: of formulations, their rows and columns, and whether one of the best."""
+
+    count: int
+    rows: int
+    columns: int
+    best: bool
+
+    @classmethod
+    def of(cls, study: Mapping[str, Any]) -> Shape:
+        """Return the panels of a study: the best have one where it says more than the others."""
+        count = len({row["formulation"] for row in study["rows"]})
+        peers = bool(count and answered(study.get("peers", ())))
+        best = peers or (count > 1 and bool(shown(study["rows"])))
+        columns = max(1, min(COLUMNS, count))
+        return cls(max(1, count), max(1, math.ceil(count / columns)), columns, best)
+
+    @property
+    def height(self) -> float:
+        """Height of the figure."""
+        single = LAST if self.columns == 1 else HEIGHT
+        return single * self.rows + self.best * LAST + MARGIN
+
+    def panels(self, figure: Figure | SubFigure) -> tuple[list[Axes], Axes | None, Axes | None]:
+        """Make the panels: those of formulations, that of the best, and a place that is left."""
+        heights = [HEIGHT] * self.rows + [LAST] * self.best
+        grid = figure.add_gridspec(len(heights), self.columns, height_ratios=heights)
+        first = figure.add_subplot(grid[0, 0])
+        panels, left = [first], None
+        for i in range(1, self.rows * self.columns):
+            place = grid[i // self.columns, i % self.columns]
+            if i < self.count:
+                panels.append(figure.add_subplot(place, sharex=first, sharey=first))
+            elif left is None:
+                left = figure.add_subplot(place)
+                left.set_axis_off()
+        last = figure.add_subplot(grid[-1, :], sharex=first, sharey=first) if self.best else None
+        return panels, last, left
 
 
-def _front(points: list[tuple[float, float]]) -> list[tuple[float, float]]:
-    """Points that no other of the same line beats in both error and time."""
-    front: list[tuple[float, float]] = []
-    for error, time in points:
-        if not front or time < front[-1][1]:
-            front.append((error, time))
-    return front
-
-
-def _orders(axes: Axes, study: Mapping[str, Any]) -> None:
-    orders = {(slope["name"], slope["degree"]): slope["order"] for slope in study["slopes"]}
-    styles = _styles(_drawn(study["rows"]))
-    rows = [row for row in _drawn(study["rows"]) if row["states"] == "reduced"]
-    for (pair, degree), points in _grouped(rows, ("pair", "degree")).items():
-        if (pair, degree) not in orders:
-            continue
-        xy = sorted((row["intervals"] * row["steps"], max(row["error"], FLOOR)) for row in points)
-        axes.plot(*zip(*xy, strict=True), **styles[pair])
-        axes.annotate(
-            f"{orders[pair, degree]:.1f}",
-            xy[-1],
-            xytext=(4, 0),
-            textcoords="offset points",
-            fontsize=7,
-            color=styles[pair]["color"],
-        )
-    axes.set(xscale="log", yscale="log")
-    axes.set_xlabel("intervals (shooting: steps)")
-    axes.set_ylabel("relative error of n(0), m(0)")
-    _plain_ticks(axes.xaxis)
-    axes.set_title("measured orders at the ends; reduced states", loc="left", fontsize=10)
-    axes.grid(True, which="major", alpha=0.25)
-    tidy(axes)
-
-
-def _legend(axes: Axes, rows: Rows) -> None:
-    """One entry for each colour, marker and dash: there may be fifty pairs."""
-    from matplotlib.lines import Line2D
-
-    peers, names = axes.get_legend_handles_labels()
-    colours, markers = _colours(rows), _markers(rows)
-    handles = [Line2D([], [], color=colour, lw=3) for colour in colours.values()]
-    handles += [Line2D([], [], color=INK, marker=marker, ls="") for marker in markers.values()]
-    states = [name for name in STATES if any(row["states"] == name for row in rows)]
-    handles += [Line2D([], [], color=INK, ls=STATES[name]) for name in states]
-    labels = [*map(drawn, (*colours, *markers)), *(f"{name} states" for name in states), *names]
-    axes.legend(
-        [*handles, *peers],
-        labels,
-        loc="upper left",
-        bbox_to_anchor=(1.01, 1.0),
-        frameon=False,
-        fontsize=9,
-        labelcolor=INK,
-        handlelength=3,
+def _times(figure: Figure | SubFigure, study: Mapping[str, Any], shape: Shape) -> Names:
+    """Draw all panels of time against error; what is to be named in each."""
+    panels, last, left = shape.panels(figure)
+    floor = study.get("truth_error") or 0.0
+    rows, peers = study["rows"], answered(study.get("peers", ()), floor)
+    good = shown(rows, floor)
+    names: Names = {}
+    for axes, (name, own) in zip(panels, grouped(rows, "formulation").items(), strict=False):
+        time_axes(axes, drawn(name))
+        names[axes] = one_formulation(axes, own, shown(own, floor), good)
+    if not rows:
+        time_axes(panels[0], "")
+        said(panels[0], rows)
+    if last is not None:
+        time_axes(last, "the best of each, and peers" if peers else "the best of each")
+        names[last] = best_of_all(last, good, peers)
+    x, y = limits([*good, *peers])
+    panels[0].set(xlim=x, ylim=y)
+    for i, axes in enumerate(panels):
+        below = i + shape.columns >= shape.count
+        axes.tick_params(labelleft=i % shape.columns == 0, labelbottom=below)
+    for axes in [*panels, *([last] if last else [])]:
+        for tolerance in study.get("tolerances", ()):
+            axes.axvline(tolerance, color=FAINT, lw=0.6, ls=":", zorder=0)
+    known = f"; the truth is known to {floor:.0e}" if floor else ""
+    known += "; dotted: asked for" if study.get("tolerances") else ""
+    lowest = [last] if last else panels[-shape.columns :]
+    for axes in lowest:
+        axes.set_xlabel(f"relative error of n(0), m(0){known}", color=INK)
+    figure.supylabel(f"time of one solve ({_clock(study)})", fontsize=10, color=INK)
+    figure.suptitle(
+        drawn(study["name"], 60), x=0.01, ha="left", fontsize=12, fontweight="bold", color=INK
     )
+    if good:
+        legend_of(figure, left, good)
+    return names
 
 
-def _plain_ticks(axis: Axis) -> None:
-    """Ticks at 1, 2, 5, 10, ... in plain digits."""
-    from matplotlib.ticker import FuncFormatter, LogLocator, NullLocator
-
-    axis.set_major_locator(LogLocator(subs=(1, 2, 5)))
-    axis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
-    axis.set_minor_locator(NullLocator())
-
-
-def _drawn(rows: Rows) -> list[Row]:
-    return [row for row in rows if row["verified"] and row["error"] is not None]
-
-
-def _colours(rows: Rows) -> dict[str, str]:
-    names = dict.fromkeys(row["formulation"] for row in rows)
-    return dict(zip(names, cycle(COLOURS), strict=False))
-
-
-def _markers(rows: Rows) -> dict[str, str]:
-    names = dict.fromkeys(row["transcription"] for row in rows)
-    return dict(zip(names, cycle(MARKERS), strict=False))
-
-
-def _grouped(rows: Rows, keys: tuple[str, ...]) -> dict[tuple[Any, ...], list[Row]]:
-    groups: dict[tuple[Any, ...], list[Row]] = {}
-    for row in rows:
-        groups.setdefault(tuple(row[key] for key in keys), []).append(row)
-    return groups
-
-
-def _styles(rows: Rows) -> dict[str, dict[str, Any]]:
-    colours, markers = _colours(rows), _markers(rows)
-    return {
-        row["pair"]: {
-            "color": colours[row["formulation"]],
-            "marker": markers[row["transcription"]],
-            "linestyle": STATES[row["states"]],
-            "markersize": 5,
-            "lw": 1.3,
-        }
-        for row in rows
-    }
+def _clock(study: Mapping[str, Any]) -> str:
+    """Say how times were taken."""
+    timing = study.get("timing") or {}
+    said = ["CPU ms"]
+    if timing.get("rounds"):
+        said.append(f"median of {timing['rounds']}")
+    loads = [timing.get("load_before"), timing.get("load_after")]
+    if None not in loads:
+        said.append(f"load {' to '.join(dict.fromkeys(f'{load:.1f}' for load in loads))}")
+    return ", ".join(said)

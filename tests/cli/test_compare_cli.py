@@ -23,8 +23,8 @@ def test_compare_prints_a_table_and_findings(run: Run, half: Path, tmp_path: Pat
     lines = out.splitlines()
     assert any(line.startswith("inverted, reduced, gauss") for line in lines)
     assert any(line.startswith("inverted, full, gauss") for line in lines)
-    assert lines[-2].startswith("To 1e-04: inverted, ")
-    assert lines[-1].startswith("To 1e-06: inverted, ")
+    assert lines[-2].startswith("To 1e-04: inverted + gauss ")
+    assert lines[-1].startswith("To 1e-06: inverted + gauss ")
     assert list(tmp_path.iterdir()) == []
 
 

@@ -130,8 +130,8 @@ def benchmark(
     truth = truth_of([*fine, *(one for one, _ in found)], reference)
     profile = truth.profile if truth else None
     source, error = (truth.source, truth.error) if truth else (UNKNOWN, 0.0)
-    rows = rows_of(found, profile, times[: len(ours)])
-    rivals = rows_of_peers(peers, times[len(ours) :], profile)
+    rows = rows_of(found, profile, times[: len(ours)], error)
+    rivals = rows_of_peers(peers, times[len(ours) :], profile, error)
     return Benchmark(scene.name, source, repeat, rows, rivals, error, timing)
 
 

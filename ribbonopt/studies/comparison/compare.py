@@ -126,7 +126,7 @@ def compare(
     profile = truth.profile if truth else None
     source, error = (truth.source, truth.error) if truth else (UNKNOWN, 0.0)
     times, timing = interleaved([Contender(built) for _, built in found if built], ROUNDS)
-    rows = rows_of(found, profile, times)
+    rows = rows_of(found, profile, times, error)
     return Comparison(scene.name, source, error, wanted, rows, timing)
 
 

@@ -89,15 +89,15 @@ class PeerRow:
 
 
 def rows_of_peers(
-    peers: Sequence[Peer], times: Sequence[Times], truth: Profile | None
+    peers: Sequence[Peer], times: Sequence[Times], truth: Profile | None, floor: float = 0.0
 ) -> tuple[PeerRow, ...]:
-    """Return a row for each peer: failures too, with their reasons."""
+    """Return a row for each peer: failures too, with their reasons. Floor as in `rows_of`."""
     rows = [_row(peer, found, truth) for peer, found in zip(peers, times, strict=True)]
     best: set[int] = set()
     for name in dict.fromkeys(row.name for row in rows):
         own = [(i, row.error, row.solve) for i, row in enumerate(rows) if row.name == name]
         good = [(i, e, t) for i, e, t in own if e is not None and t is not None]
-        best |= {good[k][0] for k in frontier([(e, t) for _, e, t in good])}
+        best |= {good[k][0] for k in frontier([(max(e, floor), t) for _, e, t in good])}
     return tuple(replace(row, frontier=i in best) for i, row in enumerate(rows))
 
 

@@ -16,7 +16,7 @@ from .measure import Measurement, Repeated
 from .profile import Profile, errors_of
 from .timing import Span, Times, span_of
 
-OVERALL, OWN = "overall", "formulation"  # frontiers that a row may be on
+OVERALL, OWN, PAIR = "overall", "formulation", "pair"  # frontiers that a row may be on
 
 
 @dataclass(frozen=True)
@@ -48,8 +48,8 @@ class PairRow:
     rounds : int
         How many times it was timed.
     frontier : str
-        "overall" if no verified row is as quick and as accurate, "formulation" if none of its
-        formulation is, else "".
+        "overall" if no verified row is as quick and as accurate; "formulation" if none of its
+        formulation is, "pair" if none of its pair is, else "".
     """
 
     formulation: str
@@ -140,14 +140,18 @@ def rows_of(
     found: Sequence[tuple[Measurement, Repeated | None]],
     truth: Profile | None,
     times: Sequence[Times],
+    floor: float = 0.0,
 ) -> tuple[PairRow, ...]:
-    """Return the rows of measurements, with the times of those that can be solved again."""
+    """Return the rows of measurements, with the times of those that can be solved again.
+
+    Errors below the floor, that of the truth, win nothing: the truth itself has none.
+    """
     taken = iter(times)
     rows = []
     for one, built in found:
         row = row_of(one, truth)
         rows.append(row if built is None else with_times(row, next(taken)))
-    return with_frontiers(rows)
+    return with_frontiers(rows, floor)
 
 
 def row_of(found: Measurement, truth: Profile | None) -> PairRow:
@@ -184,22 +188,18 @@ def with_times(row: PairRow, times: Times) -> PairRow:
     return replace(row, evaluate=float(evaluate), linear=float(linear), **found)
 
 
-def with_frontiers(rows: Sequence[PairRow]) -> tuple[PairRow, ...]:
-    """Mark the rows that are on the frontier of all, and of their formulation."""
+def with_frontiers(rows: Sequence[PairRow], floor: float = 0.0) -> tuple[PairRow, ...]:
+    """Mark the rows that are on the frontier of their pair, of their formulation, of all."""
+    ranked = [
+        (i, max(row.error, floor), row.solve)
+        for i, row in enumerate(rows)
+        if row.verified and row.error is not None and row.solve is not None
+    ]
     marks: dict[int, str] = {}
-    for name in dict.fromkeys(row.formulation for row in rows):
-        marks |= dict.fromkeys(_best(rows, name), OWN)
-    marks |= dict.fromkeys(_best(rows), OVERALL)
+    for mark, key in ((PAIR, "name"), (OWN, "formulation"), (OVERALL, "verified")):
+        groups: dict[Any, list[tuple[int, float, float]]] = {}
+        for place in ranked:
+            groups.setdefault(getattr(rows[place[0]], key), []).append(place)
+        for own in groups.values():
+            marks |= {own[k][0]: mark for k in frontier([(e, t) for _, e, t in own])}
     return tuple(replace(row, frontier=marks.get(i, "")) for i, row in enumerate(rows))
-
-
-def _best(rows: Sequence[PairRow], formulation: str | None = None) -> list[int]:
-    """Places of the rows on the frontier, of one formulation or of all."""
-    places: list[int] = []
-    points: list[tuple[float, float]] = []
-    for i, row in enumerate(rows):
-        asked = formulation is None or row.formulation == formulation
-        if asked and row.verified and row.error is not None and row.solve is not None:
-            places.append(i)
-            points.append((row.error, row.solve))
-    return [places[k] for k in frontier(points)]

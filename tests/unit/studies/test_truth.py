@@ -54,7 +54,7 @@ def test_the_truth_is_known_ten_times_better_than_what_it_judges(
 ) -> None:
     meshes: list[int] = []
 
-    def told(pair: Any, scene: Scene, mesh: Any, repeat: int) -> tuple[Measurement, None]:
+    def told(pair: Any, scene: Scene, mesh: Any) -> tuple[Measurement, None]:
         meshes.append(mesh.intervals)
         return measured(estimates[len(meshes) - 1]), None
 
@@ -76,7 +76,7 @@ def test_the_truth_is_the_best_that_is_verified(monkeypatch: pytest.MonkeyPatch)
 def test_its_own_estimate_is_the_larger_error_of_both_loads(configs: Path, name: str) -> None:
     scene = load_scene(configs / f"{name}.yaml")
     fine, coarse = (
-        measure(FINE, scene, Collocation(degree=degree, intervals=count), repeat=1)[0]
+        measure(FINE, scene, Collocation(degree=degree, intervals=count))[0]
         for degree, count in ((8, 40), (2, 6))
     )
     assert fine.profile is not None and coarse.profile is not None
