@@ -24,7 +24,7 @@ import numpy as np
 from bench_path import ROOT, medians
 from results_machine import conditions
 from starts_clamps import bench_clamps
-from starts_noise import LEVELS, QUOTED, SAME, bench_noise
+from starts_noise import LEVELS, SAME, bench_noise, bench_peer
 
 from ribbonopt.output.summary import versions
 from ribbonopt.pipeline.prepared import solve
@@ -47,7 +47,7 @@ def main() -> None:
     options.out.mkdir(parents=True, exist_ok=True)
     parts: dict[str, Callable[[], Any]] = {
         "clamps": lambda: bench_clamps(options.count),
-        "noise": lambda: bench_noise(options.seeds),
+        "noise": lambda: [*bench_noise(options.seeds), *bench_peer(options.seeds)],
         "nothing": lambda: bench_nothing(options.repeat),
     }
     result = {
@@ -55,7 +55,6 @@ def main() -> None:
         "versions": versions(),
         "seeds": options.seeds,
         "load_before": os.getloadavg(),
-        "noise_quoted": QUOTED,
     } | conditions()
     for name in options.only:
         result[name] = parts[name]()
@@ -129,8 +128,6 @@ def report_noise(noise: list[dict[str, Any]]) -> None:
                 print(f"    {row['level']:.0%}: {row['not_found']}")
     gaps = [row["gap_max"] for row in noise if row["gap_max"] is not None]
     print(f"  integrated anew, answers are off by {max(gaps):.0e} at most")
-    for name, counts in QUOTED.items():
-        print(f"  {name:<42} {' / '.join(map(str, counts))} of 50, not measured here")
 
 
 def report_nothing(nothing: list[dict[str, Any]]) -> None:
@@ -197,17 +194,14 @@ def _times(axes: Any, clamps: dict[str, Any]) -> None:
 
 
 def _rates(axes: Any, result: dict[str, Any]) -> None:
-    """Bars: share found from starts with noise; quoted figures in grey."""
+    """Bars: share found from starts with noise."""
     rates = {
         name: [row["found"] / row["seeds"] for row in rows]
         for name, rows in by_method(result["noise"]).items()
     }
-    rates |= {name: [count / 50 for count in counts] for name, counts in QUOTED.items()}
     width, places = 0.8 / len(rates), np.arange(len(LEVELS))
-    ours = (BLUE, GREEN, RED, *SHADES)[: len(rates) - len(QUOTED)]
-    for i, ((name, shares), colour) in enumerate(
-        zip(rates.items(), (*ours, GREY, LIGHT), strict=True)
-    ):
+    colours = (BLUE, GREEN, RED, *SHADES, GREY, LIGHT)
+    for i, ((name, shares), colour) in enumerate(zip(rates.items(), colours, strict=False)):
         at = places + (i - (len(rates) - 1) / 2) * width
         bars = axes.bar(at, shares, 0.92 * width, color=colour, label=name)
         axes.bar_label(bars, [f"{100 * share:.0f}" for share in shares], fontsize=6, padding=1)

@@ -53,15 +53,18 @@ class Colnew:
         setting: Setting,
         times: int,
         epsilons: Sequence[float] | None = None,
+        guess: np.ndarray | None = None,
     ) -> dict[str, Any]:
         """Solve so many times, for epsilons one after the other where these are given.
+
+        From a guess (21, states), if one is given, instead of that of all peers.
 
         Returns the CPU seconds of one, n(0), m(0), intervals of the last mesh, and whether COLNEW
         says that it converged.
         """
         epsilons = [ribbon.epsilon] if epsilons is None else epsilons
         folder = self._program(ribbon)
-        write_guess(folder / "guess", ribbon, epsilons[0])
+        write_guess(folder / "guess", ribbon, epsilons[0], x=guess)
         fixed = 0.5 if ribbon.whole else 0
         command = [folder / "colnew", folder / "guess", ribbon.length, fixed]
         command += [*setting, times, *epsilons]

@@ -165,9 +165,12 @@ def write_source(folder: Path, ribbon: Ribbon) -> Path:
     return Path(generator.generate(f"{folder}/"))
 
 
-def write_guess(path: Path, ribbon: Ribbon, epsilon: float, scale: float = 1.0) -> None:
-    """Write rows of the arc length, times a scale, and the states."""
-    s, x = ribbon.guess(epsilon)
+def write_guess(
+    path: Path, ribbon: Ribbon, epsilon: float, scale: float = 1.0, x: np.ndarray | None = None
+) -> None:
+    """Write rows of the arc length, times a scale, and the states: x, or those of the guess."""
+    s, states = ribbon.guess(epsilon)
+    x = states if x is None else x
     np.savetxt(path, np.column_stack([scale * s, x]), fmt="%.17g")
 
 

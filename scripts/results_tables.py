@@ -141,9 +141,7 @@ def noise(study: Any) -> str:
         " the answers and an independent integration of them.",
         table(("ribbon", "method", "noise", "found", "else", "median ms", "most", "gap"), rows),
     ]
-    quoted = study.get("noise_quoted", {})
-    told = [f"{name}: {' / '.join(map(str, counts))} of 50" for name, counts in quoted.items()]
-    return "\n\n".join([*lines, "Half ribbon, not measured here: " + "; ".join(told) + "."])
+    return "\n\n".join(lines)
 
 
 def measured_rows(study: Any, name: str) -> list[Row]:

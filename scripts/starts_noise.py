@@ -17,6 +17,8 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from peer_colnew import Colnew
+from peer_states import Ribbon
 
 from ribbonopt.guess import Guess
 from ribbonopt.mechanics.rotations import matrix_of, quaternions_from
@@ -42,9 +44,8 @@ SCENES = {
 }
 WHOLE_PATH = "whole path"
 METHODS = ("Newton", "Newton, then IPOPT", WHOLE_PATH)  # the first two of the half ribbon only
-# Found of 50 seeds at each level: figures known for this problem from outside this script, quoted
-# as they were handed down; neither measured here nor counted by what is counted here.
-QUOTED = {"COLNEW (quoted)": (50, 50, 26), "scipy solve_bvp (quoted)": (50, 48, 23)}
+PEER_SETTING = (5, 10, 1e-6)  # of COLNEW: stages, intervals of the first mesh, tolerance
+PEER_SAME = 1e-4  # of what it finds; other equilibria are far away
 SAME = 1e-6  # of n(0), m(0) against the scene's own answer; symmetry leaves their signs open
 RIGHT = 1e-7  # gaps of an answer and its integration, over what an error grows by
 
@@ -83,6 +84,33 @@ def bench_noise(seeds: int, names: tuple[str, ...] = tuple(SCENES)) -> list[dict
         next(prepared.automatic.guesses(search.posed, search.ledger))  # builds it, once
         for method, run in runs(prepared, own, file == "moebius_half").items():
             rows += [tried(name, method, run, level, seeds) for level in LEVELS]
+    return rows
+
+
+def bench_peer(seeds: int) -> list[dict[str, Any]]:
+    """Solve from starts with the same noise by COLNEW on 13 states, where it is found."""
+    peer = Colnew()
+    if peer.why:
+        print(f"COLNEW is not run: {peer.why}")
+        return []
+    rows = []
+    for whole in (False, True):
+        ribbon = Ribbon(whole)
+
+        def run(level: float, seed: int, ribbon: Ribbon = ribbon) -> tuple[float, Told]:
+            _, x = ribbon.guess()
+            rng = np.random.default_rng(seed)
+            constants = changed(x[0, ribbon.moving :], level, rng)
+            noisy = np.tile(np.append(np.zeros(ribbon.moving), constants), (len(x), 1))
+            noisy[:, : ribbon.moving] = changed(x[:, : ribbon.moving], level, rng)
+            found = peer.run(ribbon, PEER_SETTING, 1, guess=noisy)
+            if not found["verified"]:
+                return found["cpu_s"], ("it did not converge", {})
+            band = same(np.array(found["numbers"]), np.array(ribbon.truth), PEER_SAME)
+            return found["cpu_s"], ("found" if band else "another solution of the equations", {})
+
+        name = "whole (6.1), from loads" if whole else "half, from loads"
+        rows += [tried(name, "COLNEW, 13 states", run, level, seeds) for level in LEVELS]
     return rows
 
 
@@ -160,6 +188,6 @@ def judged(solution: Solution, truth: np.ndarray) -> Told:
     return ("found" if band else "another equilibrium"), told
 
 
-def same(loads: np.ndarray, truth: np.ndarray) -> bool:
+def same(loads: np.ndarray, truth: np.ndarray, within: float = SAME) -> bool:
     """Whether loads are those of the band, but for their signs."""
-    return bool(np.abs(np.abs(loads) - np.abs(truth)).max() < SAME * np.abs(truth).max())
+    return bool(np.abs(np.abs(loads) - np.abs(truth)).max() < within * np.abs(truth).max())

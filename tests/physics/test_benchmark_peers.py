@@ -12,6 +12,7 @@ sys.path.append(str(Path(__file__).resolve().parents[2] / "scripts"))
 import bench_compiled
 import bench_growth
 import compiled_cases
+import results_tables
 from peer_casadi import IPOPT, NEWTON, Collocated
 from peer_scipy import Scipy
 from peer_states import Ribbon
@@ -110,3 +111,20 @@ LIBRARIES = {
 def test_other_equilibria_are_counted() -> None:
     pairs = [({"numbers": [2.0, 3.0, 4.0]}, {"numbers": [2.0 + 1e-7, 2.9, 4.1]})]
     assert bench_compiled.energies(pairs, 1e-6) == {"same": 1, "lower": 1, "higher": 1}
+
+
+def test_a_cell_of_the_page_is_the_quickest_that_is_right() -> None:
+    """What did not converge or is off counts for nothing, however quick."""
+    peers = [
+        {"solve": None, "error": None, "message": "it did not converge", "detail": "a"},
+        {"solve": 1e-4, "error": 2e-6, "message": "", "detail": "b"},
+        {"solve": 3e-3, "error": 1e-10, "message": "", "detail": "c"},
+        {"solve": 2e-3, "error": 9e-10, "message": "", "detail": "d"},
+        {"solve": 2e-3, "error": None, "message": "", "detail": "e"},
+    ]
+    study = {"rows": [], "truth": "t", "peers": [{"name": "P, 13 states"} | row for row in peers]}
+    rows = results_tables.measured_rows(study, "P, 13 states")
+    assert [row["detail"] for row in rows] == ["b", "c", "d"]
+    page = results_tables.ladder(study)
+    assert "| P | 13 | 0.1 (2e-06) | 2 (9e-10) | 2 (9e-10) |  |" in page
+    assert "No answer: P, 13 states (a): it did not converge." in page
