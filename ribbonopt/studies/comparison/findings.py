@@ -137,12 +137,13 @@ def _against(peer: PeerRow, winner: PairRow) -> str:
     if as_fast(peer, winner):
         return "as fast"
     if _time(peer) < _time(winner):
-        return f"which wins: ours takes {_ratio(winner, peer):.1f} times as long"
+        return f"which wins: ours takes {_times(winner, peer)}"
     return _times(peer, winner)
 
 
 def _times(slower: Entry, quicker: Entry) -> str:
-    return f"{_ratio(slower, quicker):.1f} times as long"
+    ratio = _ratio(slower, quicker)
+    return f"{ratio:.{0 if ratio >= 10 else 1}f} times as long"
 
 
 def _ratio(slower: Entry, quicker: Entry) -> float:

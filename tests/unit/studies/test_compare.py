@@ -173,7 +173,7 @@ def test_no_more_is_claimed_than_the_rounds_show() -> None:
     [
         (0.001, "COLNEW (1e-7), 1.0 ms, which wins: ours takes 3.0 times as long."),
         (0.003, "COLNEW (1e-7), 3.0 ms, as fast."),
-        (0.030, "COLNEW (1e-7), 30 ms, 10.0 times as long."),
+        (0.030, "COLNEW (1e-7), 30 ms, 10 times as long."),
     ],
 )
 def test_sentences_say_who_wins_among_peers(solve: float, said: str) -> None:
