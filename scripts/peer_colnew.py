@@ -54,13 +54,14 @@ class Colnew:
         times: int,
         epsilons: Sequence[float] | None = None,
         guess: np.ndarray | None = None,
+        patience: float | None = None,
     ) -> dict[str, Any]:
         """Solve so many times, for epsilons one after the other where these are given.
 
         From a guess (21, states), if one is given, instead of that of all peers.
 
         Returns the CPU seconds of one, n(0), m(0), intervals of the last mesh, and whether COLNEW
-        says that it converged.
+        says that it converged. TimeoutExpired after so many seconds of `patience`.
         """
         epsilons = [ribbon.epsilon] if epsilons is None else epsilons
         folder = self._program(ribbon)
@@ -68,7 +69,9 @@ class Colnew:
         fixed = 0.5 if ribbon.whole else 0
         command = [folder / "colnew", folder / "guess", ribbon.length, fixed]
         command += [*setting, times, *epsilons]
-        done = subprocess.run(list(map(str, command)), capture_output=True, text=True, check=True)
+        done = subprocess.run(
+            list(map(str, command)), capture_output=True, text=True, check=True, timeout=patience
+        )
         rows = [list(map(float, line.split())) for line in done.stdout.splitlines()]
         return {
             "cpu_s": float(np.median([row[0] for row in rows])),

@@ -14,6 +14,7 @@ from collections import Counter
 from collections.abc import Callable
 from dataclasses import dataclass
 from pathlib import Path
+from subprocess import TimeoutExpired
 from typing import Any
 
 import numpy as np
@@ -45,6 +46,7 @@ SCENES = {
 WHOLE_PATH = "whole path"
 METHODS = ("Newton", "Newton, then IPOPT", WHOLE_PATH)  # the first two of the half ribbon only
 PEER_SETTING = (5, 10, 1e-6)  # of COLNEW: stages, intervals of the first mesh, tolerance
+PATIENCE = 5.0  # seconds that it is given
 PEER_SAME = 1e-4  # of what it finds; other equilibria are far away
 SAME = 1e-6  # of n(0), m(0) against the scene's own answer; symmetry leaves their signs open
 RIGHT = 1e-7  # gaps of an answer and its integration, over what an error grows by
@@ -103,7 +105,10 @@ def bench_peer(seeds: int) -> list[dict[str, Any]]:
             constants = changed(x[0, ribbon.moving :], level, rng)
             noisy = np.tile(np.append(np.zeros(ribbon.moving), constants), (len(x), 1))
             noisy[:, : ribbon.moving] = changed(x[:, : ribbon.moving], level, rng)
-            found = peer.run(ribbon, PEER_SETTING, 1, guess=noisy)
+            try:
+                found = peer.run(ribbon, PEER_SETTING, 1, guess=noisy, patience=PATIENCE)
+            except TimeoutExpired:
+                return PATIENCE, (f"no end within {PATIENCE:g} s", {})
             if not found["verified"]:
                 return found["cpu_s"], ("it did not converge", {})
             band = same(np.array(found["numbers"]), np.array(ribbon.truth), PEER_SAME)
