@@ -1,10 +1,15 @@
-"""Time against error on the half Moebius ribbon: every pair, scipy and CasADi as usually written.
+"""CPU time against error on Moebius ribbons: ours, and peers on 18 and on 13 states.
 
-    python scripts/bench_accuracy.py [--out results/accuracy] [--repeat 11] [--quick]
+    python scripts/bench_accuracy.py [--out results/accuracy] [--ribbon half whole] [--repeat 11]
+        [--all] [--quick]
 
-One interleaved run, medians; errors relative to the 28-digit reference. Writes `benchmark.csv`,
-`benchmark.json` (with machine and versions), `benchmark.png` (with measured orders) and, what an
-answer with its error bar costs, `bars.json` (`accuracy_bars.py`).
+The half ribbon by Sadowsky's law and the whole one by (6.1), epsilon = 0.01; interleaved rounds,
+medians; errors relative to the references of `peer_states.py`. Ours are the inverted form by Gauss
+points on fixed meshes (`--all`: every pair), and the whole path to a tolerance with its bars. Peers
+are those of `peer_contenders.py`: solve_bvp, CasADi with IPOPT and with its own Newton, AUTO and
+COLNEW where they are found. Writes `half.csv`, `half.json` (with machine, versions and what is
+missing), `half.png`, the same of `whole`, and, what an answer with its error bar costs step by
+step, `bars.json` (`accuracy_bars.py`). `results_page.py` makes a page of it.
 """
 
 from __future__ import annotations
@@ -12,6 +17,7 @@ from __future__ import annotations
 import argparse
 import json
 import os
+from dataclasses import dataclass
 from pathlib import Path
 
 # Small matrices: threads of the linear algebra cost more than they bring, for all contenders.
@@ -19,71 +25,73 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 
 import accuracy_bars
-import numpy as np
-import peer_casadi
-import peer_scipy
+from peer_contenders import SCENES, STARTED, contenders
+from peer_states import HALF, WHOLE
+from results_machine import conditions
 
 from ribbonopt.scene import load_scene
-from ribbonopt.studies.comparison.benchmark import Peer, benchmark
+from ribbonopt.studies.comparison.benchmark import benchmark
 from ribbonopt.studies.comparison.files import save_study
 from ribbonopt.studies.comparison.table import table
 from ribbonopt.studies.comparison.truth import SourcedLoads
 from ribbonopt.views.comparison import save_figure
 
-SCENE = Path(__file__).resolve().parent.parent / "configs" / "moebius_half.yaml"
-REFERENCE = SourcedLoads(
-    n0=(0.0, 43.4964080173984993703, 42.0522517129717208281),
-    m0=(0.0, 2.00545099623122820984, -8.86920396209993570631),
-    source="28 digits by Taylor series",
-)
-FORCE, MOMENT = (0.0, 40.0, 40.0), (0.0, 2.0, -9.0)
-# solve_bvp controls a residual; the last takes seconds.
-SCIPY = (1e-3, 1e-5, 1e-7, 1e-9)
-CASADI = (5, 10, 20, 40, 80)
+
+@dataclass(frozen=True)
+class Part:
+    """One ribbon, and what its reference is."""
+
+    whole: bool
+    truth: list[float]
+    source: str
+
+
+PARTS = {
+    "half": Part(False, HALF, "28 digits by Taylor series"),
+    "whole": Part(True, WHOLE, "21 digits of the half-interval solution of the same law"),
+}
+BEST = ("inverted",), ("gauss",)  # formulation and transcription that peers are to be set beside
 
 
 def main() -> None:
     """Run, print, write."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--out", type=Path, default=Path("results") / "accuracy")
+    parser.add_argument("--ribbon", nargs="+", choices=tuple(PARTS), default=list(PARTS))
     parser.add_argument("--repeat", type=int, default=11)
     parser.add_argument("--quick", action="store_true", help="fewer pairs, meshes and peers")
+    parser.add_argument("--all", action="store_true", help="every pair of ours, for half an hour")
     options = parser.parse_args()
     options.out.mkdir(parents=True, exist_ok=True)
     bars = accuracy_bars.bench_bars(options.repeat)
     accuracy_bars.report(bars)
     (options.out / "bars.json").write_text(json.dumps(bars, indent=2) + "\n", encoding="utf-8")
+    for name in options.ribbon:
+        run(name, PARTS[name], options)
+
+
+def run(name: str, part: Part, options: argparse.Namespace) -> None:
+    """Time one ribbon, print its table and write its files."""
+    missing: dict[str, str] = {}
+    out, quick = options.out, options.quick
+    peers = contenders(part.whole, quick, missing)
+    for peer, why in missing.items():
+        print(f"{peer} is not run: {why}")
     study = benchmark(
-        load_scene(SCENE),
+        load_scene(SCENES[part.whole], [STARTED]),
+        *((None, None) if options.all else BEST),
         repeat=options.repeat,
-        quick=options.quick,
-        reference=REFERENCE,
-        peers=peers(options.quick),
+        quick=quick,
+        reference=SourcedLoads(tuple(part.truth[:3]), tuple(part.truth[3:]), part.source),
+        peers=peers,
     )
     print(table(study))
-    save_study(study, options.out, "benchmark")
-    save_figure(study.plain(), options.out / "benchmark.png")
-    print(f"written: {options.out}: bars.json, benchmark.csv, benchmark.json, benchmark.png")
-
-
-def peers(quick: bool) -> list[Peer]:
-    """Return scipy's solve_bvp at some tolerances and CasADi on some meshes."""
-    scipy = peer_scipy.HalfMoebius(FORCE, MOMENT)
-    tolerances, meshes = (SCIPY[:2], CASADI[:3]) if quick else (SCIPY, CASADI)
-    result = [
-        Peer("scipy solve_bvp", f"tolerance {tolerance:g}", lambda t=tolerance: _scipy(scipy, t))
-        for tolerance in tolerances
-    ]
-    for intervals in meshes:
-        casadi = peer_casadi.HalfMoebius(FORCE, MOMENT, intervals)
-        name = f"CasADi, degree {peer_casadi.DEGREE}, as usually written"
-        result.append(Peer(name, f"{intervals} intervals", casadi.solve))
-    return result
-
-
-def _scipy(problem: peer_scipy.HalfMoebius, tolerance: float) -> tuple[np.ndarray, np.ndarray]:
-    answer, _ = problem.solve(tolerance)
-    return answer[:3], answer[3:]
+    save_study(study, out, name)
+    path = out / f"{name}.json"
+    found = json.loads(path.read_text(encoding="utf-8")) | {"missing": missing}
+    path.write_text(json.dumps(found | conditions(), indent=2) + "\n", encoding="utf-8")
+    save_figure(study.plain(), out / f"{name}.png")
+    print(f"written: {out}: {name}.csv, {name}.json, {name}.png", flush=True)
 
 
 if __name__ == "__main__":

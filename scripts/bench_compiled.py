@@ -31,16 +31,13 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 
 from compiled_cases import CASES
 from compiled_figure import draw
+from peer_states import HALF, WHOLE
+from results_machine import conditions
 
 from ribbonopt.studies.machine import machine
 
 ROOT = Path(__file__).resolve().parent.parent
 BEFORE, WITH, WITHOUT = "before", "with kernel", "without"
-# n(0), m(0): of the half ribbon 28 digits by a Taylor series; of the whole one, epsilon = 0.01, the
-# half-interval solution of the same law (configs/moebius_regularized.yaml).
-HALF = [0, 43.4964080173984993703, 42.0522517129717208281]
-HALF += [0, 2.00545099623122820984, -8.86920396209993570631]
-WHOLE = [0, 43.0906492266307, 42.9691476231505, 0, 2.14648365639865, -8.64714758544218]
 # epsilon = 1e-4: this package to 1e-12 and COLNEW to 1e-9 agree to 3e-14.
 LAST = [0, 43.491515795830, 42.062655833544, 0, 2.0069761447399, -8.8666016238828]
 # name: answers in a turn, tolerance, ratios wanted with the kernel and without, reference
@@ -130,7 +127,7 @@ def main() -> None:
         "turns": options.turns,
         "load_before": os.getloadavg(),
         "rows": {},
-    }
+    } | conditions()
     for name in (name for name in CASES if name.startswith(tuple(options.only))):
         asks = {label: checkout.ask for label, checkout in checkouts.items()}
         runs = interleaved(name, asks | peers.get(name, {}), options.turns)

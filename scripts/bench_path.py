@@ -26,6 +26,7 @@ os.environ.setdefault("OPENBLAS_NUM_THREADS", "1")
 os.environ.setdefault("OMP_NUM_THREADS", "1")
 
 import numpy as np
+from peer_states import HALF
 
 from ribbonopt.output.summary import versions
 from ribbonopt.pipeline.prepared import prepare
@@ -33,13 +34,7 @@ from ribbonopt.scene import Scene, load_scene
 
 ROOT = Path(__file__).resolve().parent.parent
 SCENE = ROOT / "configs" / "moebius_half.yaml"
-REFERENCE = np.array(
-    [
-        *(0, 43.4964080173984993703, 42.0522517129717208281),
-        *(0, 2.00545099623122820984, -8.86920396209993570631),
-    ]
-)
-FORCE, MOMENT = (0.0, 40.0, 40.0), (0.0, 2.0, -9.0)
+REFERENCE = np.array(HALF)
 # (solver, degree, intervals, solver tolerance): the quickest found that reach each error.
 CASES = {
     "1e-9": [("ipopt", 6, 6, 1e-9), ("newton", 6, 6, 1e-9)],
@@ -147,9 +142,10 @@ def bench_solve(repeat: int, quick: bool) -> list[dict[str, Any]]:
                 "linear_ms": 1e3 * answer.linear,
             }
         if not (quick and target == "1e-12"):
-            from peer_scipy import HalfMoebius
+            from peer_scipy import Scipy
+            from peer_states import Ribbon
 
-            peer = HalfMoebius(FORCE, MOMENT)
+            peer = Scipy(Ribbon(whole=False))
             name = f"scipy solve_bvp {target}"
             answer, nodes = peer.solve(PEER_TOLERANCE[target])
             error = np.abs(answer - REFERENCE).max() / np.abs(REFERENCE).max()

@@ -1,10 +1,10 @@
 """How far the starts reach: random clamps, noise on a start, and scenes without their guess.
 
-    python scripts/bench_starts.py [--out results/bench_starts] [--count 200] [--seeds 50]
-                                   [--repeat 5]
+    python scripts/bench_starts.py [--out results/bench_starts] [--only clamps noise nothing]
+                                   [--count 200] [--seeds 50] [--repeat 5]
 
 Everything is seeded; failures are counted with their messages, and times are those of all solves,
-failures included. Writes `bench_starts.json` and `bench_starts.png`.
+failures included. Writes `bench_starts.json` and, of all parts, `bench_starts.png`.
 """
 
 from __future__ import annotations
@@ -12,6 +12,7 @@ from __future__ import annotations
 import argparse
 import json
 import os
+from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
@@ -21,8 +22,9 @@ os.environ.setdefault("OMP_NUM_THREADS", "1")
 
 import numpy as np
 from bench_path import ROOT, medians
+from results_machine import conditions
 from starts_clamps import bench_clamps
-from starts_noise import LEVELS, METHODS, QUOTED, SAME, bench_noise
+from starts_noise import LEVELS, SAME, bench_noise, bench_peer
 
 from ribbonopt.output.summary import versions
 from ribbonopt.pipeline.prepared import solve
@@ -30,29 +32,39 @@ from ribbonopt.scene import load_scene
 from ribbonopt.studies.machine import machine
 
 BLUE, RED, GREEN, GREY, LIGHT = "#1f5fa8", "#c2410c", "#2f7d32", "#777777", "#b8b8b8"
+SHADES = ("#7fb0dd", "#7b3fa0", "#8a6d00")
 
 
 def main() -> None:
     """Run all parts, print the tables, write JSON and figure."""
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--out", type=Path, default=Path("results") / "bench_starts")
+    parser.add_argument("--only", nargs="+", choices=PARTS, default=list(PARTS))
     parser.add_argument("--count", type=int, default=200, help="random clamps")
     parser.add_argument("--seeds", type=int, default=50, help="seeds at each level of noise")
     parser.add_argument("--repeat", type=int, default=5, help="runs of each scene from nothing")
     options = parser.parse_args()
     options.out.mkdir(parents=True, exist_ok=True)
+    parts: dict[str, Callable[[], Any]] = {
+        "clamps": lambda: bench_clamps(options.count),
+        "noise": lambda: [*bench_noise(options.seeds), *bench_peer(options.seeds)],
+        "nothing": lambda: bench_nothing(options.repeat),
+    }
     result = {
         "machine": machine(),
         "versions": versions(),
-        "clamps": bench_clamps(options.count),
-        "noise": bench_noise(options.seeds),
-        "noise_quoted": QUOTED,
-        "nothing": bench_nothing(options.repeat),
-    }
-    report(result)
+        "seeds": options.seeds,
+        "load_before": os.getloadavg(),
+    } | conditions()
+    for name in options.only:
+        result[name] = parts[name]()
+        REPORTS[name](result[name])
+    result["load_after"] = os.getloadavg()
     (options.out / "bench_starts.json").write_text(json.dumps(result, indent=2) + "\n")
-    draw(result, options.out / "bench_starts.png")
-    print(f"written: {options.out / 'bench_starts.json'}, {options.out / 'bench_starts.png'}")
+    print(f"written: {options.out / 'bench_starts.json'}")
+    if set(PARTS) <= set(result):
+        draw(result, options.out / "bench_starts.png")
+        print(f"written: {options.out / 'bench_starts.png'}")
 
 
 def bench_nothing(repeat: int) -> list[dict[str, Any]]:
@@ -84,10 +96,10 @@ def bench_nothing(repeat: int) -> list[dict[str, Any]]:
     return rows
 
 
-def report(result: dict[str, Any]) -> None:
-    """Print the tables."""
-    print(f"random clamps (the first, with what is built: {result['clamps']['first_s']:.2f} s)")
-    for name, row in result["clamps"]["summary"].items():
+def report_clamps(clamps: dict[str, Any]) -> None:
+    """Print what came of random clamps."""
+    print(f"random clamps (the first, with what is built: {clamps['first_s']:.2f} s)")
+    for name, row in clamps["summary"].items():
         median, ninety, largest = row["ms"]
         cpu = " / ".join(f"{value:.0f}" for value in row["cpu_ms"])
         print(
@@ -99,21 +111,29 @@ def report(result: dict[str, Any]) -> None:
         if name == "automatic start":
             again = row["minimised_again"]
             print(f"    by number of shapes {row['shapes']}, of minimisations again {again}")
-    both = result["clamps"]["energy_where_both"]
+    both = clamps["energy_where_both"]
     print(f"  energy from the automatic start against the other, where both solved: {both}")
-    print(f"half Moebius found, noise {', '.join(f'{level:.0%}' for level in LEVELS)}")
-    for method, rows in by_method(result["noise"]).items():
+
+
+def report_noise(noise: list[dict[str, Any]]) -> None:
+    """Print what came of starts with noise."""
+    print(f"Moebius ribbons found, noise {', '.join(f'{level:.0%}' for level in LEVELS)}")
+    for method, rows in by_method(noise).items():
         found = " / ".join(f"{row['found']}" for row in rows)
         ms = " / ".join(f"{row['ms_median']:.0f}" for row in rows)
-        print(f"  {method:<28} {found} of {rows[0]['seeds']}; median {ms} ms")
-        print(
-            "".join(f"    {r['level']:.0%}: {r['not_found']}\n" for r in rows if r["not_found"]),
-            end="",
-        )
-    for name, counts in QUOTED.items():
-        print(f"  {name:<28} {' / '.join(map(str, counts))} of 50, not measured here")
+        most = " / ".join(f"{row['ms_max']:.0f}" for row in rows)
+        print(f"  {method:<42} {found} of {rows[0]['seeds']}; CPU median {ms}, most {most} ms")
+        for row in rows:
+            if row["not_found"]:
+                print(f"    {row['level']:.0%}: {row['not_found']}")
+    gaps = [row["gap_max"] for row in noise if row["gap_max"] is not None]
+    print(f"  integrated anew, answers are off by {max(gaps):.0e} at most")
+
+
+def report_nothing(nothing: list[dict[str, Any]]) -> None:
+    """Print what came of scenes without their guess."""
     print("from nothing, whole solves in ms (loads against those from the scene's own guess)")
-    for row in result["nothing"]:
+    for row in nothing:
         own, off = row["ms"].get("own"), row["difference"]
         beside = "own guess: none" if own is None else f"own guess {own:7.1f}, differ by {off:.0e}"
         failed = row["other"]
@@ -122,9 +142,20 @@ def report(result: dict[str, Any]) -> None:
         print(f"  {row['scene']:<22} auto {row['ms']['auto']:7.1f}  {beside}  {failed}".rstrip())
 
 
-def by_method(rows: list[dict[str, Any]]) -> dict[str, list[dict[str, Any]]]:
-    """Return the rows of each method, by level of noise."""
-    return {method: [row for row in rows if row["method"] == method] for method in METHODS}
+REPORTS: dict[str, Callable[[Any], None]] = {
+    "clamps": report_clamps,
+    "noise": report_noise,
+    "nothing": report_nothing,
+}
+PARTS = tuple(REPORTS)
+
+
+def by_method(noise: list[dict[str, Any]]) -> dict[str, list[dict[str, Any]]]:
+    """Return the rows of each ribbon and method, by level of noise."""
+    found: dict[str, list[dict[str, Any]]] = {}
+    for row in noise:
+        found.setdefault(f"{row['scene']}: {row['method']}", []).append(row)
+    return found
 
 
 def draw(result: dict[str, Any], path: Path) -> None:
@@ -163,22 +194,22 @@ def _times(axes: Any, clamps: dict[str, Any]) -> None:
 
 
 def _rates(axes: Any, result: dict[str, Any]) -> None:
-    """Bars: share found from starts with noise; quoted figures in grey."""
+    """Bars: share found from starts with noise."""
     rates = {
         name: [row["found"] / row["seeds"] for row in rows]
         for name, rows in by_method(result["noise"]).items()
     }
-    rates |= {name: [count / 50 for count in counts] for name, counts in QUOTED.items()}
-    width, places = 0.16, np.arange(len(LEVELS))
-    colours = (BLUE, GREEN, RED, GREY, LIGHT)
-    for i, ((name, shares), colour) in enumerate(zip(rates.items(), colours, strict=True)):
-        bars = axes.bar(places + (i - 2) * width, shares, 0.92 * width, color=colour, label=name)
-        axes.bar_label(bars, [f"{100 * share:.0f}" for share in shares], fontsize=7, padding=1)
+    width, places = 0.8 / len(rates), np.arange(len(LEVELS))
+    colours = (BLUE, GREEN, RED, *SHADES, GREY, LIGHT)
+    for i, ((name, shares), colour) in enumerate(zip(rates.items(), colours, strict=False)):
+        at = places + (i - (len(rates) - 1) / 2) * width
+        bars = axes.bar(at, shares, 0.92 * width, color=colour, label=name)
+        axes.bar_label(bars, [f"{100 * share:.0f}" for share in shares], fontsize=6, padding=1)
     axes.set_xticks(places, [f"{level:.0%} noise" for level in LEVELS])
-    axes.set(ylabel="share that found the band", title="half Moebius, noise on the start")
-    axes.set_ylim(0, 1.42)
+    axes.set(ylabel="share that found the band", title="Moebius ribbons, noise on the start")
+    axes.set_ylim(0, 1.6)
     axes.set_yticks([0, 0.5, 1], ["0", "50 %", "100 %"])
-    axes.legend(frameon=False, fontsize=8, ncols=2, loc="upper center")
+    axes.legend(frameon=False, fontsize=7, ncols=2, loc="upper center")
 
 
 def _nothing(axes: Any, rows: list[dict[str, Any]]) -> None:

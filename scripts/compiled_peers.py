@@ -12,48 +12,77 @@ from functools import partial
 from typing import Any
 
 import peer_branch
-import peer_rootfinder
-import peer_scipy
-from peer_auto import CASES as OF_AUTO
 from peer_auto import Auto
-from peer_colnew import CASES as OF_COLNEW
-from peer_colnew import Colnew
+from peer_casadi import NEWTON, Collocated
+from peer_colnew import EPSILONS, Colnew
+from peer_scipy import Scipy
+from peer_settings import AUTO, BRANCH, COLNEW, SCIPY
+from peer_states import Ribbon
 
 Found = dict[str, Any]
 Ask = Callable[[str, int, int], Found]
-LOADS = (peer_branch.FORCE, peer_branch.MOMENT)
-# case: intervals, degree, tolerance of the defects
-ROOTFINDER = {"half 1e-6": (6, 4, 1e-7), "half 1e-9": (6, 6, 1e-9)}
-SCIPY = {"half 1e-6": 1e-4, "half 1e-9": 1e-6}  # of its residuals
+# case: settings of peers, as in `peer_settings.py`, on 13 states
+CASES: dict[str, dict[str, Any]] = {
+    "half 1e-6": {
+        COLNEW: (4, 3, 1e-2),
+        AUTO: (5, 5, 1e-8, 1),
+        NEWTON: (6, 4, 1e-7),
+        SCIPY: 1e-4,
+    },
+    "half 1e-9": {
+        COLNEW: (6, 3, 1e-2),
+        AUTO: (8, 5, 1e-8, 1),
+        NEWTON: (6, 6, 1e-9),
+        SCIPY: 1e-6,
+    },
+    "half 1e-12": {COLNEW: (6, 6, 1e-4)},
+    "whole 1e-9": {COLNEW: (3, 6, 1e-7), SCIPY: 1e-7},
+}
 ONCE = 10  # times that a compiled peer solves in a turn for each of ours
+STATES = (13, 18)  # of the branch
 
 
 def peers_found() -> dict[str, dict[str, Ask]]:
     """Return the peers of every case, compiled or built; say which are missing, and why."""
-    result: dict[str, dict[str, Ask]] = {}
-    colnew, auto = Colnew(), Auto()
-    for label, peer, cases, factor in (
-        ("COLNEW", colnew, OF_COLNEW, ONCE),
-        ("AUTO", auto, OF_AUTO, 1),
-    ):
+    peers = {COLNEW: Colnew(), AUTO: Auto()}
+    for label, peer in peers.items():
         if peer.why:
             print(f"{label} is not run: {peer.why}")
-            continue
-        for name in cases:
-            result.setdefault(name, {})[label] = partial(_more, peer.solve, factor)
-    for name, setting in ROOTFINDER.items():
-        solve = peer_rootfinder.HalfMoebius(*setting).solve
-        result.setdefault(name, {})["CasADi rootfinder"] = partial(_timed, solve)
-    scipy = peer_scipy.HalfMoebius(*LOADS)
-    for name, tolerance in SCIPY.items():
-        solve = partial(_loads, scipy, tolerance)
-        result.setdefault(name, {})["scipy solve_bvp"] = partial(_timed, solve)
-    result.setdefault("branch", {})["scipy solve_bvp"] = _branch
+    there = {label: peer for label, peer in peers.items() if not peer.why}
+    result: dict[str, dict[str, Ask]] = {}
+    for name, settings in CASES.items():
+        ribbon = Ribbon(name.startswith("whole"))
+        asks = result.setdefault(name, {})
+        for label, setting in settings.items():
+            if label in there:
+                run = partial(there[label].run, ribbon, setting)
+                asks[label] = partial(_more, run, ONCE if label == COLNEW else 1)
+            elif label == NEWTON:
+                asks[label] = partial(_timed, Collocated(ribbon, NEWTON, *setting).solve)
+            elif label == SCIPY:
+                asks[label] = partial(_timed, partial(_loads, Scipy(ribbon), setting))
+    result["branch"] = _branches(there)
     return result
 
 
-def _more(solve: Ask, factor: int, name: str, count: int, turn: int) -> Found:
-    return solve(name, factor * count, turn)
+def _branches(there: dict[str, Any]) -> dict[str, Ask]:
+    """Return the peers that follow the branch, on 13 and on 18 states."""
+    asks: dict[str, Ask] = {}
+    more = {COLNEW: {"epsilons": EPSILONS}, AUTO: {"first": -1.0}}
+    for label, settings in BRANCH.items():
+        for states in STATES:
+            ribbon, setting = Ribbon(False, states), settings[states]
+            name = f"{label}, {states} states"
+            if label in there:
+                run = partial(there[label].run, ribbon, setting)
+                asks[name] = partial(_more, partial(run, **more[label]), 1)
+            elif label == SCIPY:
+                asks[name] = partial(_branch, states, setting)
+    return asks
+
+
+def _more(run: Callable[..., Found], factor: int, name: str, count: int, turn: int) -> Found:
+    return run(times=factor * count)
 
 
 def _timed(solve: Callable[[], list[float]], name: str, count: int, turn: int) -> Found:
@@ -63,11 +92,10 @@ def _timed(solve: Callable[[], list[float]], name: str, count: int, turn: int) -
     return {"cpu_s": (time.process_time() - used) / count, "numbers": numbers}
 
 
-def _loads(problem: peer_scipy.HalfMoebius, tolerance: float) -> list[float]:
-    loads: list[float] = problem.solve(tolerance)[0].tolist()
-    return loads
+def _loads(problem: Scipy, tolerance: float) -> list[float]:
+    return problem.solve(tolerance)[0]
 
 
-def _branch(name: str, count: int, turn: int) -> Found:
-    found = peer_branch.follow()
+def _branch(states: int, tolerance: float, name: str, count: int, turn: int) -> Found:
+    found = peer_branch.follow(states, tolerance)
     return {"cpu_s": found["cpu_s"], "numbers": found["loads"], "points": found["points"]}

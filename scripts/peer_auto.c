@@ -5,7 +5,7 @@
  */
 #include "auto_f2c.h"
 
-enum { STATES = 13, AT_END = PEER_AT_END }; /* conditions at the end: 4, or 5 */
+enum { STATES = PEER_STATES, AT_END = PEER_AT_END }; /* conditions at the end: 4, or 5 */
 
 typedef int symbolic(const double **, double **, long long *, double *, int);
 symbolic rates, rates_x, rates_epsilon, start, start_x, end, end_x;

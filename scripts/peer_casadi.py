@@ -1,88 +1,66 @@
-"""The half Moebius ribbon by CasADi, transcribed as it is usually written.
+"""The Moebius ribbon by CasADi as it is usually written: with IPOPT, or its Newton (`rootfinder`).
 
-The 18 states of eq. (4.5), `collocation_points` of degree 3, an unknown for every state at every
-point, defects in derivative form, the rates as an SX function in an MX program (as CasADi's own
-example has it), Jacobian and exact Hessian by CasADi, IPOPT with its own settings but for the
-tolerance. The guess is the same: n(0), m(0), integrated.
+Gauss collocation in the derivative form of CasADi's examples: an unknown for every state at every
+point, constants once. For IPOPT the rates are an SX function in an MX program, as CasADi's own
+example has it, Jacobian and exact Hessian by CasADi, its own settings but for the tolerance; for
+`rootfinder` all is one SX graph. Equations and guess are those of `peer_states.py`.
 """
 
 from __future__ import annotations
 
 import casadi as ca
 import numpy as np
+from peer_states import Ribbon
 
-DEGREE = 3
-
-
-def rates() -> ca.Function:
-    """Right-hand side of eq. (4.5) for x = (r, d1, d2, d3, n, m) and Sadowsky's law."""
-    x = ca.SX.sym("x", 18)
-    _, d1, d2, d3, n, m = ca.vertsplit(x, 3)
-    m2, m3 = ca.dot(m, d2), ca.dot(m, d3)
-    M, mu = ca.sqrt(m2**2 + m3**2), ca.fabs(m2)
-    u2, u3 = ca.sign(m2) * (M + mu) ** 2 / (4 * M), m3 * (M + mu) / (4 * M)
-    u = u2 * d2 + u3 * d3
-    turned = [ca.cross(u, d) for d in (d1, d2, d3)]
-    return ca.Function("f", [x], [ca.vertcat(d3, *turned, ca.SX.zeros(3), ca.cross(n, d3))])
+IPOPT, NEWTON = "CasADi IPOPT", "CasADi rootfinder"
 
 
-class HalfMoebius:
-    """The program, built once; only `solve` is timed."""
+class Collocated:
+    """The system, built once; only `solve` is timed."""
 
-    def __init__(self, force: tuple[float, ...], moment: tuple[float, ...], intervals: int) -> None:
-        self.intervals = intervals
-        f = rates()
-        h = 0.5 / intervals
-        tau = ca.collocation_points(DEGREE, "legendre")
+    def __init__(
+        self, ribbon: Ribbon, solver: str, intervals: int, degree: int, tolerance: float
+    ) -> None:
+        parts, moving, h = ribbon.equations, ribbon.moving, ribbon.length / intervals
+        symbol = ca.SX.sym if solver == NEWTON else ca.MX.sym
+        tau = ca.collocation_points(degree, "legendre")
         C, D, _ = ca.collocation_coeff(tau)
-        node = ca.MX.sym("x0", 18)
-        unknowns, equations = [node], self._start(node)
+        c = symbol("c", ribbon.states - moving)
+        node = symbol("x0", moving)
+        unknowns, defects = [c, node], [parts["start"](ca.vertcat(node, c))]
         for k in range(intervals):
-            points = [ca.MX.sym(f"x{k}_{j}", 18) for j in range(DEGREE)]
+            points = [symbol(f"x{k}_{j}", moving) for j in range(degree)]
             Z = ca.horzcat(node, *points)
-            slopes = ca.mtimes(Z, C)
-            equations += [h * f(points[j]) - slopes[:, j] for j in range(DEGREE)]
-            following = ca.MX.sym(f"x{k + 1}", 18)
-            equations.append(ca.mtimes(Z, D) - following)
-            unknowns += [*points, following]
-            node = following
-        _, d1, _, d3, _, _ = ca.vertsplit(node, 3)
-        equations += [node[1:3], d1[0], d3[0]]
-        problem = {"x": ca.vertcat(*unknowns), "f": 0, "g": ca.vertcat(*equations)}
-        options = {
-            "print_time": False,
-            "ipopt": {"print_level": 0, "sb": "yes", "tol": 1e-10},
-        }
-        self._solver = ca.nlpsol("solver", "ipopt", problem, options)
-        self._guess = self._integrated(f, h, [0.0, *tau], force, moment)
+            rates = [parts["rates"](ca.vertcat(x, c), ribbon.epsilon)[:moving] for x in points]
+            defects.append(ca.vec(h * ca.horzcat(*rates) - ca.mtimes(Z, C)))
+            node = symbol(f"x{k + 1}", moving)
+            defects.append(ca.mtimes(Z, D) - node)
+            unknowns += [*points, node]
+        defects.append(parts["end"](ca.vertcat(node, c)))
+        x, g = ca.vertcat(*unknowns), ca.vertcat(*defects)
+        starts = h * np.arange(intervals + 1)
+        along = [
+            starts[:1],
+            *(np.append(start + h * np.array(tau), start + h) for start in starts[:-1]),
+        ]
+        states = ribbon.guess_at(np.concatenate(along))
+        self._guess = np.concatenate([states[0, moving:], states[:, :moving].ravel()])
+        first = len(states[0, moving:]) or moving
+        self._loads = slice(first - 6, first)  # constants, or the last states of the first node
+        if solver == NEWTON:
+            options = {"abstol": tolerance, "linear_solver": "csparse", "error_on_fail": True}
+            self._newton = ca.rootfinder("solver", "newton", {"x": x, "g": g}, options)
+        else:
+            ipopt = {"print_level": 0, "sb": "yes", "tol": tolerance}
+            options = {"print_time": False, "error_on_fail": True, "ipopt": ipopt}
+            self._ipopt = ca.nlpsol("solver", "ipopt", {"x": x, "f": 0, "g": g}, options)
+        self._is_newton = solver == NEWTON
 
-    def solve(self) -> tuple[np.ndarray, np.ndarray]:
-        """Return n(0) and m(0)."""
-        answer = np.array(self._solver(x0=self._guess, lbg=0, ubg=0)["x"]).ravel()
-        return answer[12:15], answer[15:18]
-
-    @staticmethod
-    def _start(x: ca.MX) -> list[ca.MX]:
-        frame = ca.DM(np.eye(3).ravel())
-        return [x[:3], x[3:12] - frame, ca.dot(x[12:15], x[3:6]), ca.dot(x[15:18], x[3:6])]
-
-    def _integrated(
-        self,
-        f: ca.Function,
-        h: float,
-        tau: list[float],
-        force: tuple[float, ...],
-        moment: tuple[float, ...],
-    ) -> np.ndarray:
-        """States of the guess at all nodes and points, by Runge-Kutta steps between them."""
-        x = np.concatenate([np.zeros(3), np.eye(3).ravel(), force, moment])
-        times = [h * (k + t) for k in range(self.intervals) for t in tau] + [0.5]
-        found = [x]
-        for step in np.diff(times):
-            k1 = np.array(f(x)).ravel()
-            k2 = np.array(f(x + step / 2 * k1)).ravel()
-            k3 = np.array(f(x + step / 2 * k2)).ravel()
-            k4 = np.array(f(x + step * k3)).ravel()
-            x = x + step / 6 * (k1 + 2 * k2 + 2 * k3 + k4)
-            found.append(x)
-        return np.concatenate(found)
+    def solve(self) -> list[float]:
+        """Return n(0), m(0)."""
+        if self._is_newton:
+            answer = self._newton(self._guess, [])
+        else:
+            answer = self._ipopt(x0=self._guess, lbg=0, ubg=0)["x"]
+        loads: list[float] = np.array(answer[self._loads]).ravel().tolist()
+        return loads

@@ -2,7 +2,7 @@
  *
  * colnew GUESS length fixed stages intervals tolerance times epsilon...
  *
- * GUESS has 21 lines (s, 13 states), linear in between; `fixed` is a point that stays in the mesh,
+ * GUESS has 21 lines (s, states), linear in between; `fixed` is a point that stays in the mesh,
  * 0 for none. With more than one epsilon each starts from the answer before. A line for each of
  * `times` runs: CPU seconds, flag, intervals, and the last n(0), m(0).
  */
@@ -11,7 +11,8 @@
 #include <string.h>
 #include <time.h>
 
-enum { STATES = 13, NODES = 21, REALS = 4000000, INTEGERS = 200000 };
+enum { STATES = PEER_STATES, NODES = 21, REALS = 20000000, INTEGERS = 500000 };
+enum { AT_START = PEER_AT_START }; /* conditions there */
 
 typedef int symbolic(const double **, double **, long long *, double *, int);
 symbolic rates, rates_x, start, start_x, end, end_x;
@@ -20,7 +21,7 @@ void colnew_(int *, int *, double *, double *, double *, int *, int *, double *,
 void appsln_(double *, double *, double *, int *);
 
 static double epsilon, nodes[NODES], guesses[NODES][STATES], reals[REALS];
-static int at_start, integers[INTEGERS];
+static int integers[INTEGERS];
 
 static void value(symbolic *f, const double *x, double *out) {
     const double *arg[2] = {x, &epsilon};
@@ -34,16 +35,16 @@ static void dfsub(double *s, double *x, double *out) { value(rates_x, x, out); }
 
 static void gsub(int *i, double *x, double *out) {
     double all[STATES];
-    int here = *i <= at_start;
+    int here = *i <= AT_START;
     value(here ? start : end, x, all);
-    *out = all[*i - 1 - (here ? 0 : at_start)];
+    *out = all[*i - 1 - (here ? 0 : AT_START)];
 }
 
 static void dgsub(int *i, double *x, double *out) {
     double all[STATES * STATES];
-    int here = *i <= at_start, rows = here ? at_start : STATES - at_start;
+    int here = *i <= AT_START, rows = here ? AT_START : STATES - AT_START;
     value(here ? start_x : end_x, x, all);
-    for (int j = 0; j < STATES; j++) out[j] = all[j * rows + *i - 1 - (here ? 0 : at_start)];
+    for (int j = 0; j < STATES; j++) out[j] = all[j * rows + *i - 1 - (here ? 0 : AT_START)];
 }
 
 static void guess(double *s, double *x, double *slope) {
@@ -67,12 +68,11 @@ int main(int count, char **words) {
     int stages = atoi(words[4]), intervals = atoi(words[5]), times = atoi(words[7]);
     int states = STATES, orders[STATES], which[STATES], flag = 0;
     double places[STATES], tolerances[STATES], at_first[STATES];
-    at_start = right < 0.75 ? 9 : 8; /* half ribbon, whole ribbon */
     for (int j = 0; j < STATES; j++) {
         orders[j] = 1;
         which[j] = j + 1;
         tolerances[j] = tolerance;
-        places[j] = j < at_start ? left : right;
+        places[j] = j < AT_START ? left : right;
     }
     for (int run = 0; run < times; run++) {
         clock_t begun = clock();
@@ -89,7 +89,7 @@ int main(int count, char **words) {
         memset(at_first, 0, sizeof at_first);
         if (flag == 1) appsln_(&left, at_first, reals, integers);
         printf("%.9f %d %d", seconds, flag, integers[0]);
-        for (int j = 7; j < STATES; j++) printf(" %.17g", at_first[j]);
+        for (int j = STATES - 6; j < STATES; j++) printf(" %.17g", at_first[j]);
         printf("\n");
     }
     return 0;

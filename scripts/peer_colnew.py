@@ -1,4 +1,4 @@
-"""The Moebius ribbon by COLNEW, compiled, on 13 states with Jacobians, from the same start.
+"""The Moebius ribbon by COLNEW, compiled, with Jacobians, from the same start.
 
     python scripts/peer_colnew.py --source colnew.f [--times 20]
 
@@ -14,30 +14,25 @@ import argparse
 import os
 import shutil
 import subprocess
+from collections.abc import Sequence
+from functools import partial
 from pathlib import Path
 from tempfile import TemporaryDirectory
 from typing import Any
 
 import numpy as np
-import peer_states
-from peer_states import compile_with, length, write_guess, write_source
+from peer_states import Ribbon, compile_with, write_guess, write_source
 
 HERE = Path(__file__).resolve().parent
-# name: whole, epsilons, stages, intervals of the first mesh, tolerance
-CASES: dict[str, tuple[bool, list[float], int, int, float]] = {
-    "half 1e-6": (False, [0.0], 4, 4, 1e-4),
-    "half 1e-9": (False, [0.0], 5, 2, 1e-6),
-    "half 1e-12": (False, [0.0], 7, 4, 1e-4),
-    "whole 1e-9": (True, [0.01], 5, 8, 1e-8),
-    "branch": (False, np.logspace(-1, -4, 21).tolist(), 7, 8, 1e-8),
-}
+Setting = tuple[int, int, float]  # stages, intervals of the first mesh, tolerance
+EPSILONS = tuple(np.logspace(-1, -4, 21).tolist())  # of the branch
 
 
 class Colnew:
     """The compiled program; `why` says why there is none."""
 
     def __init__(self, source: Path | None = None) -> None:
-        """Compile it in a temporary folder, once for the half and once for the whole ribbon."""
+        """Compile it in a temporary folder; the loop around it is, where a ribbon is asked for."""
         given = source or Path(os.environ.get("COLNEW_SOURCE", "colnew.f"))
         self.why = ""
         if not given.is_file():
@@ -48,45 +43,58 @@ class Colnew:
             return
         self._kept = TemporaryDirectory()
         self._folder = Path(self._kept.name)
-        legacy = self._folder / "colnew.o"
-        command = ["gfortran", "-O2", "-std=legacy", "-w", "-c", str(given), "-o", str(legacy)]
-        subprocess.run(command, check=True)
-        for whole in (False, True):
-            folder = self._folder / str(whole)
-            folder.mkdir()
-            sources = [HERE / "peer_colnew.c", write_source(folder, whole), legacy]
-            compile_with("gcc", sources, folder / "colnew", "-lgfortran")
-
-    def solve(self, name: str, times: int, turn: int = 0) -> dict[str, Any]:
-        """Solve a case so many times: CPU seconds of one, n(0), m(0), intervals at the end."""
-        return self.run(*CASES[name], times)
+        self._object = self._folder / "colnew.o"
+        command = ["gfortran", "-O2", "-std=legacy", "-w", "-c", str(given), "-o"]
+        subprocess.run([*command, str(self._object)], check=True)
 
     def run(
         self,
-        whole: bool,
-        epsilons: list[float],
-        stages: int,
-        intervals: int,
-        tolerance: float,
+        ribbon: Ribbon,
+        setting: Setting,
         times: int,
+        epsilons: Sequence[float] | None = None,
+        guess: np.ndarray | None = None,
+        patience: float | None = None,
     ) -> dict[str, Any]:
-        """Solve for epsilons one after the other, so many times."""
-        folder = self._folder / str(whole)
-        write_guess(folder / "guess", whole, epsilons[0])
-        command = [folder / "colnew", folder / "guess", length(whole), 0.5 if whole else 0]
-        command += [stages, intervals, tolerance, times, *epsilons]
-        done = subprocess.run(list(map(str, command)), capture_output=True, text=True, check=True)
+        """Solve so many times, for epsilons one after the other where these are given.
+
+        From a guess (21, states), if one is given, instead of that of all peers.
+
+        Returns the CPU seconds of one, n(0), m(0), intervals of the last mesh, and whether COLNEW
+        says that it converged. TimeoutExpired after so many seconds of `patience`.
+        """
+        epsilons = [ribbon.epsilon] if epsilons is None else epsilons
+        folder = self._program(ribbon)
+        write_guess(folder / "guess", ribbon, epsilons[0], x=guess)
+        fixed = 0.5 if ribbon.whole else 0
+        command = [folder / "colnew", folder / "guess", ribbon.length, fixed]
+        command += [*setting, times, *epsilons]
+        done = subprocess.run(
+            list(map(str, command)), capture_output=True, text=True, check=True, timeout=patience
+        )
         rows = [list(map(float, line.split())) for line in done.stdout.splitlines()]
         return {
-            "cpu_s": float(np.mean([row[0] for row in rows])),
+            "cpu_s": float(np.median([row[0] for row in rows])),
             "verified": all(row[1] == 1 for row in rows),
             "numbers": rows[-1][3:],
             "intervals": int(rows[-1][2]),
         }
 
+    def _program(self, ribbon: Ribbon) -> Path:
+        """Compile the loop for a ribbon, once."""
+        folder = self._folder / f"{ribbon.whole}{ribbon.states}"
+        if not folder.is_dir():
+            folder.mkdir()
+            numbers = (f"-DPEER_STATES={ribbon.states}", f"-DPEER_AT_START={ribbon.at_start}")
+            sources = [HERE / "peer_colnew.c", write_source(folder, ribbon), self._object]
+            compile_with("gcc", sources, folder / "colnew", *numbers, "-lgfortran")
+        return folder
+
 
 def main() -> None:
-    """Solve all cases and print what they cost."""
+    """Solve by all settings and print what they cost."""
+    from peer_settings import BRANCH, SETTINGS
+
     parser = argparse.ArgumentParser(description=__doc__.splitlines()[0])
     parser.add_argument("--source", type=Path, help="Netlib's colnew.f")
     parser.add_argument("--times", type=int, default=20)
@@ -94,13 +102,19 @@ def main() -> None:
     peer = Colnew(options.source)
     if peer.why:
         raise SystemExit(f"COLNEW is not run: {peer.why}")
-    for name in CASES:
-        found = peer.solve(name, options.times)
+    runs = {
+        f"{ribbon}, {setting}": partial(peer.run, ribbon, setting, options.times)
+        for ribbon, settings in SETTINGS["COLNEW"].items()
+        for setting in settings
+    }
+    for states, setting in BRANCH["COLNEW"].items():
+        ribbon = Ribbon(False, states)
+        runs[f"branch on {states} states"] = partial(peer.run, ribbon, setting, 3, EPSILONS)
+    for name, run in runs.items():
+        found = run()
         print(f"{name}: {1e3 * found['cpu_s']:.3f} ms, {found['intervals']} intervals")
         print(f"    converged {found['verified']}, n(0), m(0) = {found['numbers']}")
 
-
-assert peer_states.STATES == 13  # as in peer_colnew.c
 
 if __name__ == "__main__":
     main()

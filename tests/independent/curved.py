@@ -13,7 +13,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from .plates import Plate
-from .rod import Array
+from .rod import Array, Law
 
 Along = float | Callable[[Array], Array]
 TINY = 1e-120  # squares of it are still numbers
@@ -49,7 +49,8 @@ class Natural:
 class Material:
     """A law: sadowsky, variational (delta), kirchhoff or rod (B1, B2, B3 and natural strains).
 
-    Or that of a `plate`, extensible or sano.
+    Or that of a `plate`, extensible or sano; or regularized (epsilon), of a ribbon straight when
+    free, on whichever sheet m2 says: it has a kink there only.
 
     Sadowsky's law is taken by sheets as in `Law`: the kind is the sign of T = m2 + K11 + K22 (in
     units of the width); EITHER is the larger one, in the plane.
@@ -62,6 +63,7 @@ class Material:
     natural: Natural = Natural()
     width: Along = 1.0
     plate: Plate | None = None
+    epsilon: float = 0.0
 
     @property
     def switched(self) -> bool:
@@ -100,6 +102,12 @@ class Material:
             columns = np.arange(len(N))
             largest, (t1, t2) = values[columns, which], vectors[columns, :, which].T
             u2, u3, legendre = largest * t1 * t1, largest * t1 * t2, largest**2 / 2
+        elif self.name == "regularized":
+            if any(np.any(K) for K in (K11, K12, K22)):
+                raise ValueError("natural strains are not known of this law")
+            law = Law("regularized", self.epsilon)
+            u2, u3 = law.strains(np.where(a < 0, -1, 1), m, 0 * m)
+            legendre = (a * u2 + b * u3) / 2  # of degree two
         else:
             h = IMAGINARY
             legendre = self._smooth(a, b, K22).real

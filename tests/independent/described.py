@@ -25,6 +25,7 @@ WORDS |= {"pi": np.pi, "deg": np.pi / 180}
 AXES, DIRECTORS = ("x", "y", "z"), ("d1", "d2", "d3")
 NATURAL = ("curvature", "twist", "across")
 LAWS = ("sadowsky", "single_sheet", "variational", "kirchhoff", "rod", "extensible", "sano")
+LAWS += ("regularized",)
 EDGES = {"clamped": "straight", "sliding": "straight"}
 EDGES |= {"pinned": "free", "held": "free", "free": "free"}
 
@@ -120,6 +121,8 @@ def material_of(scene: Any, width: Along) -> Material:
         return Material("kirchhoff", B=(np.inf, law.B2, law.B3), **found)
     if law.type == "variational":
         return Material("variational", law.delta, **found)
+    if law.type == "regularized":
+        return Material("regularized", epsilon=law.epsilon, **found)
     if law.type in ("extensible", "sano"):
         if width != 1.0:
             raise ValueError(f"a {law.type} ribbon of variable width is not known here")

@@ -76,12 +76,28 @@ def looped(loop: Any, strip: Wide, sides: tuple[Array, Array], unit: float) -> t
     return float(np.abs(own).min(axis=1).max()), "edges of the piece"
 
 
+def closed(loop: Any, sides: tuple[Array, Array]) -> Found:
+    """Gaps of a whole loop: d1 and d2 change their sign with every half twist.
+
+    Loads may be carried where it is held, so that n and m are not asked for; without them they go
+    on of themselves.
+    """
+    if loop.piece != "whole":
+        return []
+    start, end = (y[:12, 0].copy() for y in sides)
+    end[3:9] *= (-1) ** loop.half_twists
+    gaps = np.abs(end - start)
+    places = float(gaps[:3].max()), "places where the loop closes"
+    return [places, (float(gaps[3:].max()), "directors where the loop closes")]
+
+
 def boundary(scene: Any, given: Samples, strip: Strip | Wide, sides: tuple[Array, Array]) -> Found:
     """Gaps of what the scene prescribes at both ends."""
     force, moment, p = given.sizes
-    found: Found = []
-    if isinstance(strip, Wide) and getattr(scene.boundary, "loop", None) is not None:
-        return [looped(scene.boundary.loop, strip, sides, p)]
+    loop = getattr(scene.boundary, "loop", None)
+    found: Found = [] if loop is None else closed(loop, sides)
+    if isinstance(strip, Wide) and loop is not None:
+        return [*found, looped(loop, strip, sides, p)]
     ends = {"start": scene.boundary.start, "end": scene.boundary.end}
     for (name, end), y in zip(ends.items(), sides, strict=True):
         if end is None:
