@@ -80,7 +80,7 @@ def _ours(ribbon: Ribbon, tolerance: float, degree: int, intervals: int) -> Peer
         return solution.n0.tolist(), solution.m0.tolist()
 
     run()  # what a first solve builds
-    return Peer(f"{OURS}, {ribbon.states} states", f"tolerance {tolerance:g}", run)
+    return Peer(f"{OURS}, {ribbon.states} states", f"to {tolerance:.0e}", run)
 
 
 def _compiled(peer: Any, ribbon: Ribbon, setting: Any) -> tuple[list[float], list[float], float]:
@@ -103,10 +103,10 @@ def _casadi(program: Collocated) -> Loads:
 def _words(name: str, setting: Any) -> str:
     """Return a setting in a few words."""
     if name == SCIPY:
-        return f"tolerance {setting:g}"
+        return f"to {setting:.0e}"
     if name == COLNEW:
         stages, intervals, tolerance = setting
-        return f"{stages} x {intervals}, tolerance {tolerance:g}"
+        return f"{stages} x {intervals}, to {tolerance:.0e}"
     intervals, degree = setting[:2]
     assert name in (AUTO, NEWTON, IPOPT)
     return f"{degree} x {intervals}"

@@ -13,13 +13,13 @@ from __future__ import annotations
 
 import argparse
 import json
-import shutil
 from pathlib import Path
 from typing import Any
 
 import results_tables as tables
 
 from ribbonopt.version import VERSION
+from ribbonopt.views.comparison import save_figure
 
 FILES = {
     "half": "accuracy/half.json",
@@ -48,10 +48,9 @@ def main() -> None:
             print(f"{path} is not there: that part is left out")
             continue
         found[name] = json.loads(path.read_text(encoding="utf-8"))
-        drawn = path.with_suffix(".png")
-        if name in RIBBONS and drawn.is_file():
+        if name in RIBBONS:
             figures[name] = f"{VERSION}-{name}.png"
-            shutil.copyfile(drawn, options.out / figures[name])
+            save_figure(found[name], options.out / figures[name])
     if not found:
         raise SystemExit(f"{options.results}: no results to make a page of")
     path = options.out / f"{VERSION}.md"

@@ -67,8 +67,7 @@ def verdict(name: str, study: Any) -> str:
         )
         if ours and other:
             ratio = ours["solve"] / other["solve"]
-            side = "longer" if ratio > 1 else "shorter"
-            said.append(f"to {error:.0e} {max(ratio, 1 / ratio):.1f} times {side}")
+            said.append(f"to {error:.0e} {ratio:.1f} times as long")
     return f"{name}: ours with its bar takes " + ", ".join(said) + "." if said else ""
 
 
