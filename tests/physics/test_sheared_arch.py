@@ -95,10 +95,7 @@ def test_the_first_threshold(name: str, to: float, largest: float | None) -> Non
 @pytest.mark.parametrize("to", GOALS)
 @pytest.mark.parametrize(
     "name",
-    [
-        pytest.param(law, marks=pytest.mark.slow if law == "rod" else pytest.mark.sweep)
-        for law in TRUTHS
-    ],
+    [pytest.param(law, marks=pytest.mark.sweep) for law in TRUTHS],
 )
 def test_the_first_threshold_by_any_steps(name: str, to: float, largest: float | None) -> None:
     if to < TRUTHS[name].first:
@@ -120,8 +117,13 @@ def test_goals_short_of_the_first_threshold_and_beyond(name: str, short: float) 
     assert (kind, position) == (truth.kind, pytest.approx(truth.first, abs=truth.digits))
 
 
-@pytest.mark.slow
-@pytest.mark.parametrize("largest", [None, 0.02, 0.05])
+@pytest.mark.parametrize(
+    "largest",
+    [
+        pytest.param(None, marks=pytest.mark.slow),
+        *(pytest.param(step, marks=pytest.mark.sweep) for step in (0.02, 0.05)),
+    ],
+)
 def test_asymmetric_rods_pass_the_state_of_height_zero(largest: float | None) -> None:
     # Ribbons do not: there m2 = m3 = 0 in the middle, where homogeneous laws are not smooth.
     truth = TRUTHS["rod"]

@@ -25,8 +25,8 @@ from ribbonopt.scene import (
 from ribbonopt.scene.ends import AnyVector, Turn, Turns
 from ribbonopt.studies.continuation.continuation import Continuation
 
-SLOW = pytest.mark.slow
-STEPS = (None, *(pytest.param(step, marks=SLOW) for step in (2.5, 7.0)))  # largest, in degrees
+SWEEP = pytest.mark.sweep  # `ribbonopt verify` has these points too
+STEPS = (None, *(pytest.param(step, marks=SWEEP) for step in (2.5, 7.0)))  # largest, in degrees
 #: distance lost by the ends: angle (degrees) of the fold where one clamp is turned
 ONE = {0.4: 64.3483022372, 0.25: 51.1996292141, 0.15: 39.6646056051, 0.1: 32.3633539404}
 ONE |= {0.05: 22.8595483544, 0.01: 10.2119046246}
@@ -38,7 +38,7 @@ ACROSS = [
     (Kirchhoff(B2=1, B3=2), 0.1, (0.106386037595, 0.29666159426)),
     (Kirchhoff(B2=1, B3=2), 0.25, (0.230279190221, 0.46983316454)),
     (Kirchhoff(B2=1, B3=2), 0.4, (0.315420374410, 0.56550940407)),
-    pytest.param(Variational(delta=0.1), 0.4, (0.31692641983, 0.5604730532), marks=SLOW),
+    pytest.param(Variational(delta=0.1), 0.4, (0.31692641983, 0.5604730532), marks=SWEEP),
 ]
 
 
@@ -133,7 +133,7 @@ def sheared(law: Law, lost: float, to: float, largest: float | None) -> Scene:
     )
 
 
-@pytest.mark.parametrize("largest", [pytest.param(0.013, marks=SLOW), 0.05, *STEPS[:1]])
+@pytest.mark.parametrize("largest", [pytest.param(0.013, marks=SWEEP), 0.05, *STEPS[:1]])
 @pytest.mark.parametrize(("law", "lost", "truth"), ACROSS)
 def test_arch_moved_across(
     law: Law, lost: float, truth: tuple[float, float], largest: float | None
