@@ -10,7 +10,8 @@ from ribbonopt.pipeline.prepared import solve
 from ribbonopt.scene import load_scene
 from ribbonopt.solution.solution import Solution
 
-SCENE = Path(__file__).parents[3] / "configs" / "band_three.yaml"
+CONFIGS = Path(__file__).parents[3] / "configs"
+SCENE = CONFIGS / "band_three.yaml"
 
 
 @pytest.fixture(scope="module")
@@ -30,3 +31,13 @@ def test_no_bar_is_small_by_accident(exact: Solution, degree: int, intervals: in
     assert np.abs(found.m0 - exact.m0).max() <= bars["m0"]
     assert np.abs(found.start["u"] - exact.start["u"]).max() <= bars["u0"]
     assert abs(found.energy - exact.energy) <= bars["energy"]
+
+
+def test_a_mesh_too_coarse_for_a_newton_step_has_wide_bars() -> None:
+    scene, coarse = CONFIGS / "heavy_cantilever.yaml", ["degree=1", "intervals=2"]
+    mesh = ["tolerance=null", *(f"transcription.{one}" for one in coarse)]
+    exact, found = solve(load_scene(scene, ["tolerance=1e-10"])), solve(load_scene(scene, mesh))
+    bars = estimate_error(found)
+    assert exact.verified and found.verified
+    assert np.abs(found.m0 - exact.m0).max() <= bars["m0"]
+    assert np.abs(found.start["u"] - exact.start["u"]).max() <= bars["u0"]
