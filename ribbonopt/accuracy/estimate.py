@@ -180,8 +180,10 @@ def _analysed(solution: Solution, near: Factors | None, keep: bool) -> Analysis:
         # Errors in states of the law's own show in the rod where they matter to it.
         of_rod, _ = more_of(summed(defects[:, rod].max(axis=1), split), witnessed)
     errors["states"] = max(errors["states"], float(of_rod.max()))
+    # And a Newton step leaves its own square, which on a mesh this coarse may be all there is.
+    least = max(CANCELLED * float(of_rod.sum()), min(errors["states"], 1.0) ** 2)
     for name in ("n0", "m0", "u0", "energy"):
-        errors[name] = max(errors[name], CANCELLED * sizes[name] * float(of_rod.sum()))
+        errors[name] = max(errors[name], sizes[name] * least)
     known = doubt <= DOUBTFUL or _worst(errors, sizes)[0] <= SMALL
     parts = trajectory, better, local, inside, errors, sizes, more, known, near_by
     return Analysis(*parts, found.factors)

@@ -25,6 +25,7 @@ from ribbonopt.solution.solution import Solution
 from .convexity import leap_problems
 from .law_sizes import law_problems
 from .shape import contact_problems, planar_problems
+from .unknown_bars import unknown_bars
 from .zero_moment import zero_moment_problems
 
 SLENDER = 10.0  # least ratio of length to width, and of width to thickness
@@ -49,6 +50,7 @@ def warnings_of(solution: Solution) -> list[str]:
         result += _generatrices(solution, s, width) if doubtful else []
     result += law_problems(solution)
     if converged:
+        result += unknown_bars(solution)
         result += _stretch(solution)
         result += zero_moment_problems(solution)
         result += leap_problems(solution)

@@ -22,7 +22,7 @@ def report(summary: Mapping[str, Any], *, steps: bool = True) -> str:
     law = ", ".join(f"{k} = {_plain(v)}" for k, v in said.items())
     head = f"{s['name']}: {s['status'].replace('_', ' ')}"
     lines = [
-        head + (", verified" if s["verified"] else f"\n  {s['message']}"),
+        head + (_verified(s) if s["verified"] else f"\n  {s['message']}"),
         *(f"  note: {what}" for what in (*s["given_up"], *s["fell_back"])),
         f"  law {s['law']['type']}{f' ({law})' if law else ''}, {s['formulation']} formulation, "
         f"{s['states']} states",
@@ -42,7 +42,6 @@ def report(summary: Mapping[str, Any], *, steps: bool = True) -> str:
         *(_row(name, value, s["recorded_error"][name]) for name, value in s["recorded"].items()),
         *_symmetry(s),
         *_acting(s),
-        *_unknown_bars(s),
         *_phases(s),
         "",
         f"  drift along the ribbon   {_drifts(s['invariant_drift'])}",
@@ -125,15 +124,10 @@ def _load(load: Mapping[str, Any]) -> str:
     return " and ".join(texts)
 
 
-def _unknown_bars(s: Mapping[str, Any]) -> list[str]:
-    """Return a line on bars that could be known and are not."""
-    unknown = [name for name, bar in s["error_estimate"].items() if bar is None]
-    if not unknown or s["loads_from"] == "costates" or not s["verified"]:
-        return []
-    return [
-        "  bars are not known: the mesh steps over a layer of the law (give a tolerance, or more "
-        "intervals), or the equations have no linearisation",
-    ]
+def _verified(s: Mapping[str, Any]) -> str:
+    """Return the words of a verified answer: also that its bars could be known and are not."""
+    unknown = None in s["error_estimate"].values() and s["loads_from"] != "costates"
+    return ", verified" + (", its errors not known (see the warnings)" if unknown else "")
 
 
 def _others(equilibria: Sequence[Mapping[str, Any]]) -> list[str]:

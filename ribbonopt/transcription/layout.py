@@ -27,6 +27,7 @@ from ribbonopt.classes import dataclass
 from .known import Known, sampled
 
 Index = NDArray[np.intp]
+LONGEST = np.longdouble  # sums of widths: of thousands, double ones are off by 1e-13
 
 
 @dataclass(frozen=True, eq=False)
@@ -167,15 +168,14 @@ class Layout:
 
     def starts(self, p: Array) -> Array:
         """Relative position (N,) of every element's first node in its phase."""
-        widths = self.widths(p)
-        starts = [widths[s].cumsum() - widths[s] for s in self.phase_slices]
+        starts = [self.phase_nodes(p, i)[:-1] for i in range(len(self.elements))]
         return starts[0] if len(starts) == 1 else np.concatenate(starts)
 
     def phase_nodes(self, p: Array, phase: int) -> Array:
         """Relative positions (n + 1,) of the nodes of a phase."""
         widths = self.widths(p)[self.phase_slices[phase]]
         nodes = np.zeros(len(widths) + 1)
-        widths.cumsum(out=nodes[1:])
+        widths.cumsum(dtype=LONGEST, out=nodes[1:])
         nodes[-1] = 1.0
         return nodes
 

@@ -86,3 +86,11 @@ def test_meshes_that_do_not_fill_their_phase_are_refused(widths: list[float], me
 def test_meshes_without_elements_are_refused(counts: tuple[int, ...]) -> None:
     with pytest.raises(TranscriptionError, match="expected >= 1"):
         Mesh.uniform(*counts)
+
+
+@pytest.mark.parametrize("count", [1, 7, 10_000])
+def test_nodes_of_many_elements_are_where_their_numbers_say(count: int) -> None:
+    layout = Layout(nx=1, nz=0, nc=0, ng=0, nh=0, stages=1, elements=(count,), conditions=1)
+    widths, exact = Mesh.uniform(count).widths, np.arange(count + 1) / count
+    assert np.abs(layout.phase_nodes(widths, 0) - exact).max() < 1e-15
+    assert np.abs(layout.starts(widths) - exact[:-1]).max() < 1e-15
