@@ -183,7 +183,7 @@ def between(
     """Return where to look at a solution between nodes: fractions (k,) and their elements (k,).
 
     In elements of large `growth` (N,), and next to layers and in them: which that are is (N,) told
-    too. In all of a low order without z, at whose ends errors may be far less than inside.
+    too. In all of a low order, at whose ends errors may be far less than inside.
     """
     degree, nodes, ends = trajectory.dense.blocks.degree, trajectory.nodes, trajectory.ends
     chosen, extra = growth > WATCHED, [np.empty(0)]
@@ -195,7 +195,8 @@ def between(
             for a, b, near in zip(ends[:-1], ends[1:], found, strict=True)
         ]
     blocks = trajectory.dense.blocks
-    every = blocks.order <= LOW and blocks.layout.nz == 0
+    # Steps of shooting begin anew where the algebraic variables may not be found.
+    every = blocks.order <= LOW and (blocks.layout.nz == 0 or blocks.layout.stages > 0)
     elements = np.arange(len(nodes) - 1) if every else np.flatnonzero(chosen)
     if not len(elements):
         return np.empty(0), elements, chosen

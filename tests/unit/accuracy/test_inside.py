@@ -13,20 +13,22 @@ CONFIGS = Path(__file__).resolve().parents[3] / "configs"
 
 
 @pytest.mark.parametrize(
-    ("scene", "scheme", "degree", "intervals"),
+    ("scene", "formulation", "scheme", "degree", "intervals"),
     [
-        ("ring_pressed", "gauss", 3, 5),
-        ("ring_pressed", "lobatto", 5, 10),
-        ("twisted_ring", "gauss", 1, 20),
+        ("ring_pressed", "inverted", "gauss", 3, 5),
+        ("ring_pressed", "inverted", "lobatto", 5, 10),
+        ("twisted_ring", "inverted", "gauss", 1, 20),
+        ("curved_ring", "algebraic", "gauss", 1, 10),
     ],
 )
 def test_errors_within_elements_are_within_bars(
-    scene: str, scheme: str, degree: int, intervals: int
+    scene: str, formulation: str, scheme: str, degree: int, intervals: int
 ) -> None:
     """Errors at the nodes of a ring are a hundredth of these; truth is a mesh of another order."""
     path, plain = CONFIGS / f"{scene}.yaml", ["tolerance=null", "continuation=null"]
-    settings = f"{{type: collocation, scheme: {scheme}, degree: {degree}, intervals: {intervals}}}"
-    found = solve(load_scene(path, [*plain, f"transcription={settings}"]))
+    mesh = f"{{type: collocation, scheme: {scheme}, degree: {degree}, intervals: {intervals}}}"
+    settings = [f"transcription={mesh}", f"formulation={formulation}"]
+    found = solve(load_scene(path, [*plain, *settings]))
     exact = solve(load_scene(path, ["continuation=null", "tolerance=1e-12"]))
     assert found.verified and exact.verified
     fraction = np.linspace(0, 1, 201)
