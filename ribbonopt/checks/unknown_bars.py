@@ -25,8 +25,9 @@ def unknown_bars(solution: Solution) -> list[str]:
     except np.linalg.LinAlgError:
         return ["no error of this answer is known: its equations have no linearisation"]
     off = solution.verification.residual_between_nodes
+    remedy = "give a tolerance" if solution.scene.tolerance is None else "lower the tolerance"
     return [
         "no error of this answer is known, it may be off by percents: the mesh steps over a layer "
-        f"of the law, and the equations are off by {off:.1e} between the stages; give a tolerance, "
-        "or more intervals"
+        f"of the law, and the equations are off by {off:.1e} between the stages; {remedy}, or "
+        "take more intervals"
     ]
