@@ -203,14 +203,12 @@ class Scene:
     law: Law
     boundary: Boundary
     guess: Guess = "auto"
-    symmetric: bool | Literal["d1", "d2", "-d1", "-d2"] = False
     starts: Annotated[int, Bounds(ge=1, most=limits.STARTS)] = 1
     seed: Annotated[int, Bounds(ge=0, most=limits.SEED)] = 0
     formulation: Literal["inverted", "algebraic", "differentiated", "energy"] | Algebraic = (
         "inverted"
     )
     states: Literal["auto", "reduced", "planar", "full"] = "reduced"
-    planar: bool = False
     interval: tuple[float, float] = (0.0, 1.0)
     parameters: dict[str, float] = field(default_factory=dict)
     transcription: Collocation | Shooting = Collocation()
@@ -227,3 +225,5 @@ class Scene:
     width: Along | None = None
     natural: Natural | None = None
     membrane: AnyMembrane | None = None
+    planar: bool = False
+    symmetric: bool | Literal["d1", "d2", "-d1", "-d2"] = False

@@ -133,8 +133,8 @@ def write_names(axes: Axes, names: Sequence[Name], size: float = 7.5) -> None:
     """Write names beside their points."""
     from matplotlib.backends.backend_agg import FigureCanvasAgg
 
-    figure = axes.get_figure(root=True)
-    assert figure is not None
+    part: Any = axes.figure
+    figure = part.figure  # the whole of which it may be a part, in any version of matplotlib
     scale = figure.dpi / 72
     canvas: Any = FigureCanvasAgg(figure)
     renderer = canvas.get_renderer()
