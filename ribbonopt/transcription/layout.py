@@ -27,7 +27,8 @@ from ribbonopt.classes import dataclass
 from .known import Known, sampled
 
 Index = NDArray[np.intp]
-LONGEST = np.longdouble  # sums of widths: of thousands, double ones are off by 1e-13
+LONGEST = np.longdouble  # sums of MANY widths: double ones are off by 1e-13
+MANY = 1000
 
 
 @dataclass(frozen=True, eq=False)
@@ -175,7 +176,7 @@ class Layout:
         """Relative positions (n + 1,) of the nodes of a phase."""
         widths = self.widths(p)[self.phase_slices[phase]]
         nodes = np.zeros(len(widths) + 1)
-        widths.cumsum(dtype=LONGEST, out=nodes[1:])
+        widths.cumsum(dtype=LONGEST if len(widths) >= MANY else None, out=nodes[1:])
         nodes[-1] = 1.0
         return nodes
 

@@ -148,6 +148,7 @@ def test_bars_hold_at_a_layer_at_the_end(epsilon: float) -> None:
 @pytest.mark.parametrize(
     ("name", "law"),
     [
+        ("inflection", "{type: kirchhoff, B2: 1, B3: 2}"),
         ("inflection", "{type: variational, delta: 0.1}"),
         ("inflection", "{type: regularized, epsilon: 0.01}"),
     ],
