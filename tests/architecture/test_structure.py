@@ -153,6 +153,12 @@ def test_no_error_is_swallowed() -> None:
     assert those(swallows) == []
 
 
+def test_names_of_test_files_are_unique() -> None:
+    """Two files of one name in folders that are no packages cannot be collected together."""
+    names = [path.name for path in (ROOT / "tests").rglob("test_*.py")]
+    assert sorted(name for name in set(names) if names.count(name) > 1) == []
+
+
 def test_slow_tests_that_are_listed_exist(stale: list[str]) -> None:
     assert stale == []
 
