@@ -1,4 +1,4 @@
-"""The words of the command line: its verbs and their options."""
+"""The words of the command line: its verbs. Their options: `options.py`, `options_shown.py`."""
 
 from __future__ import annotations
 
@@ -7,7 +7,28 @@ from collections.abc import Sequence
 
 from ribbonopt.version import VERSION
 
-from .terminal import Parser, say
+from . import options, options_shown
+from .options import usual_help
+from .terminal import Parser
+
+VERBS = {
+    "solve": ("solve a scene and report its numbers", options.solve),
+    "check": ("validate a scene and count unknowns and conditions", options.check),
+    "compare": (
+        "solve a scene by all formulations and transcriptions, and say which is cheapest",
+        options.compare,
+    ),
+    "bench": ("time against error over degrees and meshes", options.bench),
+    "stress": ("try a scene far from what it was made for, and judge every answer", options.stress),
+    "continue": (
+        "follow a scene's equilibria as a parameter moves (its `continuation`)",
+        options.follow,
+    ),
+    "batch": ("solve all ribbons of a study, on all cores", options.batch),
+    "verify": ("compute numbers with sources again, and say which are confirmed", options.verify),
+    "schema": ("print the JSON schema of scenes, for editors", options.schema),
+    "plot": ("draw the pictures of a saved result", options_shown.plot),
+}
 
 
 def parser(given: Sequence[str] = ()) -> argparse.ArgumentParser:
@@ -18,216 +39,11 @@ def parser(given: Sequence[str] = ()) -> argparse.ArgumentParser:
     result = Parser(
         prog="ribbonopt",
         description="Equilibria of elastic ribbons from YAML scenes.",
-        formatter_class=_help,
+        formatter_class=usual_help,
     )
     result.add_argument("--version", action="version", version=f"ribbonopt {VERSION}")
     verbs = result.add_subparsers(prog="ribbonopt", dest="verb", required=True, metavar="COMMAND")
     for name in [given[0]] if given and given[0] in VERBS else VERBS:
         words, fill = VERBS[name]
-        fill(verbs.add_parser(name, help=words, formatter_class=_help))
+        fill(verbs.add_parser(name, help=words, formatter_class=usual_help))
     return result
-
-
-def _solve(verb: argparse.ArgumentParser) -> None:
-    _scene(verb)
-    verb.add_argument("--out", metavar="DIR", help="folder for the result (default: none written)")
-    verb.add_argument(
-        "--plot", action="store_true", help="draw pictures (into --out, or results/NAME)"
-    )
-    verb.add_argument(
-        "--verbose",
-        action="store_true",
-        help="print what each step took, and what was skipped and why",
-    )
-
-
-def _check(verb: argparse.ArgumentParser) -> None:
-    _scene(verb)
-    verb.add_argument(
-        "--versions",
-        action=_Versions,
-        nargs=0,
-        help="print instead what answers depend on, the compiled kernel included, and exit",
-    )
-
-
-def _compare(verb: argparse.ArgumentParser) -> None:
-    _scene(verb)
-    _pairs(verb)
-    verb.add_argument(
-        "--tolerances",
-        metavar="LIST",
-        help="relative errors of n(0), m(0), such as 1e-6,1e-9 (default: 1e-4,1e-6,1e-8,1e-10)",
-    )
-    _laws(verb)
-
-
-def _bench(verb: argparse.ArgumentParser) -> None:
-    _scene(verb)
-    _pairs(verb)
-    verb.add_argument("--repeat", default="11", metavar="N", help="median of N solves")
-    verb.add_argument("--quick", action="store_true", help="reduced states, low degrees only")
-
-
-def _stress(verb: argparse.ArgumentParser) -> None:
-    _scene(verb)
-    verb.add_argument(
-        "--only", action="append", metavar="KIND", help="such as noise or mesh (may be repeated)"
-    )
-    verb.add_argument("--quick", action="store_true", help="a few values of each kind")
-    verb.add_argument(
-        "--seconds", default="20", metavar="N", help="of the processor, for each trial"
-    )
-    verb.add_argument("--out", metavar="DIR", help="folder for CSV, JSON and figure")
-
-
-def _follow(verb: argparse.ArgumentParser) -> None:
-    verb.formatter_class = _help_as_written
-    verb.epilog = _branch_columns()
-    _scene(verb)
-    verb.add_argument(
-        "--out", metavar="DIR", help="folder of the branch (default: results/NAME-branch)"
-    )
-    verb.add_argument("--resume", action="store_true", help="go on with the branch in the folder")
-    _columns(
-        verb,
-        "draw columns, such as law.epsilon:energy u2:energy, and ribbons along the branch",
-    )
-
-
-def _batch(verb: argparse.ArgumentParser) -> None:
-    verb.add_argument(
-        "study", nargs="+", metavar="STUDY", help="study file, scenes, folder of them or pattern"
-    )
-    verb.add_argument(
-        "--set", action="append", default=[], metavar="KEY=VALUE", help="override for all ribbons"
-    )
-    verb.add_argument("--jobs", metavar="N", help="worker processes (default: one for each core)")
-    verb.add_argument("--out", metavar="DIR", help="folder of the rows (default: results/NAME)")
-    verb.add_argument("--resume", action="store_true", help="complete the rows in the folder")
-    verb.add_argument(
-        "--retry",
-        action="store_true",
-        help="with --resume: also solve again what crashed, timed out or met an unforeseen error",
-    )
-    verb.add_argument("--scheduler", metavar="ADDRESS", help="Dask scheduler to use instead")
-    _columns(verb, "draw columns against each other too, such as law.epsilon:energy")
-    verb.add_argument("--yes", action="store_true", help="solve more than 100,000 ribbons")
-    verb.add_argument("--json", action="store_true", help="print exactly one JSON object")
-    verb.add_argument("--quiet", action="store_true", help="print nothing unless it fails")
-
-
-def _verify(verb: argparse.ArgumentParser) -> None:
-    verb.add_argument(
-        "rows", nargs="*", metavar="ROWS", help="scenes or quantities, such as half 'fold.*'"
-    )
-    verb.add_argument("--file", metavar="YAML", help="other rows (default: those that are shipped)")
-    verb.add_argument("--out", metavar="DIR", help="folder for CSV, JSON and a page")
-    verb.add_argument("--json", action="store_true", help="print exactly one JSON object")
-    verb.add_argument("--quiet", action="store_true", help="print nothing unless it fails")
-
-
-def _schema(verb: argparse.ArgumentParser) -> None:
-    """Add nothing."""
-
-
-def _plot(verb: argparse.ArgumentParser) -> None:
-    verb.add_argument("result", metavar="RESULT", help="folder written by solve, continue or batch")
-    _columns(verb, "columns of a branch or a batch to draw, such as u2:energy")
-    verb.add_argument("--out", metavar="DIR", help="folder for the pictures (default: RESULT)")
-
-
-class _Versions(argparse.Action):
-    """Prints versions and ends the command, which needs no scene then."""
-
-    def __call__(self, parser: argparse.ArgumentParser, *_: object) -> None:
-        """Print one line for each."""
-        from ribbonopt.output.summary import versions
-
-        width = max(map(len, versions()))
-        say("\n".join(f"{name:{width}}  {found}" for name, found in versions().items()))
-        parser.exit()
-
-
-def _columns(verb: argparse.ArgumentParser, words: str) -> None:
-    verb.add_argument("--plot", nargs="*", metavar="X:Y", help=words)
-
-
-def _help(prog: str) -> argparse.HelpFormatter:
-    # A given width spares the import that asks the terminal for its own.
-    return argparse.HelpFormatter(prog, width=100)
-
-
-def _help_as_written(prog: str) -> argparse.HelpFormatter:
-    return argparse.RawDescriptionHelpFormatter(prog, width=100)
-
-
-def _branch_columns() -> str:
-    from textwrap import fill
-
-    from ribbonopt.studies.continuation.columns import COLUMNS, HINT
-
-    lines = [
-        fill(text, 98, initial_indent=f"  {name:16}", subsequent_indent=" " * 18)
-        for name, text in COLUMNS.items()
-    ]
-    return "\n".join(["columns of a branch:", *lines, "", fill(HINT, 98)])
-
-
-def _scene(verb: argparse.ArgumentParser) -> None:
-    verb.add_argument("scene", metavar="SCENE", help="YAML file")
-    verb.add_argument(
-        "--set",
-        action="append",
-        default=[],
-        metavar="KEY=VALUE",
-        help="override one value, such as law.epsilon=1e-3 (may be repeated)",
-    )
-    verb.add_argument("--json", action="store_true", help="print exactly one JSON object")
-    verb.add_argument("--quiet", action="store_true", help="print nothing unless it fails")
-
-
-def _pairs(verb: argparse.ArgumentParser) -> None:
-    verb.add_argument(
-        "--formulations", metavar="LIST", help="such as inverted,energy (default: all)"
-    )
-    verb.add_argument(
-        "--transcriptions", metavar="LIST", help="such as gauss,radau,rk8 (default: all)"
-    )
-    verb.add_argument("--out", metavar="DIR", help="folder for CSV, JSON and figure")
-
-
-def _laws(verb: argparse.ArgumentParser) -> None:
-    verb.add_argument(
-        "--laws",
-        metavar="LIST",
-        help="instead: solve it under several laws, such as sadowsky,wunderlich, or all; a scene "
-        "with `continuation` as branches, a study ribbon by ribbon",
-    )
-    verb.add_argument("--width", metavar="W", help="with --laws: of a scene without `ribbon`")
-    verb.add_argument("--thickness", metavar="H", help="with --laws: the same")
-    verb.add_argument("--poisson", metavar="NU", help="with --laws: the same, Poisson's ratio")
-    verb.add_argument(
-        "--edges",
-        metavar="A,B",
-        help="with --laws, for wunderlich: does each end hold the edge straight, or is it free, "
-        "such as straight,free; where the scene leaves that open",
-    )
-    verb.add_argument("--jobs", metavar="N", help="with --laws, of a study: worker processes")
-
-
-VERBS = {
-    "solve": ("solve a scene and report its numbers", _solve),
-    "check": ("validate a scene and count unknowns and conditions", _check),
-    "compare": (
-        "solve a scene by all formulations and transcriptions, and say which is cheapest",
-        _compare,
-    ),
-    "bench": ("time against error over degrees and meshes", _bench),
-    "stress": ("try a scene far from what it was made for, and judge every answer", _stress),
-    "continue": ("follow a scene's equilibria as a parameter moves (its `continuation`)", _follow),
-    "batch": ("solve all ribbons of a study, on all cores", _batch),
-    "verify": ("compute numbers with sources again, and say which are confirmed", _verify),
-    "schema": ("print the JSON schema of scenes, for editors", _schema),
-    "plot": ("draw the pictures of a saved result", _plot),
-}

@@ -23,7 +23,7 @@ from .terminal import bounded, complain, say_json
 MODULES = {
     "solve": "scene",
     "check": "scene",
-    "plot": "scene",
+    "plot": "plot",
     "schema": "scene",
     "compare": "comparison",
     "bench": "comparison",

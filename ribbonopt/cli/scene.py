@@ -1,15 +1,14 @@
-"""Verbs of one scene: `solve`, `check`, `plot`, `schema`."""
+"""Verbs of one scene: `solve`, `check`, `schema`."""
 
 from __future__ import annotations
 
 import argparse
-import os
 from typing import TYPE_CHECKING, Any
 
 from ribbonopt.errors import OutputError, SceneError
-from ribbonopt.reading import is_file
 
-from .common import NOT_CONVERGED, default_folder, drawn, listing, load, pairs_of, say_left_out
+from .common import NOT_CONVERGED, default_folder, drawn, listing, load, say_left_out
+from .plot import draw_solution
 from .terminal import complain, say, say_json, say_line
 
 if TYPE_CHECKING:
@@ -40,16 +39,8 @@ def solve(options: argparse.Namespace) -> int:
         except OutputError:  # such as of a disk that is full by now
             _tell(options, solution, import_seconds, None)
             raise
-        status = drawn(lambda: _draw(solution, written)) if options.plot else 0
+        status = drawn(lambda: draw_solution(solution, written)) if options.plot else 0
     return _tell(options, solution, import_seconds, written) or status
-
-
-def _draw(solution: Solution, folder: Path) -> list[Path]:
-    from ribbonopt.views.files import draw_figures
-
-    paths, left_out = draw_figures(solution, folder)
-    say_left_out(left_out)
-    return paths
 
 
 def _tell(
@@ -110,45 +101,4 @@ def schema(options: argparse.Namespace) -> int:
     from ribbonopt.scene import json_schema
 
     say_json(json_schema(), indent=2)
-    return 0
-
-
-def plot(options: argparse.Namespace) -> int:
-    """Draw the pictures of a saved result."""
-    from ribbonopt.output.claims import pictures_in
-    from ribbonopt.output.results import load_solution
-    from ribbonopt.output.staging import recovered
-
-    result, pairs = recovered(options.result), pairs_of(options.plot) or []
-    if is_file(result / "branch.jsonl"):
-        from .branch import draw as draw_branch
-
-        def draw(folder: Path) -> list[Path]:
-            return draw_branch(result, folder, pairs)
-
-    elif is_file(result / "rows.jsonl"):
-        from .batch import draw as draw_batch
-
-        def draw(folder: Path) -> list[Path]:
-            return draw_batch(result, folder, pairs)
-
-    elif pairs:
-        raise SceneError(
-            f"--plot: {result} is no branch and no batch, whose columns could be drawn"
-        )
-    elif not os.path.isdir(result):
-        beside = f"{result}-branch"
-        near = f"; did you mean {beside}?" if os.path.isdir(beside) else ""
-        wanted = "expected one written by ribbonopt solve, continue or batch"
-        raise SceneError(f"{result}: no such folder; {wanted}{near}")
-    else:
-        solution = load_solution(result)
-
-        def draw(folder: Path) -> list[Path]:
-            return _draw(solution, folder)
-
-    with pictures_in(options.out or result) as folder:
-        paths = draw(folder)
-    for path in paths:
-        say_line(str(path))
     return 0
