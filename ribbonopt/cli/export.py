@@ -6,7 +6,7 @@ import argparse
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ribbonopt.errors import SceneError
+from ribbonopt.errors import ModelError, SceneError
 from ribbonopt.reading import is_file
 
 from .common import say_left_out
@@ -14,8 +14,8 @@ from .terminal import complain, say_line
 from .values import count, size, words
 
 if TYPE_CHECKING:
-    from ribbonopt.exports.export import Exported
     from ribbonopt.exports.settings import Settings
+    from ribbonopt.exports.writing import Gathered
 
 FOLDER = "exports"  # in that of a result
 MOST_LINES = 12  # files that are listed one by one
@@ -26,6 +26,7 @@ def export(options: argparse.Namespace) -> int:
     """Write files of a result, a branch or a batch."""
     from ribbonopt.exports.formats import FORMATS
     from ribbonopt.exports.settings import MOST_ACROSS, MOST_ROWS, Settings, place_in
+    from ribbonopt.exports.writing import gather, write
 
     result, formats = Path(options.result), words(options.format) or []
     if unknown := [name for name in formats if name not in FORMATS]:
@@ -40,35 +41,35 @@ def export(options: argparse.Namespace) -> int:
         count("--across", options.across, MOST_ACROSS),
         options.color,
         not options.piece,
-    ).checked()
-    done = _beside(result, settings) if out is None else _into(result, folder, name, settings)
-    say_left_out(done.left_out)
-    if done.unverified:
-        more = f" and {len(done.unverified) - 1} more" if len(done.unverified) > 1 else ""
-        complain(f"not verified, exported all the same: {done.unverified[0]}{more}")
-    if len(done.paths) <= MOST_LINES:
-        for path in done.paths:
-            say_line(str(path))
+    )
+    try:
+        settings = settings.checked()
+    except ModelError as error:
+        raise SceneError(f"--{error}") from error
+    gathered = gather(result, settings)
+    say_left_out(gathered.left_out)
+    if unsure := [r for r in gathered.ribbons if not r.solution.verified]:
+        first = f"{unsure[0].solution.scene.name}{unsure[0].words}"
+        more = f" and {len(unsure) - 1} more" if len(unsure) > 1 else ""
+        complain(f"not verified, exported all the same: {first}{more}")
+    if out is None:
+        paths = _beside(result, gathered, settings)
     else:
-        say_line(f"{len(done.paths)} files in {done.paths[0].parent}, the last {done.paths[-1]}")
+        paths = write(gathered, folder, name, settings)
+    shown = paths if len(paths) <= MOST_LINES else [p for p in paths if p.suffix == ".pvd"]
+    for path in shown:
+        say_line(str(path))
+    if len(shown) < len(paths):
+        say_line(f"{'and ' * bool(shown)}{len(paths) - len(shown)} files in {paths[0].parent}")
     return 0
 
 
-def _into(result: Path, folder: Path, name: str | None, settings: Settings) -> Exported:
-    from ribbonopt.exports.export import export_files
-
-    return export_files(result, folder, name, settings)
-
-
-def _beside(result: Path, settings: Settings) -> Exported:
+def _beside(result: Path, gathered: Gathered, settings: Settings) -> list[Path]:
     """Export into a folder in that of the result, which is told that it is one of its own."""
-    from ribbonopt.exports.export import export_files
-    from ribbonopt.exports.found import opened
+    from ribbonopt.exports.writing import write
     from ribbonopt.output.claims import claimed
     from ribbonopt.output.declared import declare
 
-    found = opened(result)  # before anything is written
-    place = result.parent if is_file(result) else result
-    with claimed(place, (), alone=False) as place:
+    with claimed(result.parent if is_file(result) else result, (), alone=False) as place:
         declare(place, (FOLDER,))
-        return export_files(found, place / FOLDER, None, settings)
+        return write(gathered, place / FOLDER, None, settings)

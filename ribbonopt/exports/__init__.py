@@ -10,14 +10,12 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from .export import export
+    from .writing import export
 
 __all__ = ["export"]
 
 
 def __getattr__(name: str) -> Any:
-    if name != "export":
+    if name not in __all__:
         raise AttributeError(f"module 'ribbonopt.exports' has no attribute {name!r}")
-    # The function has the name of its module, which the import puts here first.
-    found = globals()[name] = import_module("ribbonopt.exports.export").export
-    return found
+    return getattr(import_module("ribbonopt.exports.writing"), name)

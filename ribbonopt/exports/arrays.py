@@ -22,9 +22,7 @@ from .tables import loads_of
 def write_npz(carried: Carried) -> dict[str, bytes]:
     """Return arrays by the names of quantities: (k,), vectors (k, 3); points, faces and normals."""
     shape, mesh, file = carried.shape, carried.mesh, io.BytesIO()
-    arrays: dict[str, Any] = {
-        quantity.name: values_of(shape, quantity.name) for quantity in ROWS
-    }
+    arrays: dict[str, Any] = {quantity.name: values_of(shape, quantity.name) for quantity in ROWS}
     arrays |= {"starts": np.array(shape.starts), "closing": np.array(shape.closing)}
     arrays |= {"points": mesh.points, "quads": mesh.quads, "normals": mesh.normals}
     arrays |= {"point_rows": np.repeat(mesh.rows, len(mesh.across))}

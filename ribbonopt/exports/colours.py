@@ -16,18 +16,10 @@ from ribbonopt.views.shape import Shape
 from .quantities import values_of
 
 FIELD = "u2"
-#: linear RGB at minus the largest value, half of it, 0, half, the largest
-_SCALE = np.array(
-    [
-        [0.020, 0.110, 0.300],
-        [0.110, 0.380, 0.640],
-        [0.850, 0.850, 0.820],
-        [0.800, 0.300, 0.110],
-        [0.360, 0.045, 0.020],
-    ]
-)
+#: sRGB bytes at minus the largest value, half of it, 0, half, the largest
+_SCALE = np.array([[38, 86, 158], [118, 168, 214], [240, 238, 232], [234, 158, 108], [188, 70, 36]])
 _AT = np.linspace(-1.0, 1.0, len(_SCALE))
-_NONE = np.array([0.5, 0.5, 0.5])
+_NONE = np.array([128.0, 128.0, 128.0])  # where a value is not known
 
 
 @dataclass(frozen=True)
@@ -38,12 +30,12 @@ class Colours:
     largest: float
 
     def of(self, shape: Shape) -> Array:
-        """Return linear red, green and blue (n, 3), each from 0 to 1, in all rows of a shape."""
+        """Return red, green and blue (n, 3) as screens have them (sRGB), 0 to 255, in all rows."""
         values = values_of(shape, self.field)
         known = np.isfinite(values)
         share = np.where(known, values, 0.0) / (self.largest or 1.0)
         found = np.stack([np.interp(share, _AT, channel) for channel in _SCALE.T], axis=1)
-        return np.asarray(np.where(known[:, None], found, _NONE))
+        return np.asarray(np.round(np.where(known[:, None], found, _NONE)))
 
 
 def colours_of(field: str, shapes: Iterable[Shape]) -> Colours:
@@ -52,7 +44,7 @@ def colours_of(field: str, shapes: Iterable[Shape]) -> Colours:
     return Colours(field, max((float(np.nanmax(v, initial=0.0)) for v in sizes), default=0.0))
 
 
-def as_seen(linear: Array) -> Array:
-    """Return colours as screens and most files have them (sRGB, IEC 61966-2-1), as whole bytes."""
-    curved = 1.055 * np.power(linear, 1 / 2.4) - 0.055
-    return np.round(255 * np.where(linear <= 0.0031308, 12.92 * linear, curved))
+def as_light(seen: Array) -> Array:
+    """Return colours of sRGB, 0 to 255, as amounts of light from 0 to 1 (IEC 61966-2-1)."""
+    share = seen / 255
+    return np.where(share <= 0.04045, share / 12.92, ((share + 0.055) / 1.055) ** 2.4)

@@ -1,4 +1,4 @@
-"""What is to be exported, as solutions: of a result with its other equilibria, a branch, a batch."""
+"""What is to be exported as solutions: a result with its other equilibria, a branch, a batch."""
 
 from __future__ import annotations
 
@@ -18,7 +18,7 @@ from ribbonopt.studies.batch.results import Batch
 from ribbonopt.studies.continuation.branch import Branch
 from ribbonopt.studies.loading import load
 
-Thing = Solution | Branch | Batch
+Thing = Solution | tuple[Solution, ...] | Branch | Batch
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,7 +46,7 @@ class Ribbon:
     series: str | None = None
 
 
-def opened(path: str | Path, scene: Scene | None = None) -> Thing | tuple[Solution, ...]:
+def opened(path: str | Path, scene: Scene | None = None) -> Thing:
     """Return what a folder of results holds; of a result all equilibria, the first one first.
 
     Raises
@@ -64,7 +64,7 @@ def opened(path: str | Path, scene: Scene | None = None) -> Thing | tuple[Soluti
     return (found, *(load_solution(inner / n, scene) for n in sorted(numbers, key=int)))
 
 
-def name_of(thing: Thing | tuple[Solution, ...]) -> str:
+def name_of(thing: Thing) -> str:
     """Return the name that files of something have in common."""
     if isinstance(thing, Batch):
         return thing.name
@@ -72,7 +72,7 @@ def name_of(thing: Thing | tuple[Solution, ...]) -> str:
     return first.scene.name
 
 
-def ribbons_of(thing: Thing | tuple[Solution, ...]) -> Iterator[Ribbon]:
+def ribbons_of(thing: Thing) -> Iterator[Ribbon]:
     """Yield all ribbons of something, restored one by one.
 
     Raises
@@ -92,7 +92,7 @@ def ribbons_of(thing: Thing | tuple[Solution, ...]) -> Iterator[Ribbon]:
         yield from _saved(thing)
 
 
-def left_out_of(thing: Thing | tuple[Solution, ...]) -> list[str]:
+def left_out_of(thing: Thing) -> list[str]:
     """Return what there is no solution of."""
     if not isinstance(thing, Batch) or len(thing.saved) == len(thing.rows):
         return []

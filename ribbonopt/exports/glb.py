@@ -16,6 +16,7 @@ import numpy as np
 from ribbonopt.plain import finite
 
 from .carried import Carried
+from .colours import as_light
 
 FLOAT, INDEX = 5126, 5125  # float32, uint32
 VERTICES, ELEMENTS = 34962, 34963
@@ -70,7 +71,7 @@ class _Binary:
 def write(carried: Carried) -> dict[str, bytes]:
     """Return the surface, coloured by a field, and the centre line."""
     mesh, binary = carried.mesh, _Binary()
-    colours = mesh.spread(carried.colours.of(carried.shape))
+    colours = mesh.spread(as_light(carried.colours.of(carried.shape)))
     surface = {
         "attributes": {
             "POSITION": binary.place(mesh.points),
@@ -113,4 +114,5 @@ def write(carried: Carried) -> dict[str, bytes]:
 
 def _unit(normals: np.ndarray[Any, Any]) -> np.ndarray[Any, Any]:
     """Return normals in single precision, as long as one is there."""
-    return (normals / np.linalg.norm(normals, axis=1, keepdims=True)).astype(np.float32)
+    single = normals / np.linalg.norm(normals, axis=1, keepdims=True)
+    return np.asarray(single, np.float32)

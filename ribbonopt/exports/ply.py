@@ -7,7 +7,6 @@ import numpy as np
 from ribbonopt.text import one_line
 
 from .carried import Carried
-from .colours import as_seen
 from .quantities import FIELDS, known_of
 
 _NAMES = {"f4": "float", "f8": "double", "u1": "uchar"}
@@ -19,7 +18,7 @@ def write(carried: Carried) -> dict[str, bytes]:
     columns = {axis: mesh.points[:, i] for i, axis in enumerate("xyz")}
     # These are the names of normals in all readers, so that forces are called otherwise.
     columns |= {f"n{axis}": mesh.normals[:, i].astype("f4") for i, axis in enumerate("xyz")}
-    seen = mesh.spread(as_seen(carried.colours.of(shape))).astype("u1")
+    seen = mesh.spread(carried.colours.of(shape)).astype("u1")
     columns |= {name: seen[:, i] for i, name in enumerate(("red", "green", "blue"))}
     for field in FIELDS:
         found = known_of(shape, (field,))
@@ -29,7 +28,7 @@ def write(carried: Carried) -> dict[str, bytes]:
             columns |= {f"{name}{axis}": values[:, i] for i, axis in enumerate("xyz")}
         elif values is not None:
             columns[field.name] = values
-    kinds = [(name, values.dtype.str[1:].replace("f8", "f8")) for name, values in columns.items()]
+    kinds = [(name, values.dtype.str[1:]) for name, values in columns.items()]
     points = np.empty(len(mesh.points), [(name, f"<{kind}") for name, kind in kinds])
     for name, values in columns.items():
         points[name] = values

@@ -82,7 +82,9 @@ def values_of(shape: Shape, name: str) -> Array:
     if name == HALF_WIDTH.name:
         return shape.half_widths
     if name == PIECE.name:
-        return np.searchsorted(shape.starts, np.arange(len(shape.s)), side="right") - 1.0
+        return np.asarray(
+            np.searchsorted(shape.starts, np.arange(len(shape.s)), "right") - 1, float
+        )
     if name in (c.name for c in COMPONENTS):
         along = {1: shape.d1, 2: shape.d2, 3: shape.d3}[int(name[1])]
         vector = shape.n if name[0] == "n" else shape.m

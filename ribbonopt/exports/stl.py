@@ -1,4 +1,4 @@
-"""STL, for printers and finite elements: triangles in single precision, little-endian, no fields."""
+"""STL, for printers and finite elements: bare triangles in single precision, little-endian."""
 
 from __future__ import annotations
 

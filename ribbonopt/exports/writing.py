@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Mapping, Sequence
-from contextlib import ExitStack
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import NamedTuple
 
@@ -30,12 +29,13 @@ from .settings import Settings, place_in
 NAME = "ribbon"  # of files, where a scene's own cannot be one
 
 
-class Exported(NamedTuple):
-    """Files that were written, what was left out and why, and which ribbons are not verified."""
+class Gathered(NamedTuple):
+    """Ribbons and their shapes, the name of their files, and what was left out and why."""
 
-    paths: list[Path]
+    name: str
+    ribbons: list[Ribbon]
+    shapes: list[Shape]
     left_out: list[str]
-    unverified: list[str]
 
 
 def export(
@@ -87,20 +87,18 @@ def export(
     """
     folder, name, formats = place_in(Path(path), formats)
     settings = Settings(tuple(formats), half_width, rows, across, color, complete).checked()
-    return export_files(thing, folder, name, settings).paths
+    return write(gather(thing, settings), folder, name, settings)
 
 
-def export_files(
-    thing: Thing | str | Path, folder: Path, name: str | None, settings: Settings
-) -> Exported:
-    """Write files as `export` does, into a folder and under a name, the scene's if it is None.
+def gather(thing: Thing | str | Path, settings: Settings) -> Gathered:
+    """Return all ribbons of something, sampled, before anything is written.
 
-    Ribbons that cannot be exported are left out, as long as there are others.
+    Those that cannot be exported are left out, as long as there are others.
 
     Raises
     ------
     OutputError
-        As `export`.
+        If there is nothing to export.
     """
     found = opened(thing) if isinstance(thing, str | Path) else thing
     left_out, ribbons, subjects = left_out_of(found), list[Ribbon](), list[Subject]()
@@ -113,11 +111,45 @@ def export_files(
             subjects.append(subject)
     if not ribbons:
         raise OutputError(f"nothing to export: {left_out[0] if left_out else 'there is no point'}")
-    name = name or name_of(found)
-    carried = _carried(ribbons, _shapes(subjects, settings), settings)
-    paths = _written(folder, NAME if name_fault(name) else name, carried, settings.formats)
-    unverified = [c.title for _, c in carried if not c.solution.verified]
-    return Exported(paths, left_out, unverified)
+    name, shapes = name_of(found), _shapes(subjects, settings)
+    return Gathered(NAME if name_fault(name) else name, ribbons, shapes, left_out)
+
+
+def write(gathered: Gathered, folder: Path, name: str | None, settings: Settings) -> list[Path]:
+    """Write all files into a folder and return where.
+
+    Parameters
+    ----------
+    gathered
+        What is written.
+    folder, name
+        Where; what names of files begin with, None for the name of the scene.
+    settings
+        As in `gather`.
+
+    Raises
+    ------
+    OutputError
+        If a file cannot be written.
+    """
+    name, paths = name or gathered.name, list[Path]()
+    listed: dict[tuple[str, str], list[tuple[str, Ribbon]]] = {}
+    with claimed(folder, (), alone=False) as place:
+
+        def put(files: Mapping[str, bytes], common: str) -> None:
+            paths.extend(_put(place / f"{common}{end}", content) for end, content in files.items())
+
+        for ribbon, carried in _carried(gathered, settings):
+            for kind in settings.formats:
+                files = FORMATS[kind].write(carried)
+                put(files, f"{name}{ribbon.label}")
+                if ribbon.series is not None and FORMATS[kind].series:
+                    for ending in files:
+                        key = ribbon.series, ending.removesuffix(f".{kind}")
+                        listed.setdefault(key, []).append((f"{name}{ribbon.label}{ending}", ribbon))
+        for (label, which), members in listed.items():
+            put(_series(members), f"{name}{label}{which}")
+    return paths
 
 
 def _fault(subject: Subject) -> str:
@@ -134,54 +166,15 @@ def _shapes(subjects: list[Subject], settings: Settings) -> list[Shape]:
     return [shape_from(s, sweep(s.pieces, width or s.drawn or usual)) for s in subjects]
 
 
-def _carried(
-    ribbons: list[Ribbon], shapes: list[Shape], settings: Settings
-) -> list[tuple[Ribbon, Carried]]:
-    colours = colours_of(settings.color, shapes)
-    return [
-        (
+def _carried(gathered: Gathered, settings: Settings) -> Iterator[tuple[Ribbon, Carried]]:
+    """Yield all ribbons as they are written, one by one: faces take more room than rows."""
+    colours = colours_of(settings.color, gathered.shapes)
+    for ribbon, shape in zip(gathered.ribbons, gathered.shapes, strict=True):
+        title = f"{shape.name}{ribbon.words}"
+        yield (
             ribbon,
-            Carried(
-                shape,
-                ribbon.solution,
-                f"{shape.name}{ribbon.words}",
-                colours,
-                settings.across,
-                ribbon.numbers,
-            ),
+            Carried(shape, ribbon.solution, title, colours, settings.across, ribbon.numbers),
         )
-        for ribbon, shape in zip(ribbons, shapes, strict=True)
-    ]
-
-
-def _written(
-    folder: Path,
-    name: str,
-    carried: Iterable[tuple[Ribbon, Carried]],
-    formats: Sequence[str],
-) -> list[Path]:
-    """Write all files and return where; OutputError if that cannot be."""
-    paths: list[Path] = []
-    listed: dict[tuple[str, str], list[tuple[str, Ribbon]]] = {}
-    with ExitStack() as stack:
-        place = stack.enter_context(claimed(folder, (), alone=False))
-
-        def put(files: Mapping[str, bytes], common: str) -> None:
-            for ending, content in files.items():
-                paths.append(_put(place / f"{common}{ending}", content))
-
-        for ribbon, one in carried:
-            for kind in formats:
-                files = FORMATS[kind].write(one)
-                put(files, f"{name}{ribbon.label}")
-                if ribbon.series is not None and FORMATS[kind].series:
-                    for ending in files:
-                        line = ending.removesuffix(f".{kind}")
-                        file = f"{name}{ribbon.label}{ending}"
-                        listed.setdefault((ribbon.series, line), []).append((file, ribbon))
-        for (label, line), members in listed.items():
-            put(_series(members), f"{name}{label}{line}")
-    return paths
 
 
 def _series(members: list[tuple[str, Ribbon]]) -> Mapping[str, bytes]:
