@@ -8,6 +8,7 @@ from functools import cached_property
 
 from ribbonopt.classes import dataclass
 from ribbonopt.solution.solution import Solution
+from ribbonopt.text import one_line
 from ribbonopt.version import VERSION
 from ribbonopt.views.shape import Shape
 
@@ -34,7 +35,8 @@ class Carried:
     across : int
         Strips from edge to edge.
     numbers : mapping of str to float
-        What tells it from the others: number and parameter of the point of a branch.
+        What tells it from the others: of a point of a branch its number and parameter, of a ribbon
+        of a batch its number and inputs.
     """
 
     shape: Shape
@@ -60,6 +62,11 @@ class Carried:
             "half_width": f"{shape.half_width:.9g} ({own})",
             "closing": CLOSING[shape.closing],
             "verified": "yes" if self.solution.verified else "no",
-            **{name: f"{value:.12g}" for name, value in self.numbers.items()},
             "generator": f"ribbonopt {VERSION}",
         }
+
+    @property
+    def comments(self) -> list[str]:
+        """The same as lines of text, with the numbers; what they say may be anything."""
+        numbers = {name: f"{value:.12g}" for name, value in self.numbers.items()}
+        return [one_line(f"{name}: {text}") for name, text in (self.remarks | numbers).items()]

@@ -123,8 +123,12 @@ def _told(row: Row) -> str:
 def _numbers(row: Row) -> dict[str, float]:
     """Return the numbers that tell a point of a branch."""
     named = {"number": row["number"], "parameter": row[row["parameter"]]}
-    told = {name: row.get(name) for name in ("stage", "branch", "energy")}
-    return {name: float(value) for name, value in (named | told).items() if is_number(value)}
+    return _plain(named | {name: row.get(name) for name in ("stage", "branch")})
+
+
+def _plain(values: Row) -> dict[str, float]:
+    """Return those values that are numbers."""
+    return {name: float(value) for name, value in values.items() if is_number(value)}
 
 
 def _saved(batch: Batch) -> Iterator[Ribbon]:
@@ -134,9 +138,11 @@ def _saved(batch: Batch) -> Iterator[Ribbon]:
             f"{batch.name}: no solution of this batch was saved; `save: all` in its study keeps "
             "them, and with it the batch is to be solved again"
         )
+    rows = {row["number"]: row for row in batch.rows}
     for number in batch.saved:
         found, label = batch[number], f"-{number:04d}"
         if isinstance(found, Solution):
-            yield Ribbon(found, label, f", ribbon {number}", {"number": float(number)})
+            told = _plain({name: rows[number].get(name) for name in ("number", *batch.inputs)})
+            yield Ribbon(found, label, f", ribbon {number}", told)
         else:
             yield from _points(found, label)

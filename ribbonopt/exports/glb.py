@@ -90,7 +90,7 @@ def write(carried: Carried) -> dict[str, bytes]:
     scene = {
         "asset": {"version": "2.0", "generator": "ribbonopt"},
         "scene": 0,
-        "scenes": [{"nodes": [0], "extras": carried.remarks | colour}],
+        "scenes": [{"nodes": [0], "extras": {**carried.remarks, **carried.numbers, **colour}}],
         "nodes": [
             {"name": "lab", "rotation": UP, "children": [1, 2]},
             {"name": "ribbon", "mesh": 0},

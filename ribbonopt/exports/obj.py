@@ -2,15 +2,13 @@
 
 from __future__ import annotations
 
-from ribbonopt.text import one_line
-
 from .carried import Carried
 
 
 def write(carried: Carried) -> dict[str, bytes]:
     """Return the surface with its normals; what it is and its units are comments."""
     mesh = carried.mesh
-    lines = [f"# {name}: {one_line(value)}" for name, value in carried.remarks.items()]
+    lines = [f"# {comment}" for comment in carried.comments]
     lines += ["o ribbon"]
     lines += ["v {!r} {!r} {!r}".format(*point) for point in mesh.points.tolist()]
     lines += ["vn {:.7g} {:.7g} {:.7g}".format(*normal) for normal in mesh.normals.tolist()]

@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import numpy as np
 
-from ribbonopt.text import one_line
-
 from .carried import Carried
 from .quantities import FIELDS, known_of
 
@@ -35,7 +33,7 @@ def write(carried: Carried) -> dict[str, bytes]:
     faces = np.empty(len(mesh.quads), [("count", "u1"), ("corners", "<i4", 4)])
     faces["count"], faces["corners"] = 4, mesh.quads
     head = ["ply", "format binary_little_endian 1.0"]
-    head += [f"comment {name}: {_ascii(value)}" for name, value in carried.remarks.items()]
+    head += [f"comment {_ascii(comment)}" for comment in carried.comments]
     head += [f"element vertex {len(points)}"]
     head += [f"property {_NAMES[kind]} {name}" for name, kind in kinds]
     head += [f"element face {len(faces)}", "property list uchar int vertex_indices", "end_header"]
@@ -44,5 +42,5 @@ def write(carried: Carried) -> dict[str, bytes]:
 
 
 def _ascii(text: str) -> str:
-    """Return a remark on one line, in the only letters that a PLY header may have."""
-    return one_line(text).encode("ascii", "backslashreplace").decode()
+    """Return a remark in the only letters that a PLY header may have."""
+    return text.encode("ascii", "backslashreplace").decode()

@@ -76,4 +76,5 @@ def _meanings(carried: Carried, columns: list[str]) -> Row:
         **{name: {"means": "force on the ribbon, lab frame", "unit": named["n"]} for name in FORCE},
         **{name: {"means": "moment, lab frame", "unit": named["m"]} for name in MOMENT},
     }
-    return {**carried.remarks, "columns": rows, "loads": loads}
+    about = {**carried.remarks, "numbers": dict(carried.numbers)}
+    return {"about": about, "columns": rows, "loads": loads}
