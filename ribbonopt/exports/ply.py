@@ -7,6 +7,8 @@ import numpy as np
 from .carried import Carried
 from .quantities import FIELDS, known_of
 
+#: nx, ny, nz are normals to all readers, s is a coordinate of textures
+CALLED = {"n": "force", "m": "moment", "s": "arclength"}
 _NAMES = {"f4": "float", "f8": "double", "u1": "uchar"}
 
 
@@ -14,7 +16,6 @@ def write(carried: Carried) -> dict[str, bytes]:
     """Return the surface: positions in double, fields and normals in single precision."""
     mesh, shape = carried.mesh, carried.shape
     columns = {axis: mesh.points[:, i] for i, axis in enumerate("xyz")}
-    # These are the names of normals in all readers, so that forces are called otherwise.
     columns |= {f"n{axis}": mesh.normals[:, i].astype("f4") for i, axis in enumerate("xyz")}
     seen = mesh.spread(carried.colours.of(shape)).astype("u1")
     columns |= {name: seen[:, i] for i, name in enumerate(("red", "green", "blue"))}
@@ -22,10 +23,10 @@ def write(carried: Carried) -> dict[str, bytes]:
         found = known_of(shape, (field,))
         values = mesh.spread(found[field.name]).astype("f4") if found else None
         if values is not None and field.vector:
-            name = {"n": "force_", "m": "moment_"}.get(field.name, f"{field.name}_")
-            columns |= {f"{name}{axis}": values[:, i] for i, axis in enumerate("xyz")}
+            name = CALLED.get(field.name, field.name)
+            columns |= {f"{name}_{axis}": values[:, i] for i, axis in enumerate("xyz")}
         elif values is not None:
-            columns[field.name] = values
+            columns[CALLED.get(field.name, field.name)] = values
     kinds = [(name, values.dtype.str[1:]) for name, values in columns.items()]
     points = np.empty(len(mesh.points), [(name, f"<{kind}") for name, kind in kinds])
     for name, values in columns.items():

@@ -107,7 +107,7 @@ def test_meshes(solved: Solved, helix: Path, ending: str) -> None:
 def test_fields_of_ply(solved: Solved, helix: Path) -> None:
     found = trimesh.load(helix / "helix.ply", process=False)
     data = found.metadata["_ply_raw"]["vertex"]["data"]
-    told = solved("helix").outputs(np.asarray(data["s"], float))
+    told = solved("helix").outputs(np.asarray(data["arclength"], float))
     for name in ("u2", "u3", "eta", "energy"):
         np.testing.assert_allclose(data[name], told[name], rtol=1e-4)
     for i, axis in enumerate("xyz"):
