@@ -177,8 +177,8 @@ class Branch(Sequence[Solution]):
         kinds = Counter(row["kind"] for row in self.special)
         special = "".join(f", {count} {kind}{'s' * (count > 1)}" for kind, count in kinds.items())
         goal = "goal reached" if self.reached else "goal not reached"
-        moved = shortened(moved, 80)
-        return f"<Branch {name}: {len(self)} points along {moved}{special}; {goal}>"
+        points = f"{len(self)} point{'s' * (len(self) != 1)} along {shortened(moved, 80)}"
+        return f"<Branch {name}: {points}{special}; {goal}>"
 
     def _repr_html_(self) -> str | None:
         return embedded(self)
