@@ -9,23 +9,30 @@ from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
     from ribbonopt.solution.solution import Solution
+    from ribbonopt.studies.batch.results import Batch
+    from ribbonopt.studies.continuation.branch import Branch
 
 __all__ = ["embedded"]
 
 HEIGHT = 640  # pixels
 
 
-def embedded(solution: Solution, height: int = HEIGHT) -> str:
-    """Return HTML that shows a solution in a part of another page, such as a notebook.
+def embedded(thing: Solution | Branch | Batch, height: int = HEIGHT) -> str:
+    """Return HTML that shows something solved in a part of another page, such as a notebook.
 
     Parameters
     ----------
-    solution
-        Verified or not; other equilibria of its scene can be chosen.
+    thing
+        A solution, verified or not, a branch or a batch.
     height
         In pixels.
+
+    Raises
+    ------
+    ViewError
+        If there is nothing to be seen, such as a branch without points.
     """
     from .page import framed, page_of
-    from .solutions import view_of
+    from .looking import view_of
 
-    return framed(page_of(view_of(solution)), height)
+    return framed(page_of(view_of(thing)), height)

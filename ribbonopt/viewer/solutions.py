@@ -8,9 +8,7 @@ from typing import Any
 
 from ribbonopt.output.results import load_solution
 from ribbonopt.output.saved import read_summary
-from ribbonopt.output.staging import recovered
 from ribbonopt.output.summary import summarize
-from ribbonopt.reading import is_file
 from ribbonopt.solution.solution import Solution
 from ribbonopt.views.subject import subject_of
 
@@ -21,44 +19,30 @@ from .width import width_of
 EQUILIBRIA = "equilibria"
 
 
-def view_of(solution: Solution, half_width: float | None = None) -> View:
+def view_of_solution(solution: Solution, half_width: float | None = None) -> View:
     """Return the view of a solution and of the other equilibria that it knows.
 
-    Parameters
-    ----------
-    solution
-        Verified or not.
-    half_width
-        To which it is drawn where its relative width is 1; in the units of the scene. Default: its
-        own, where the scene says it, else one with which generatrices keep apart.
-
-    Raises
-    ------
-    ModelError
-        If half_width is not positive.
+    `half_width` as in `view_of`.
     """
     found = [solution, *solution.others]
     return _view(found, [summarize(one) for one in found], half_width)
 
 
-def saved_view(path: str | Path, half_width: float | None = None) -> View:
-    """Return the view of a result folder, as `view_of`.
+def view_of_result(solution: Solution, folder: Path, half_width: float | None = None) -> View:
+    """Return the view of a solution with what its folder says and holds besides.
 
     Raises
     ------
     OutputError
-        If there is no whole result, or its files are damaged or do not belong together.
+        If other equilibria, or summaries, cannot be read.
     ModelError
         If half_width is not positive.
     """
-    folder = recovered(path)
-    folder = folder.parent if is_file(folder) else folder
-    first, others = load_solution(folder), folder / EQUILIBRIA
+    others = folder / EQUILIBRIA
     names = [item.name for item in others.iterdir()] if others.is_dir() else []
-    numbered = sorted((name for name in names if name.isdecimal()), key=int)
-    folders = [folder, *(others / name for name in numbered)]
-    found = [first, *(load_solution(inner) for inner in folders[1:])]
-    return _view(found, [read_summary(inner)[1] for inner in folders], half_width)
+    numbered = [others / name for name in sorted(filter(str.isdecimal, names), key=int)]
+    found = [solution, *map(load_solution, numbered)]
+    return _view(found, [read_summary(inner)[1] for inner in (folder, *numbered)], half_width)
 
 
 def _view(
@@ -70,12 +54,11 @@ def _view(
     ribbons = []
     for i, (subject, summary) in enumerate(zip(subjects, summaries, strict=True), start=1):
         status = status_of(summary)
-        told = [subject.rest] if subject.mirrored else []
         ribbons.append(
             Ribbon(
                 subject,
                 caption=status if len(subjects) == 1 else f"equilibrium {i}, {status}",
-                note=f"{told[0]} (light, dashed)" if told else "",
+                note=f"{subject.rest} (light, dashed)" if subject.mirrored else "",
                 verified=bool(summary.get("verified")),
                 numbers=numbers_of(summary),
                 warnings=tuple(summary.get("warnings") or ()),
