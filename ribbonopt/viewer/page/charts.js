@@ -5,10 +5,11 @@
 //   xLabel, yLabel, xLog, yLog, equal,      // equal: the same scale along both axes
 //   xRange, yRange,                         // [low, high]; without, all that is drawn is seen
 //   xWords, yWords,                         // the words that 0, 1, ... stand for
-//   series: [{ x, y, name, className, dashed, smooth, corners, tx, ty }],
+//   series: [{ x, y, name, className, dashed, smooth, corners, tx, ty, of }],
 //   points: [{ x, y, mark, className, title }],  // "dot", "square", "diamond", "triangle", "cross"
 //   regions: [{ x, y, className }],         // filled, cut off at the axes, do not set their ends
 //   cloud: { x, y, colour(i), cross(i) },   // on the canvas; NaN: not drawn
+//   parts(svg, X, Y, node),                 // draws more with functions from values to pixels
 //   pick,                                   // "x": the nearest along x, "xy": the nearest point
 //   tip(index, series),                     // text beside the pointer; without, values in the head
 //   onHover(index, series), onLeave(), onClick(index, series),
@@ -18,7 +19,7 @@
 //
 // A series is called by its place, the cloud is "cloud". A class sets `color`: curves, marks and
 // legend follow it (charts.css). `smooth`: through the points, but for `corners`, indices; tx, ty:
-// with these directions of the curve at its points. x without a length repeats for all series.
+// with these directions of the curve at its points; of(index): class of the mark at a point.
 const charts = (() => {
   const FONT = "11px system-ui, sans-serif";
   const HEAD = 8, FOOT = 20, SIDE = 10, GAP = 6; // pixels around the plot
@@ -183,9 +184,9 @@ const charts = (() => {
       const seen = spots.filter(([k, p]) => p && paths.isThere(p) && (series === undefined || series === k));
       if (asked.cloud) seen.push(["cloud", [box.X(asked.cloud.x[index]), box.Y(asked.cloud.y[index])]]);
       seen.forEach(([k, [px, py]], i) => {
-        const { x, className } = asked.series?.[k] || asked.cloud;
+        const { x, className, of } = asked.series?.[k] || asked.cloud;
         if (!i && along()) node("path", { d: `M${px} 0V${box.h}`, class: "hair" }, box.marks);
-        if (py - py === 0) node("circle", { cx: px, cy: py, r: k === "cloud" ? 7 : 4.5, class: className || "" }, box.marks);
+        if (py - py === 0) node("circle", { cx: px, cy: py, r: k === "cloud" ? 7 : 4.5, class: of?.(index) ?? className ?? "" }, box.marks);
         if (!i && !asked.tip) foot.textContent = `${asked.xLabel} ${axes.say(x[index], 4)}`;
       });
       if (!asked.tip) readings.forEach(([place, k]) => (place.textContent = reading(index, k)));
@@ -207,5 +208,5 @@ const charts = (() => {
     return chart;
   }
 
-  return { plot, node, part };
+  return { plot, node, part, MARKS };
 })();
