@@ -21,7 +21,7 @@ from ribbonopt.text import marked_up
 from .packing import deflated
 from .view import View, contents
 
-CHARTS = ("axes.js", "paths.js", "pointer.js", "cloud.js", "charts.js")
+CHARTS = ("axes.js", "paths.js", "pointer.js", "cloud.js", "charts.js", "choice.js")
 PICTURE = ("colours.js", "camera.js", "mesh.js", "webgl.js", "painter.js")
 RIBBON = ("overlay.js", "hand.js", "ribbon.js", "panels.js")
 MORE: dict[str, tuple[str, ...]] = {"result": (), "branch": ("diagram.js",), "batch": ()}
