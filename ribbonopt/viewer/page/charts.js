@@ -8,7 +8,8 @@
 //   series: [{ x, y, name, className, dashed, smooth, corners, tx, ty, of }],
 //   points: [{ x, y, mark, className, title }],  // "dot", "square", "diamond", "triangle", "cross"
 //   regions: [{ x, y, className }],         // filled, cut off at the axes, do not set their ends
-//   cloud: { x, y, colour(i), cross(i) },   // on the canvas; NaN: not drawn
+//   cloud: { x, y, colour(i), cross(i), edge(i) }, // on the canvas; NaN: not drawn, but on the axis
+//                                           // if `edge` says so and the other value is known
 //   parts(svg, X, Y, node),                 // draws more with functions from values to pixels
 //   pick,                                   // "x": the nearest along x, "xy": the nearest point
 //   tip(index, series),                     // text beside the pointer; without, values in the head
@@ -101,7 +102,15 @@ const charts = (() => {
         const wide = ({ low, high }, pixels) => [(low + high - per * pixels) / 2, (low + high + per * pixels) / 2];
         [xa, ya] = [axes.make({ ...x, range: wide(xa, w) }), axes.make({ ...y, range: wide(ya, h) })];
       }
-      return { width, height, left, w, h, xa, ya, letters, X: (v) => xa.place(v) * w, Y: (v) => (1 - ya.place(v)) * h };
+      const X = (v) => xa.place(v) * w, Y = (v) => (1 - ya.place(v)) * h;
+      return { width, height, left, w, h, xa, ya, letters, X, Y, spot: (i) => spot(asked.cloud, i, X, Y, h) };
+    }
+
+    // Pixels of a point of the cloud.
+    function spot({ x, y, edge }, i, X, Y, h) {
+      const px = X(x[i]), py = Y(y[i]), lacks = [px, py].map(Number.isNaN);
+      if (lacks[0] === lacks[1] || !edge?.(i)) return [px, py];
+      return lacks[0] ? [0, py] : [px, h];
     }
 
     function draw() {
@@ -182,7 +191,68 @@ const charts = (() => {
       if (index === null) return;
       const spots = series === "cloud" ? [] : box.placed.map((own, k) => [k, own[index]]);
       const seen = spots.filter(([k, p]) => p && paths.isThere(p) && (series === undefined || series === k));
-      if (asked.cloud) seen.push(["cloud", [box.X(asked.cloud.x[index]), box.Y(asked.cloud.y[index])]]);
+      if (asked.cloud) seen.push(["cloud", box.spot(index)]);
+      seen.forEach(([k, [px, py]], i) => {
+        const { x, className, of } = asked.series?.[k] || asked.cloud;
+        if (!i && along()) node("path", { d: `M${px} 0V${box.h}`, class: "hair" }, box.marks);
+        if (py - py === 0) node("circle", { cx: px, cy: py, r: k === "cloud" ? 7 : 4.5, class: of?.(index) ?? className ?? "" }, box.marks);
+        if (!i && !asked.tip) foot.textContent = `${asked.xLabel} ${axes.say(x[index], 4)}`;
+      });
+      if (!asked.tip) readings.forEach(([place, k]) => (place.textContent = reading(index, k)));
+    }
+
+    // What a named curve says at a point, or its other part of the same class.
+    function reading(index, k) {
+      const { className } = asked.series?.[k] || {};
+      const own = (asked.series || []).filter((one, j) => j === k || (className && one.className === className));
+      const there = own.find(({ y }) => axes.known(y[index]));
+      return there ? axes.say(there.y[index], 4) : "";
+    }
+
+    const along = (t, v, axis) => (axis.log ? t / v / Math.LN10 : t) / (axis.high - axis.low);
+      return Array.from(x, (v, i) => [along(tx[i], v, xa) * w, -along(ty[i], y[i], ya) * h]);
+    }
+
+    function grid(whole) {
+      const { w, h, xa, ya, letters } = box;
+      const line = (d, at, axis) => {
+        const zero = !axis.words && Math.abs(axis.value(at)) < 1e-9 * (axis.high - axis.low);
+        node("path", { d, class: zero ? "grid zero" : "grid" }, whole);
+      };
+      const write = (at, text, full) => {
+        const made = node("text", at, whole);
+        made.textContent = text;
+        if (full !== text) node("title", {}, made).textContent = full;
+      };
+      let last = -Infinity;
+      const room = xa.words ? Math.max(6, Math.floor(w / Math.max(xa.ticks.length, 1) / 7)) : 99;
+      for (const { at, text } of xa.ticks) {
+        const px = at * w, short = axes.short(text, room), half = axes.width(short, FONT) / 2;
+        line(`M${px} 0V${h}`, at, xa);
+        if (px - half < last + 8 || px + half > w + SIDE) continue; // no room for it
+        last = px + half;
+        write({ x: px, y: h + 15, "text-anchor": "middle" }, short, text);
+      }
+      last = Infinity;
+      for (const { at, text } of ya.ticks) {
+        const py = (1 - at) * h;
+        line(`M0 ${py}H${w}`, at, ya);
+        if (py > last - 13) continue;
+        last = py;
+        write({ x: -GAP, y: py + 4, "text-anchor": "end" }, axes.short(text, letters), text);
+      }
+    }
+
+    function mark(index, series) {
+      marked = index === null ? null : [index, series];
+      if (!box) return;
+      box.marks.replaceChildren();
+      readings.forEach(([place]) => (place.textContent = ""));
+      foot.textContent = asked.xLabel || "";
+      if (index === null) return;
+      const spots = series === "cloud" ? [] : box.placed.map((own, k) => [k, own[index]]);
+      const seen = spots.filter(([k, p]) => p && paths.isThere(p) && (series === undefined || series === k));
+      if (asked.cloud) seen.push(["cloud", box.spot(index)]);
       seen.forEach(([k, [px, py]], i) => {
         const { x, className, of } = asked.series?.[k] || asked.cloud;
         if (!i && along()) node("path", { d: `M${px} 0V${box.h}`, class: "hair" }, box.marks);
