@@ -20,16 +20,13 @@ from ribbonopt.views.columns import numbers
 from ribbonopt.views.failures import failures_html
 from ribbonopt.views.histogram import distributions_html
 
-from .page import as_script, hash_of, joined, text_of
+from .parts import CHARTS, SCATTER, as_script, hash_of, joined, text_of
 from .rows import status_colours, table_of
 
 NONE = "--none"  # colour of ribbons that are missing
 FILES = ("table.csv", "rows.jsonl")
 SOLUTIONS = "solutions"  # folder beside the report; what is saved of ribbon 7 is in solutions/7
-SCRIPTS = (
-    *("axes.js", "paths.js", "pointer.js", "cloud.js", "charts.js", "choice.js"),
-    *("scatter.js", "table.js", "batch.js", "report.js"),
-)
+SCRIPTS = (*CHARTS, *SCATTER, "report.js")
 STYLES = ("colours.css", "charts.css", "report.css")
 
 
