@@ -209,60 +209,6 @@ const charts = (() => {
       return there ? axes.say(there.y[index], 4) : "";
     }
 
-    const along = (t, v, axis) => (axis.log ? t / v / Math.LN10 : t) / (axis.high - axis.low);
-      return Array.from(x, (v, i) => [along(tx[i], v, xa) * w, -along(ty[i], y[i], ya) * h]);
-    }
-
-    function grid(whole) {
-      const { w, h, xa, ya, letters } = box;
-      const line = (d, at, axis) => {
-        const zero = !axis.words && Math.abs(axis.value(at)) < 1e-9 * (axis.high - axis.low);
-        node("path", { d, class: zero ? "grid zero" : "grid" }, whole);
-      };
-      const write = (at, text, full) => {
-        const made = node("text", at, whole);
-        made.textContent = text;
-        if (full !== text) node("title", {}, made).textContent = full;
-      };
-      let last = -Infinity;
-      const room = xa.words ? Math.max(6, Math.floor(w / Math.max(xa.ticks.length, 1) / 7)) : 99;
-      for (const { at, text } of xa.ticks) {
-        const px = at * w, short = axes.short(text, room), half = axes.width(short, FONT) / 2;
-        line(`M${px} 0V${h}`, at, xa);
-        if (px - half < last + 8 || px + half > w + SIDE) continue; // no room for it
-        last = px + half;
-        write({ x: px, y: h + 15, "text-anchor": "middle" }, short, text);
-      }
-      last = Infinity;
-      for (const { at, text } of ya.ticks) {
-        const py = (1 - at) * h;
-        line(`M0 ${py}H${w}`, at, ya);
-        if (py > last - 13) continue;
-        last = py;
-        write({ x: -GAP, y: py + 4, "text-anchor": "end" }, axes.short(text, letters), text);
-      }
-    }
-
-    function mark(index, series) {
-      marked = index === null ? null : [index, series];
-      if (!box) return;
-      box.marks.replaceChildren();
-      readings.forEach(([place]) => (place.textContent = ""));
-      foot.textContent = asked.xLabel || "";
-      if (index === null) return;
-      const spots = series === "cloud" ? [] : box.placed.map((own, k) => [k, own[index]]);
-      const seen = spots.filter(([k, p]) => p && paths.isThere(p) && (series === undefined || series === k));
-      if (asked.cloud) seen.push(["cloud", box.spot(index)]);
-      seen.forEach(([k, [px, py]], i) => {
-        const { x, className, of } = asked.series?.[k] || asked.cloud;
-        if (!i && along()) node("path", { d: `M${px} 0V${box.h}`, class: "hair" }, box.marks);
-        if (py - py === 0) node("circle", { cx: px, cy: py, r: k === "cloud" ? 7 : 4.5, class: of?.(index) ?? className ?? "" }, box.marks);
-        if (!i && !asked.tip) foot.textContent = `${asked.xLabel} ${axes.say(x[index], 4)}`;
-      });
-      if (!asked.tip) readings.forEach(([place, k]) => (place.textContent = reading(index, k)));
-    }
-
-    const reading = (index, k) => (!asked.series?.[k] ? "" : axes.say(asked.series[k].y[index], 4));
     const along = () => (asked.pick || (pointer.ordered(asked.series || []) ? "x" : "xy")) === "x" && !asked.cloud;
 
     function told(index, series) {
