@@ -99,6 +99,17 @@ function makeApp() {
     });
   }
 
+  // Scatter and table of a batch. A row without a shape says so.
+  function drawBatch() {
+    get("diagram").hidden = get("table").hidden = false;
+    get("ribbon").hidden = get("panels").hidden = !view.shapes.length;
+    return batch.build(get("diagram"), get("table"), view.table, (row) => {
+      const i = view.shapes.findIndex((one) => one.row === row);
+      if (i >= 0) return show(i);
+      get("caption").textContent = `row ${row + 1}: its shape is not on this page`;
+    });
+  }
+
   async function begin() {
     await shapes.read();
     controls();
@@ -107,6 +118,7 @@ function makeApp() {
     const what = get("what");
     what.textContent = view.about;
     if (view.diagram) overview = drawDiagram();
+    if (view.table) overview = { mark: drawBatch().choose };
     if (view.shapes.length) show(0);
     document.documentElement.dataset.ready = "";
   }

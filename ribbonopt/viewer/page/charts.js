@@ -8,7 +8,8 @@
 //   series: [{ x, y, name, className, dashed, smooth, corners, tx, ty, of }],
 //   points: [{ x, y, mark, className, title }],  // "dot", "square", "diamond", "triangle", "cross"
 //   regions: [{ x, y, className }],         // filled, cut off at the axes, do not set their ends
-//   cloud: { x, y, colour(i), cross(i) },   // on the canvas; NaN: not drawn
+//   cloud: { x, y, colour(i), cross(i), edge(i) }, // on the canvas; NaN: not drawn, but on the axis
+//                                           // if `edge` says so and the other value is known
 //   parts(svg, X, Y, node),                 // draws more with functions from values to pixels
 //   pick,                                   // "x": the nearest along x, "xy": the nearest point
 //   tip(index, series),                     // text beside the pointer; without, values in the head
@@ -101,7 +102,15 @@ const charts = (() => {
         const wide = ({ low, high }, pixels) => [(low + high - per * pixels) / 2, (low + high + per * pixels) / 2];
         [xa, ya] = [axes.make({ ...x, range: wide(xa, w) }), axes.make({ ...y, range: wide(ya, h) })];
       }
-      return { width, height, left, w, h, xa, ya, letters, X: (v) => xa.place(v) * w, Y: (v) => (1 - ya.place(v)) * h };
+      const X = (v) => xa.place(v) * w, Y = (v) => (1 - ya.place(v)) * h;
+      return { width, height, left, w, h, xa, ya, letters, X, Y, spot: (i) => spot(asked.cloud, i, X, Y, h) };
+    }
+
+    // Pixels of a point of the cloud.
+    function spot({ x, y, edge }, i, X, Y, h) {
+      const px = X(x[i]), py = Y(y[i]), lacks = [px, py].map(Number.isNaN);
+      if (lacks[0] === lacks[1] || !edge?.(i)) return [px, py];
+      return lacks[0] ? [0, py] : [px, h];
     }
 
     function draw() {
@@ -182,7 +191,7 @@ const charts = (() => {
       if (index === null) return;
       const spots = series === "cloud" ? [] : box.placed.map((own, k) => [k, own[index]]);
       const seen = spots.filter(([k, p]) => p && paths.isThere(p) && (series === undefined || series === k));
-      if (asked.cloud) seen.push(["cloud", [box.X(asked.cloud.x[index]), box.Y(asked.cloud.y[index])]]);
+      if (asked.cloud) seen.push(["cloud", box.spot(index)]);
       seen.forEach(([k, [px, py]], i) => {
         const { x, className, of } = asked.series?.[k] || asked.cloud;
         if (!i && along()) node("path", { d: `M${px} 0V${box.h}`, class: "hair" }, box.marks);
@@ -192,7 +201,14 @@ const charts = (() => {
       if (!asked.tip) readings.forEach(([place, k]) => (place.textContent = reading(index, k)));
     }
 
-    const reading = (index, k) => (!asked.series?.[k] ? "" : axes.say(asked.series[k].y[index], 4));
+    // What a named curve says at a point, or its other part of the same class.
+    function reading(index, k) {
+      const { className } = asked.series?.[k] || {};
+      const own = (asked.series || []).filter((one, j) => j === k || (className && one.className === className));
+      const there = own.find(({ y }) => axes.known(y[index]));
+      return there ? axes.say(there.y[index], 4) : "";
+    }
+
     const along = () => (asked.pick || (pointer.ordered(asked.series || []) ? "x" : "xy")) === "x" && !asked.cloud;
 
     function told(index, series) {

@@ -1,15 +1,19 @@
 "use strict";
 // Thousands of points of a chart, on a canvas: ten thousand stay quick.
 const cloud = (() => {
-  function draw(canvas, { x, y, colour, cross }, { width, height, left, X, Y }, head) {
+  // `begin` and `end` are told of each drawing, and how many points and crosses there are.
+  function draw(canvas, { x, colour, cross, begin, end }, { width, height, left, spot }, head) {
     const dots = window.devicePixelRatio || 1, pen = canvas.getContext("2d");
     [canvas.width, canvas.height] = [Math.round(width * dots), Math.round(height * dots)];
     pen.setTransform(dots, 0, 0, dots, left * dots, head * dots);
     const size = x.length > 2000 ? 2 : x.length > 400 ? 2.6 : 3.6;
     const crosses = [];
+    let count = 0;
+    begin?.();
     for (let i = 0; i < x.length; i++) {
-      const px = X(x[i]), py = Y(y[i]);
+      const [px, py] = spot(i);
       if (px - px !== 0 || py - py !== 0) continue;
+      count++;
       if (cross && cross(i)) {
         crosses.push([px, py, i]);
         continue;
@@ -29,6 +33,7 @@ const cloud = (() => {
       }
       pen.stroke();
     }
+    end?.(count, crosses.length);
   }
 
   // What is on a canvas does not follow the style sheet by itself.

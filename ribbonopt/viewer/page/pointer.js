@@ -23,10 +23,8 @@ const pointer = (() => {
       if (gap < least) [best, least] = [[i, k], gap];
     };
     box.placed.forEach((own, k) => own.forEach(([x, y], i) => look(x, y, i, k)));
-    if (asked.cloud) {
-      const { x, y } = asked.cloud;
-      for (let i = 0; i < x.length; i++) look(box.X(x[i]), box.Y(y[i]), i, "cloud");
-    }
+    const count = asked.cloud ? asked.cloud.x.length : 0;
+    for (let i = 0; i < count; i++) look(...box.spot(i), i, "cloud");
     return best;
   }
 
@@ -58,8 +56,8 @@ const pointer = (() => {
     }
 
     function spot() {
-      const { X, Y, placed, left } = box(), [i, k] = here;
-      const [px, py] = k === "cloud" ? [X(asked().cloud.x[i]), Y(asked().cloud.y[i])] : placed[k][i];
+      const { placed, left } = box(), [i, k] = here;
+      const [px, py] = k === "cloud" ? box().spot(i) : placed[k][i];
       return [px + left, py + head];
     }
 
