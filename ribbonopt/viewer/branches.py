@@ -9,11 +9,15 @@ import numpy as np
 from ribbonopt.errors import ViewError
 from ribbonopt.output.summary import settings_of
 from ribbonopt.plain import Row, is_number
+from ribbonopt.scene.stages import stages_of
 from ribbonopt.studies.continuation.branch import Branch
 from ribbonopt.studies.continuation.walk.points import POINT
+from ribbonopt.studies.continuation.walk.steps import JUMPED
+from ribbonopt.views.branch_rows import VALUE, BranchFigure
 from ribbonopt.views.pieces import ROWS
 from ribbonopt.views.subject import subject_of
 
+from .diagram import diagram_of
 from .facts import about_of
 from .view import Ribbon, View
 from .width import width_of
@@ -53,7 +57,22 @@ def view_of_branch(branch: Branch, half_width: float | None = None) -> View:
     if len(chosen) < len(branch):
         count += f", {len(chosen)} of them with their shapes"
     about = ", ".join(filter(None, [count, law, words]))
-    return View("branch", branch.scene.name, about, ribbons, width, units=first.units)
+    diagram = diagram_of(figure_of(branch))
+    name = branch.scene.name
+    return View("branch", name, about, ribbons, width, diagram=diagram, units=first.units)
+
+
+def figure_of(branch: Branch) -> BranchFigure:
+    """Return what a diagram of a branch is made of; what the scene records is shown first."""
+    stages, formulas = stages_of(branch.scene), branch.continuation.recorder.formulas
+    return BranchFigure(
+        branch.rows,
+        tuple((VALUE, name) for name in list(formulas)[:1]),
+        title=branch.scene.name,
+        log=[stage.parameter for stage in stages if stage.scale == "log"],
+        jumps=[row["number"] for row in branch.rows if JUMPED in (row.get("note") or "")],
+        si=branch.scene.ribbon is not None,
+    )
 
 
 def chosen_of(rows: Sequence[Row], most: int = MOST) -> list[int]:

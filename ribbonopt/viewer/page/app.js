@@ -6,7 +6,7 @@ const PACE = 90; // milliseconds between shapes that are played
 
 function makeApp() {
   const get = (id) => document.getElementById(id);
-  let ribbon, panels, diagram;
+  let ribbon, panels, overview;
   let shape = -1;
   let playing = null;
 
@@ -22,7 +22,7 @@ function makeApp() {
     panels.show(i);
     tell(i);
     paint();
-    diagram?.select(i);
+    overview?.mark(view.shapes[i].row);
   }
 
   function tell(i) {
@@ -86,6 +86,19 @@ function makeApp() {
     get("play").onclick = () => play(!playing);
   }
 
+  // The diagram of a branch. Where few of many points have shapes, a click shows the nearest one.
+  function drawDiagram() {
+    get("diagram").hidden = false;
+    const far = (i, row) => Math.abs(view.shapes[i].row - row);
+    return diagram.build(get("diagram"), view.diagram, {
+      onClick: (row) => {
+        play(false);
+        show(view.shapes.reduce((best, _, i) => (far(i, row) < far(best, row) ? i : best), 0));
+      },
+      onLeave: () => overview.mark(view.shapes[shape].row),
+    });
+  }
+
   async function begin() {
     await shapes.read();
     controls();
@@ -93,10 +106,7 @@ function makeApp() {
     panels = makePanels(get("panels"), mark);
     const what = get("what");
     what.textContent = view.about;
-    if (view.diagram && typeof makeDiagram !== "undefined") {
-      get("diagram").hidden = false;
-      diagram = makeDiagram(get("diagram"), view.diagram, show);
-    }
+    if (view.diagram) overview = drawDiagram();
     if (view.shapes.length) show(0);
     document.documentElement.dataset.ready = "";
   }

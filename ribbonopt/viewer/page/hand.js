@@ -13,7 +13,6 @@ function followHand(canvas, camera, { draw, hover }) {
   canvas.addEventListener("pointerdown", (event) => {
     fingers.set(event.pointerId, place(event));
     canvas.setPointerCapture(event.pointerId);
-    canvas.focus({ preventScroll: true });
     hover(-1e6, -1e6);
   });
   for (const name of ["pointerup", "pointercancel"]) {
