@@ -64,6 +64,7 @@ const scatter = (() => {
     const legend = charts.part("div", "legend", element);
     const names = data.names.filter((_, k) => data.axis[k]), logs = {};
     const fields = {};
+    const nameOf = (key) => (key === "c" ? [PLAIN, ...names] : names)[fields[key].value];
     for (const axis of ["x", "y"]) {
       const group = charts.part("span", "", form);
       const chosen = Math.max(names.indexOf(data[axis]), 0);
@@ -73,7 +74,6 @@ const scatter = (() => {
     }
     const shown = charts.part("span", "", form), first = names.indexOf(data.c) + 1;
     fields.c = choice.column(shown, "colour", [PLAIN, ...names], first, () => show());
-    const nameOf = (key) => (key === "c" ? [PLAIN, ...names] : names)[fields[key].value];
 
     // Logarithmic axes where they can be, and ticked where they are usual, once a column is chosen.
     function suggest(key) {
