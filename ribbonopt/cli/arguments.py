@@ -28,6 +28,10 @@ VERBS = {
     "verify": ("compute numbers with sources again, and say which are confirmed", options.verify),
     "schema": ("print the JSON schema of scenes, for editors", options.schema),
     "plot": ("draw the pictures of a saved result", options_shown.plot),
+    "view": (
+        "write a page on which a saved result, branch or batch is turned and looked at",
+        options_shown.view,
+    ),
 }
 
 

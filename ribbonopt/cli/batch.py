@@ -126,7 +126,7 @@ def _draw(
 ) -> list[Path]:
     """Write the report, and the figures where they are wanted, and return where."""
     from ribbonopt.studies.batch.special import with_columns
-    from ribbonopt.views.report import write_report
+    from ribbonopt.viewer.report import write_report
 
     rows = [with_columns(row) for row in rows]
     report = write_report(rows, inputs, out / "report.html", name=name, count=count)

@@ -24,6 +24,7 @@ MODULES = {
     "solve": "scene",
     "check": "scene",
     "plot": "plot",
+    "view": "view",
     "schema": "scene",
     "compare": "comparison",
     "bench": "comparison",

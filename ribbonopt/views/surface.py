@@ -97,14 +97,19 @@ class Surface:
         return bool(max(w.max() for w in pieces) > min(w.min() for w in pieces))
 
     @property
+    def closing(self) -> int:
+        """1 for a ribbon that ends where it starts, -1 with its face turned over; else 0."""
+        return _closing(tuple(sheet.piece for sheet in self.sheets))
+
+    @property
     def closed(self) -> bool:
         """Whether the ribbon ends where it starts."""
-        return _closing(tuple(sheet.piece for sheet in self.sheets)) != 0
+        return self.closing != 0
 
     @property
     def one_sided(self) -> bool:
         """Whether the ribbon closes with its face turned over."""
-        return _closing(tuple(sheet.piece for sheet in self.sheets)) < 0
+        return self.closing < 0
 
 
 def sweep(pieces: tuple[Piece, ...], half_width: float | None = None) -> Surface:

@@ -12,10 +12,10 @@ import numpy as np
 import pytest
 
 from ribbonopt.errors import OutputError
-from ribbonopt.views import report
+from ribbonopt.viewer import report
 from ribbonopt.views.batch import plot_outcomes, plot_scatter, save_batch_figures, usual_pairs
 from ribbonopt.views.histogram import histogram_of
-from ribbonopt.views.report import write_report
+from ribbonopt.viewer.report import write_report
 from ribbonopt.views.style import BENDING, FAINT, INK, TWIST
 
 Row = dict[str, Any]
@@ -242,7 +242,7 @@ def test_ten_thousand_rows(tmp_path: Path) -> None:
 
 def test_it_loads_no_plotting_library(tmp_path: Path) -> None:
     code = (
-        "import sys; from ribbonopt.views.report import write_report\n"
+        "import sys; from ribbonopt.viewer.report import write_report\n"
         f"write_report([], (), {str(tmp_path / 'r.html')!r}, name='n', count=0)\n"
         "print('matplotlib' in sys.modules)"
     )

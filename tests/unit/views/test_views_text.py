@@ -15,7 +15,7 @@ from ribbonopt.views import page
 from ribbonopt.views.batch import plot_outcomes, plot_scatter
 from ribbonopt.views.branch import plot_branch
 from ribbonopt.views.comparison import plot_study
-from ribbonopt.views.report import write_report
+from ribbonopt.viewer.report import write_report
 from ribbonopt.views.style import blank, title
 
 LOOKS_WRONG = (
