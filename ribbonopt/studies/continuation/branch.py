@@ -15,11 +15,12 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, overload
 
-from ribbonopt.doors import door, embedded, frame_of
+from ribbonopt.doors import door, frame_of
 from ribbonopt.plain import Row, finite
 from ribbonopt.scene import Scene
 from ribbonopt.scene.continuation import ContinuationStage
 from ribbonopt.scene.stages import ends_of, stages_of
+from ribbonopt.solution.at_home import in_notebook
 from ribbonopt.solution.solution import Solution
 from ribbonopt.studies.columns import column_of, names_of
 from ribbonopt.text import one_line, shortened
@@ -181,7 +182,7 @@ class Branch(Sequence[Solution]):
         return f"<Branch {name}: {points}{special}; {goal}>"
 
     def _repr_html_(self) -> str | None:
-        return embedded(self)
+        return in_notebook(self)
 
     @property
     def _stages(self) -> tuple[ContinuationStage, ...]:
