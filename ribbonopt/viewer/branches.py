@@ -36,7 +36,9 @@ def view_of_branch(branch: Branch, half_width: float | None = None) -> View:
         If it has no points.
     """
     if not branch.rows:
-        raise ViewError(f"{branch.scene.name}: the branch has no points, so there is nothing to see")
+        raise ViewError(
+            f"{branch.scene.name}: the branch has no points, so there is nothing to see"
+        )
     chosen = chosen_of(branch.rows)
     rows = ROWS if len(chosen) <= MANY else FEW_ROWS
     subjects = [subject_of(branch[i], complete=True, rows=rows) for i in chosen]
@@ -99,7 +101,9 @@ def caption_of(row: Row) -> str:
     """Return what a point is: its number, where it is, whether it is stable."""
     kind = "" if row["kind"] == POINT else f"{row['kind']}, "
     where = f"{row['parameter'].rpartition('.')[2]} = {number_of(row[row['parameter']])}"
-    return f"point {row['number']}: {kind}{where}, {stability_of(row)}"
+    known = row["kind"] == POINT or row.get("negative") is not None
+    stability = f", {stability_of(row)}" if known else ""  # which changes at special points
+    return f"point {row['number']}: {kind}{where}{stability}"
 
 
 def stability_of(row: Row) -> str:

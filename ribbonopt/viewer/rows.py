@@ -35,9 +35,7 @@ Data = dict[str, object]
 """Plain data, as JSON has them."""
 
 
-def table_of(
-    rows: Rows, inputs: Sequence[str], links: Mapping[int, str] | None = None
-) -> Data:
+def table_of(rows: Rows, inputs: Sequence[str], links: Mapping[int, str] | None = None) -> Data:
     """Return what `page/scatter.js` and `page/table.js` draw.
 
     Parameters
