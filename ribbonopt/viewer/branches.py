@@ -61,7 +61,21 @@ def view_of_branch(branch: Branch, half_width: float | None = None) -> View:
     about = ", ".join(filter(None, [count, law, words]))
     diagram = diagram_of(figure_of(branch))
     name = branch.scene.name
-    return View("branch", name, about, ribbons, width, diagram=diagram, units=first.units)
+    few = left_out(len(branch), len(chosen), "points")
+    return View(
+        "branch",
+        *(name, about, ribbons, width),
+        diagram=diagram,
+        units=first.units,
+        left_out=few,
+    )
+
+
+def left_out(count: int, shown: int, what: str) -> tuple[str, ...]:
+    """Return what is to be said where a page has not the shapes of all points or ribbons."""
+    if shown == count:
+        return ()
+    return (f"the shapes of {count - shown} of {count} {what}: a page holds {MOST} at most",)
 
 
 def figure_of(branch: Branch) -> BranchFigure:

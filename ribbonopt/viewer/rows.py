@@ -10,6 +10,7 @@ from collections.abc import Mapping, Sequence
 
 from ribbonopt.plain import Row, Rows
 from ribbonopt.scene.quantities import START_VECTORS
+from ribbonopt.text import printable
 from ribbonopt.views.columns import (
     as_text,
     columns,
@@ -106,4 +107,4 @@ def _plain(row: Row, name: str, numeric: bool) -> float | int | str | None:
     value = row.get(name)
     if is_missing(value) or value is None:
         return None
-    return value if numeric else as_text(value)
+    return value if numeric else printable(as_text(value))

@@ -75,6 +75,10 @@ class View:
         To which all are drawn where their relative width is 1; each to one of its own if None.
     diagram, table : mapping or None
         Plain data of a branch's diagram, and of a batch's scatter and table.
+    units : Units
+        Of all of it.
+    left_out : tuple of str
+        What the page does not hold, and why.
     """
 
     kind: str
@@ -85,6 +89,7 @@ class View:
     diagram: Mapping[str, Any] | None = None
     table: Mapping[str, Any] | None = None
     units: Units = field(default_factory=Units)
+    left_out: tuple[str, ...] = ()
 
     @property
     def shapes(self) -> list[Shape]:
