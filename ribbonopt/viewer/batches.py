@@ -11,7 +11,7 @@ from ribbonopt.studies.batch.special import with_columns
 from ribbonopt.views.pieces import ROWS
 from ribbonopt.views.subject import subject_of
 
-from .branches import FEW_ROWS, MANY, MOST, evenly
+from .branches import FEW_ROWS, MANY, MOST, evenly, left_out
 from .facts import number_of
 from .rows import table_of
 from .view import Ribbon, View
@@ -56,7 +56,10 @@ def view_of_batch(batch: Batch, half_width: float | None = None) -> View:
     units = ribbons[0].subject.units if ribbons else Units()
     table = table_of([with_columns(row) for row in batch.rows], batch.inputs)
     about = ", ".join(filter(None, [_count(batch, len(saved), len(ribbons)), words]))
-    return View("batch", batch.name, about, ribbons, width, table=table, units=units)
+    few = left_out(len(saved), len(ribbons), "ribbons")
+    return View(
+        "batch", *(batch.name, about, ribbons, width), table=table, units=units, left_out=few
+    )
 
 
 def _solution(batch: Batch, number: int) -> Solution:

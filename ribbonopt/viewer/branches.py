@@ -36,7 +36,9 @@ def view_of_branch(branch: Branch, half_width: float | None = None) -> View:
         If it has no points.
     """
     if not branch.rows:
-        raise ViewError(f"{branch.scene.name}: the branch has no points, so there is nothing to see")
+        raise ViewError(
+            f"{branch.scene.name}: the branch has no points, so there is nothing to see"
+        )
     chosen = chosen_of(branch.rows)
     rows = ROWS if len(chosen) <= MANY else FEW_ROWS
     subjects = [subject_of(branch[i], complete=True, rows=rows) for i in chosen]
@@ -59,7 +61,21 @@ def view_of_branch(branch: Branch, half_width: float | None = None) -> View:
     about = ", ".join(filter(None, [count, law, words]))
     diagram = diagram_of(figure_of(branch))
     name = branch.scene.name
-    return View("branch", name, about, ribbons, width, diagram=diagram, units=first.units)
+    few = left_out(len(branch), len(chosen), "points")
+    return View(
+        "branch",
+        *(name, about, ribbons, width),
+        diagram=diagram,
+        units=first.units,
+        left_out=few,
+    )
+
+
+def left_out(count: int, shown: int, what: str) -> tuple[str, ...]:
+    """Return what is to be said where a page has not the shapes of all points or ribbons."""
+    if shown == count:
+        return ()
+    return (f"the shapes of {count - shown} of {count} {what}: a page holds {MOST} at most",)
 
 
 def figure_of(branch: Branch) -> BranchFigure:
@@ -76,7 +92,7 @@ def figure_of(branch: Branch) -> BranchFigure:
 
 
 def chosen_of(rows: Sequence[Row], most: int = MOST) -> list[int]:
-    """Return which points are shown: all, or special points and some evenly between, `most` at most.
+    """Return which points are shown, `most` at most: all, or special ones and some evenly between.
 
     First and last are among them.
     """
@@ -99,7 +115,9 @@ def caption_of(row: Row) -> str:
     """Return what a point is: its number, where it is, whether it is stable."""
     kind = "" if row["kind"] == POINT else f"{row['kind']}, "
     where = f"{row['parameter'].rpartition('.')[2]} = {number_of(row[row['parameter']])}"
-    return f"point {row['number']}: {kind}{where}, {stability_of(row)}"
+    known = row["kind"] == POINT or row.get("negative") is not None
+    stability = f", {stability_of(row)}" if known else ""  # which changes at special points
+    return f"point {row['number']}: {kind}{where}{stability}"
 
 
 def stability_of(row: Row) -> str:
@@ -113,15 +131,15 @@ def stability_of(row: Row) -> str:
 
 
 def numbers_of_row(row: Row) -> list[tuple[str, str]]:
-    """Return names and values of what a point records: parameters, formulas, the answer, its error."""
+    """Return names and values of what a point records: parameters, formulas, the answer, error."""
     names = [name for name in row if "." in name and is_number(row[name])]
     after = list(row)[list(row).index("u3") + 1 :] if "u3" in row else []
     own = [name for name in after if name not in names and is_number(row[name])]
     recorded = [name for name in own if name not in ("intervals", "iterations")]
     found = [(name, number_of(row.get(name))) for name in (*names, *recorded, "energy")]
     for name, label in (("n0", "force n(0), lab frame"), ("m0", "moment m(0), lab frame")):
-        parts = [row.get(f"{name}{axis}") for axis in "xyz"]
-        if None not in parts:
+        parts = [row[key] for axis in "xyz" if is_number(row.get(key := f"{name}{axis}"))]
+        if len(parts) == 3:
             found.append((label, vector_of(parts)))
     bar = row.get(LAST)
     return [*found, *([("relative error", f"{bar:.0e}")] if is_number(bar) else [])]

@@ -1,4 +1,4 @@
-"""Diagram of a branch for a page: columns to choose from, curves to draw, what is special of points.
+"""Diagram of a branch for a page: columns to choose from, curves to draw, special points.
 
 Plain data: `page/diagram.js` draws them. What a curve goes through and where it is cut is decided
 here, as for the figures (`ribbonopt.views.branch_rows`).
@@ -10,6 +10,7 @@ from collections import Counter
 
 from ribbonopt.plain import Row
 from ribbonopt.scene.quantities import ANSWERS
+from ribbonopt.text import printable
 from ribbonopt.views.branch_axes import COUNTS, LABELS, unit_of
 from ribbonopt.views.branch_rows import KINK, VALUE, BranchFigure, Plane
 from ribbonopt.views.branch_style import marks_of
@@ -58,7 +59,7 @@ def diagram_of(figure: BranchFigure) -> Data:
         **{key: [row[key] for row in rows] for key in ("number", "stage", "branch", "negative")},
         "kind": [row["kind"] for row in rows],
         "mark": [marks.get(row["number"], "") for row in rows],
-        "note": [row.get("note") or "" for row in rows],
+        "note": [printable(row.get("note") or "") for row in rows],
         "pieces": [
             {
                 "branch": piece.rows[-1]["branch"],
@@ -99,7 +100,7 @@ def _first(figure: BranchFigure, names: list[str]) -> tuple[str, str]:
 
 def _label(name: str, si: bool) -> str:
     unit = unit_of(name, si)
-    return LABELS.get(name, name) + (f" ({unit})" if unit else "")
+    return LABELS.get(name, printable(name)) + (f" ({unit})" if unit else "")
 
 
 def _value(row: Row, name: str) -> float | int | None:

@@ -112,7 +112,9 @@ def _summary(rows: Rows, name: str, count: int, colours: Mapping[str, str]) -> s
     counts = Counter(str(row["status"]) for row in rows)
     parts = [(status, counts[status], colour) for status, colour in colours.items()]
     parts += [("missing", missing, NONE)] if missing else []
-    bar = "".join(f'<div style="flex:{n} 0 0;background:var({colour})"></div>' for _, n, colour in parts)
+    bar = "".join(
+        f'<div style="flex:{n} 0 0;background:var({colour})"></div>' for _, n, colour in parts
+    )
     legend = "".join(
         f'<span><i style="background:var({colour})"></i>{marked_up(status)} {n}</span>'
         for status, n, colour in parts

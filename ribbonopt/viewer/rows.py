@@ -10,6 +10,7 @@ from collections.abc import Mapping, Sequence
 
 from ribbonopt.plain import Row, Rows
 from ribbonopt.scene.quantities import START_VECTORS
+from ribbonopt.text import printable
 from ribbonopt.views.columns import (
     as_text,
     columns,
@@ -35,9 +36,7 @@ Data = dict[str, object]
 """Plain data, as JSON has them."""
 
 
-def table_of(
-    rows: Rows, inputs: Sequence[str], links: Mapping[int, str] | None = None
-) -> Data:
+def table_of(rows: Rows, inputs: Sequence[str], links: Mapping[int, str] | None = None) -> Data:
     """Return what `page/scatter.js` and `page/table.js` draw.
 
     Parameters
@@ -108,4 +107,4 @@ def _plain(row: Row, name: str, numeric: bool) -> float | int | str | None:
     value = row.get(name)
     if is_missing(value) or value is None:
         return None
-    return value if numeric else as_text(value)
+    return value if numeric else printable(as_text(value))

@@ -213,7 +213,7 @@ const charts = (() => {
 
     function told(index, series) {
       if (asked.tip) return asked.tip(index, series);
-      return [foot.textContent, ...[...head.children].map((entry) => entry.textContent)].join(", ");
+      return [foot.textContent, ...[...head.children].map((entry) => [...entry.children].map((part) => part.textContent).join(" ").trim())].join(", ");
     }
 
     const chart = { mark, update, element };

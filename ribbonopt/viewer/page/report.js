@@ -9,6 +9,6 @@
   get("theme").hidden = false;
   get("theme").onclick = () => dark(!document.documentElement.classList.contains("dark"));
   if (!data.rows.length) return;
-  get("plot").hidden = false;
+  get("plot").hidden = get("all").hidden = false;
   batch.build(get("scatter"), get("rows"), data);
 })();
