@@ -25,7 +25,7 @@ RESERVED_NAMES = frozenset(
         *("benchmark.csv", "benchmark.json", "benchmark.png"),
         *("laws.csv", "laws.json", "laws.png", "special.csv", "special.png"),
         *("verification.csv", "verification.json", "verification.md"),
-        *("stress.csv", "stress.json", "stress.png"),
+        *("stress.csv", "stress.json", "stress.png", "view.html"),
     )
 )
 _EXECUTED = frozenset("=+-@")

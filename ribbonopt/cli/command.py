@@ -25,6 +25,7 @@ MODULES = {
     "check": "scene",
     "plot": "plot",
     "export": "export",
+    "view": "view",
     "schema": "scene",
     "compare": "comparison",
     "bench": "comparison",

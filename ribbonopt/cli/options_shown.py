@@ -41,3 +41,16 @@ def export(verb: argparse.ArgumentParser) -> None:
     verb.add_argument(
         "--piece", action="store_true", help="only what was solved, without what symmetry adds"
     )
+
+
+def view(verb: argparse.ArgumentParser) -> None:
+    """Options of `view`."""
+    verb.add_argument("result", metavar="RESULT", help="folder written by solve, continue or batch")
+    verb.add_argument("--out", metavar="FILE", help="the page (default: RESULT/view.html)")
+    verb.add_argument(
+        "--half-width",
+        metavar="W",
+        help="half-width to draw to, where the width is 1 in units of its own "
+        "(default: the ribbon's own, or one with which generatrices keep apart)",
+    )
+    verb.add_argument("--open", action="store_true", help="open the page in the browser")
