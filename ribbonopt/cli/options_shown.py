@@ -20,7 +20,7 @@ def export(verb: argparse.ArgumentParser) -> None:
     verb.add_argument(
         "--format",
         metavar="LIST",
-        help="some of vtp, obj, ply, stl, glb, csv, npz, json (default: the ending of --out, or "
+        help="some of vtp, glb, ply, obj, stl, csv, npz, json (default: the ending of --out, or "
         "vtp)",
     )
     verb.add_argument(

@@ -24,10 +24,10 @@ class Format(NamedTuple):
 #: by the endings of their main files
 FORMATS: Mapping[str, Format] = {
     "vtp": Format("surface, and line with directors, for ParaView", vtp.write, series=True),
-    "obj": Format("surface as text", obj.write),
-    "ply": Format("surface with all fields", ply.write),
-    "stl": Format("surface as bare triangles", stl.write),
     "glb": Format("coloured surface for Blender, browsers and slides", glb.write),
+    "ply": Format("surface with all fields", ply.write),
+    "obj": Format("surface as text", obj.write),
+    "stl": Format("surface as bare triangles", stl.write),
     "csv": Format("rows along s, and loads, as tables", tables.write),
     "npz": Format("all arrays, for numpy", arrays.write_npz),
     "json": Format("everything as text", arrays.write_json),

@@ -59,7 +59,7 @@ def export(
         A file, whose ending then is the format (`helix.glb`), or a folder for files that are named
         as the scene. Several ribbons have their numbers behind that name.
     formats
-        One or several of vtp, obj, ply, stl, glb, csv, npz, json; not needed where `path` ends
+        One or several of vtp, glb, ply, obj, stl, csv, npz, json; not needed where `path` ends
         with one.
     half_width
         Of the surface, in the scene's unit of length. Default: the ribbon's own where the scene

@@ -244,7 +244,7 @@ def test_in_python_as_on_the_command_line(here: Path, run: Run) -> None:
     assert len(paths) == len(branch)
     with pytest.raises(ModelError, match="format: found 'step', expected one of"):
         ribbonopt.export(branch, "points", ["step"])
-    with pytest.raises(ModelError, match="expected one or several of vtp, obj"):
+    with pytest.raises(ModelError, match="expected one or several of vtp, glb"):
         ribbonopt.export(branch, "points")
 
 
