@@ -17,6 +17,7 @@ _DEVICES = frozenset(("con", "prn", "aux", "nul", "conin$", "conout$", *_PORTS))
 #: what our own folders hold: a folder of results so named would be taken for a part of a result
 RESERVED_NAMES = frozenset(
     (
+        "exports",
         *("equilibria", "solutions", "scene.yaml", "summary.json", "solution.npz", "exports.json"),
         *("strains.png", "plane.png", "ribbon.png", "branch.png", "ribbons.png", "report.html"),
         *("outcomes.png", "scatter.png", "rows.jsonl", "table.csv", "study.json", "branch.jsonl"),
@@ -24,7 +25,7 @@ RESERVED_NAMES = frozenset(
         *("benchmark.csv", "benchmark.json", "benchmark.png"),
         *("laws.csv", "laws.json", "laws.png", "special.csv", "special.png"),
         *("verification.csv", "verification.json", "verification.md"),
-        *("stress.csv", "stress.json", "stress.png"),
+        *("stress.csv", "stress.json", "stress.png", "view.html"),
     )
 )
 _EXECUTED = frozenset("=+-@")

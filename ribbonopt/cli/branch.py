@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import argparse
 import gc
+import time
 from collections.abc import Generator
 from contextlib import closing
 from typing import TYPE_CHECKING, Any
 
 from ribbonopt.errors import SceneError
 
-from .branch_report import report
+from .branch_report import report, took
 from .common import (
     INTERRUPTED,
     NOT_CONVERGED,
@@ -18,6 +19,7 @@ from .common import (
     drawn,
     load,
     pairs_of,
+    refuse_idle_verbose,
     say_left_out,
 )
 from .progress import ProgressLine
@@ -38,7 +40,8 @@ BAR = 12
 
 def follow(options: argparse.Namespace) -> int:
     """Follow the branches of a scene's `continuation`."""
-    pairs = pairs_of(options.plot)
+    refuse_idle_verbose(options)
+    pairs, begun = pairs_of(options.plot), time.perf_counter()
     scene, _ = load(options)
     from ribbonopt.studies.continuation.continuation import Continuation
     from ribbonopt.studies.continuation.files import BranchFolder
@@ -64,7 +67,7 @@ def follow(options: argparse.Namespace) -> int:
             "--resume goes on from there"
         )
         return INTERRUPTED
-    return _tell(options, folder, continuation) or status
+    return _tell(options, folder, continuation, time.perf_counter() - begun) or status
 
 
 def draw(result: Path, out: Path, pairs: list[tuple[str, str]]) -> list[Path]:
@@ -124,7 +127,9 @@ def _usual(rows: Rows, recorder: Recorder) -> list[tuple[str, str]]:
     return [(x, name) for name in [*recorder.formulas, *others] or ["energy"]][:4]
 
 
-def _tell(options: argparse.Namespace, folder: BranchFolder, continuation: Continuation) -> int:
+def _tell(
+    options: argparse.Namespace, folder: BranchFolder, continuation: Continuation, seconds: float
+) -> int:
     ending = continuation.ending
     if options.json:
         say_json(
@@ -144,6 +149,8 @@ def _tell(options: argparse.Namespace, folder: BranchFolder, continuation: Conti
         )
     elif not options.quiet:
         say(report(folder, continuation))
+        if options.verbose:
+            say(took(folder, continuation, seconds))
     if ending.reached:
         return 0
     complain(

@@ -24,6 +24,9 @@ PICTURES = ("strains.png", "plane.png", "ribbon.png")
 BRANCH_PICTURES = ("branch.png", "ribbons.png")
 BATCH_PICTURES = ("report.html", "outcomes.png", "scatter.png", "special.png")
 
+#: what `ribbonopt.viewer` writes beside any of them
+PAGE = "view.html"
+
 
 def declare(folder: Path, names: Iterable[str]) -> None:
     """Add names of files or folders, directly in a folder, to those that are ours there."""

@@ -15,6 +15,7 @@ from dataclasses import replace
 from ribbonopt.errors import ModelError
 from ribbonopt.mechanics.ends.smallest import settled
 from ribbonopt.pipeline.prepared import Prepared, prepare
+from ribbonopt.pipeline.skipped import skipped
 from ribbonopt.problem.wellposed.reach import refuse_far_goals
 from ribbonopt.scene import Scene
 from ribbonopt.scene.continuation import ContinuationStage
@@ -22,6 +23,7 @@ from ribbonopt.scene.lens import value_at
 from ribbonopt.scene.stages import ends_of, stages_of
 from ribbonopt.scene.units import units_of
 from ribbonopt.solution.solution import Solution
+from ribbonopt.text import one_line, shortened
 
 from .curve import Curve
 from .recorded import Recorder
@@ -98,6 +100,11 @@ class Continuation:
         return followed(len(self.stages), self._stage, self.register, history)
 
     @property
+    def skipped(self) -> tuple[str, ...]:
+        """What its solves do not need and is therefore not made, each with its reason."""
+        return skipped(self.prepared.posed(), self.prepared.problem)
+
+    @property
     def endings(self) -> dict[Key, Ending]:
         """How each stage, and each branch switched to, has ended so far, by (stage, branch)."""
         return self.register.endings
@@ -117,6 +124,17 @@ class Continuation:
         done = sum((stage, count - 1) in mains for stage, count in enumerate(ways))
         where = f"{done} of {len(ways)} stages have ended" if done else "no stage has ended"
         return Ending(False, f"not followed to the end yet: {where}")
+
+    def __repr__(self) -> str:
+        """Say what is followed, and how far, in one line."""
+        name = shortened(one_line(self.scene.name), 40)
+        ways = [
+            f"{stage.parameter} from {stage.from_:.6g} to {end:.6g}"
+            for stage in self.stages
+            for end in ends_of(stage)
+        ]
+        done = f"{self.register.number} points so far" if self.register.number else "not begun"
+        return f"<Continuation {name}: {shortened('; '.join(ways), 160)}; {done}>"
 
     def _stage(self, number: int, before: Point[Solution] | None) -> RibbonStage:
         """Return a stage that begins where the one before has ended."""
