@@ -16,6 +16,7 @@ from ribbonopt.text import drawn
 from .branch import COLOURS
 from .columns import ColumnPair, as_text, is_logarithmic, is_numeric, numbers, varied, words
 from .histogram import histogram_of
+from .paper_style import sized, stroke
 from .style import BENDING, FAINT, INK, TWIST, blank, draw_all, tidy
 
 if TYPE_CHECKING:
@@ -81,14 +82,14 @@ def plot_outcomes(rows: Rows) -> Figure:
     # What is verified, and then what is frequent, at the top.
     for (verified, status), count in sorted(counts.items(), key=lambda item: (item[0][0], item[1])):
         bar = axes.barh(drawn(status), count, color=BENDING if verified else TWIST)
-        axes.bar_label(bar, padding=3, fontsize=9, color=INK)
+        axes.bar_label(bar, padding=3, fontsize=sized(9), color=INK)
     axes.margins(x=0.2)
     axes.set_xlabel("ribbons")
     axes.xaxis.set_major_locator(MaxNLocator(4, integer=True))
     for other, histogram in zip(others, histograms, strict=True):
         edges = np.array([histogram.edges(bar) for bar in histogram.bars]).reshape(-1, 2)
         good, bad = np.array([(bar.verified, bar.failed) for bar in histogram.bars]).T
-        style = {"align": "edge", "edgecolor": "white", "lw": 0.5}
+        style = {"align": "edge", "edgecolor": "white", "lw": stroke(0.5)}
         other.bar(edges[:, 0], good, np.diff(edges)[:, 0], color=BENDING, **style)
         other.bar(edges[:, 0], bad, np.diff(edges)[:, 0], good, color=TWIST, **style)
         other.set(xlabel=drawn(histogram.name), xscale="log" if histogram.log else "linear")
@@ -130,7 +131,7 @@ def _panel(figure: Figure, axes: Axes, rows: Rows, pair: ColumnPair, shade: str)
     _draw(figure, axes, good, _points(good, pair, scales), shade)
     crosses = _points(bad, pair, scales)
     known = np.isfinite(crosses)
-    marks: dict[str, Any] = {"marker": "x", "color": TWIST, "s": 22, "lw": 1.2, "zorder": 3}
+    marks: dict[str, Any] = {"marker": "x", "color": TWIST, "s": 22, "lw": stroke(1.2), "zorder": 3}
     axes.scatter(*crosses[known.all(axis=1)].T, **marks)
     # Those that have no answer are on the axis, which autoscaling knows nothing of.
     places = (axes.get_xaxis_transform(), axes.get_yaxis_transform())
@@ -144,7 +145,7 @@ def _panel(figure: Figure, axes: Axes, rows: Rows, pair: ColumnPair, shade: str)
     axes.autoscale_view()
     if known.any():
         title = f"{int(known.any(axis=1).sum())} failed"
-        axes.set_title(title, fontsize=9, color=TWIST, loc="right")
+        axes.set_title(title, fontsize=sized(9), color=TWIST, loc="right")
     for axis, name, scale in zip("xy", pair, scales, strict=True):
         axes.set(**{f"{axis}label": drawn(name)})
         if isinstance(scale, list):
@@ -174,14 +175,14 @@ def _draw(figure: Figure, axes: Axes, rows: Rows, points: np.ndarray, shade: str
             bar.ax.yaxis.set_major_formatter(FuncFormatter(lambda value, _: f"{value:g}"))
             bar.minorticks_off()
         bar.outline.set_visible(False)
-        bar.ax.tick_params(labelsize=9)
+        bar.ax.tick_params(labelsize=sized(9))
     elif shade:
         known = words(rows, shade)
         which = np.array([as_text(row.get(shade)) for row in rows])
         for word, colour in zip(known, PALETTE, strict=False):
             axes.scatter(*points[which == word].T, color=colour, label=drawn(word), **style)
         axes.scatter(*points[which == ""].T, color=FAINT, **style)
-        axes.legend(fontsize=8, frameon=False, title=drawn(shade), title_fontsize=8)
+        axes.legend(fontsize=sized(8), frameon=False, title=drawn(shade), title_fontsize=sized(8))
     else:
         axes.scatter(*points.T, color=BENDING, **style)
 

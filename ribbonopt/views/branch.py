@@ -24,6 +24,7 @@ from .branch_rows import KINK, POINT, BranchFigure, Piece, Plane
 from .branch_style import DOT, STYLES, UNKNOWN, mark_of, marks_of, state_of
 from .columns import ColumnPair
 from .curves import Array, curves_through
+from .paper_style import sized, stroke
 from .strip import plot_strip
 from .style import BENDING, FAINT, INK, SI, SPECIAL, TWIST, Drawn, blank, draw_all, tidy, title
 
@@ -92,7 +93,7 @@ def draw_branch(subject: BranchFigure, numbered: Sequence[int]) -> Figure:
     if subject.title:
         across = len(subject.axes_of(pairs[0])) if columns == 1 else min(columns, len(pairs))
         last = figure.axes[across - 1]
-        last.set_title(SI if subject.si else SPECIAL, loc="right", fontsize=9)
+        last.set_title(SI if subject.si else SPECIAL, loc="right", fontsize=sized(9))
     _legend(figure, subject, bool(numbered))
     return figure
 
@@ -188,7 +189,7 @@ def _behind(plane: Plane, curves: Sequence[Array], later: Sequence[Sequence[Arra
 def _plain(subject: BranchFigure) -> dict[str, Any]:
     """Return how curves are drawn where stability is known nowhere; nothing where it is."""
     known = any(state_of(row) != UNKNOWN for row in subject.rows)
-    return {} if known else {"ls": "-", "lw": 1.6}
+    return {} if known else {"ls": "-", "lw": stroke(1.6)}
 
 
 def _caption(row: Row, subject: BranchFigure) -> str:
@@ -210,7 +211,7 @@ def _legend(figure: Figure, subject: BranchFigure, numbers: bool) -> None:
     branches = sorted({row["branch"] for row in drawn})
     entries: dict[str, dict[str, Any]] = {}
     for branch in branches if len(branches) > 1 else []:
-        entries[f"branch {branch}"] = {"color": COLOURS[branch % len(COLOURS)], "lw": 3}
+        entries[f"branch {branch}"] = {"color": COLOURS[branch % len(COLOURS)], "lw": stroke(3)}
     for name in (name for name in STYLES if name in names):
         count = sum(row["kind"] != POINT and mark_of(row) == name for row in drawn)
         plain = _plain(subject) if name == UNKNOWN else {}
@@ -221,4 +222,4 @@ def _legend(figure: Figure, subject: BranchFigure, numbers: bool) -> None:
         handles[-1].set_linestyle("")
     wide = max(1, int(figure.get_figwidth() / ENTRY))
     n = math.ceil(len(handles) / math.ceil(len(handles) / wide)) if handles else 1
-    figure.legend(handles=handles, loc="outside lower center", ncols=n, frameon=False, fontsize=9)
+    figure.legend(handles=handles, loc="outside lower center", ncols=n, frameon=False, fontsize=sized(9))

@@ -18,6 +18,7 @@ from ribbonopt.text import drawn
 from .branch import COLOURS
 from .branch_style import STYLES, mark_of
 from .columns import is_logarithmic, is_numeric, numbers, words
+from .paper_style import sized, stroke
 from .style import FAINT, INK, blank, tidy
 
 if TYPE_CHECKING:
@@ -56,7 +57,7 @@ def plot_special(rows: Rows, inputs: Sequence[str]) -> Figure:
         for kind, colour in colours.items():
             _draw(panel, [r for r in mine if _kind(r, axes.colour) == kind], axes.x, colour)
         names = [drawn(word) for word in (down, _titled(axes.across, beside)) if word]
-        panel.set_title(", ".join(names), fontsize=9, color=INK, loc="left")
+        panel.set_title(", ".join(names), fontsize=sized(9), color=INK, loc="left")
         panel.grid(True, color=FAINT, alpha=0.2)
         tidy(panel)
     if is_logarithmic(numbers(rows, axes.x)):
@@ -86,12 +87,12 @@ def _draw(axes: Axes, rows: Rows, x: str, colour: str) -> None:
         places = [place for row in rows if (place := _place(row, x, i))]
         known = sorted((at, value, kind) for at, value, kind in places if at is not None)
         if known:
-            axes.plot([p[0] for p in known], [p[1] for p in known], color=colour, lw=1.4)
+            axes.plot([p[0] for p in known], [p[1] for p in known], color=colour, lw=stroke(1.4))
         for where, value, kind in known:
-            axes.plot(where, value, **STYLES[kind] | {"mec": colour, "ms": 6})
+            axes.plot(where, value, **STYLES[kind] | {"mec": colour, "ms": stroke(6)})
         for at, value, _ in places:
             if at is None:
-                axes.axhline(value, color=colour, lw=1.2, ls=(0, (5, 2)))
+                axes.axhline(value, color=colour, lw=stroke(1.2), ls=(0, (5, 2)))
 
 
 def _place(row: Row, x: str, i: int) -> Place | None:
@@ -108,13 +109,13 @@ def _place(row: Row, x: str, i: int) -> Place | None:
 def _legend(figure: Figure, rows: Rows, colours: Mapping[str, str]) -> None:
     from matplotlib.lines import Line2D
 
-    lines = {drawn(kind): {"color": colour, "lw": 2} for kind, colour in colours.items() if kind}
+    lines = {drawn(kind): {"color": colour, "lw": stroke(2)} for kind, colour in colours.items() if kind}
     marks = dict.fromkeys(mark_of(point) for row in rows for point in row[SPECIALS])
     entries: dict[str, dict[str, Any]] = lines | {mark: STYLES[mark] for mark in marks}
     handles = [Line2D([], [], label=text, **style) for text, style in entries.items()]
     count = max(1, int(figure.get_figwidth() / 1.6))
     figure.legend(
-        handles=handles, loc="outside lower center", ncols=count, frameon=False, fontsize=9
+        handles=handles, loc="outside lower center", ncols=count, frameon=False, fontsize=sized(9)
     )
 
 

@@ -13,6 +13,7 @@ from ribbonopt.solution.solution import Solution
 
 from .camera import place_camera
 from .facets import SEAM, draw_surface
+from .paper_style import sized
 from .ribbon import paint, scale_bar
 from .style import FAINT, INK, blank
 from .subject import subject_of
@@ -55,8 +56,8 @@ def plot_strip(ribbons: Sequence[Solution], captions: Sequence[str]) -> Figure:
         paint(axes, replace(drawing, line_widths=np.maximum(0.6 * drawing.line_widths, SEAM)))
         axes.set(xlim=box[:2], ylim=box[2:], aspect="equal", xticks=[], yticks=[])
         axes.spines[:].set_visible(False)
-        axes.set_xlabel(text, fontsize=9, color=INK)
+        axes.set_xlabel(text, fontsize=sized(9), color=INK)
     scale_bar(panels[0], box, size, " m" if subjects[0].units.si else "")
     note = "; light: by symmetry" if any(subject.mirrored for subject in subjects) else ""
-    figure.supxlabel(f"one scale, one view{note}", fontsize=8.5, color=FAINT)
+    figure.supxlabel(f"one scale, one view{note}", fontsize=sized(8.5), color=FAINT)
     return figure
