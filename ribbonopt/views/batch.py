@@ -13,7 +13,7 @@ import numpy as np
 from ribbonopt.plain import SPECIALS, Rows, is_number
 from ribbonopt.text import drawn
 
-from .branch import COLOURS
+from .branch_style import COLOURS
 from .columns import ColumnPair, as_text, is_logarithmic, is_numeric, numbers, varied, words
 from .histogram import histogram_of
 from .paper_style import sized, stroke

@@ -14,7 +14,7 @@ from ribbonopt.classes import dataclass
 
 from .acting import Acting, Site
 from .camera import Camera
-from .paper_style import sized, stroke
+from .paper_style import stroke
 from .pieces import Array
 from .style import INK, TWIST
 from .surface import Surface

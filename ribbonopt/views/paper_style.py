@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 from contextlib import contextmanager
+from dataclasses import field
 from functools import cache
 from typing import Annotated, Any, Literal
 
@@ -79,6 +80,8 @@ class Style:
         two sides.
     half_width : float or None
         To which ribbons are drawn; None as in `plot_ribbon`.
+    labels : dict
+        What columns are called beside axes, with formulas between $; goes before what scenes say.
     """
 
     width: Inches | None = None
@@ -93,6 +96,7 @@ class Style:
     camera: str = ""
     color: str = ""
     half_width: Annotated[float, Bounds(gt=0)] | None = None
+    labels: dict[str, str] = field(default_factory=dict)
 
     @property
     def narrow(self) -> bool:
@@ -149,7 +153,6 @@ class Style:
 PLAIN = Style()
 
 
-@cache
 def settings_of(style: Style) -> dict[str, Any]:
     """Return the settings of matplotlib that a style stands for; ModelError where it is faulty."""
     try:
@@ -163,6 +166,7 @@ def settings_of(style: Style) -> dict[str, Any]:
     return found | FILES | _font(style.font)
 
 
+@cache
 def _font(name: str) -> Mapping[str, Any]:
     """Return the settings of a font; ModelError where this machine has none of that family."""
     if name in FONTS:

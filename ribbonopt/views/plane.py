@@ -93,7 +93,13 @@ def draw_plane(subject: Subject, style: Style = PLAIN) -> Figure:
     axes.set_xlabel(subject.label(r"bending strain $u_2$", "1/m"))
     axes.set_ylabel(subject.label(r"twisting strain $u_3$", "1/m"))
     head(axes, subject.name, subject.units)
-    figure.legend(loc="outside lower center", ncols=columns, labelspacing=0.3, frameon=False, fontsize=sized(9))
+    figure.legend(
+        loc="outside lower center",
+        ncols=columns,
+        labelspacing=0.3,
+        frameon=False,
+        fontsize=sized(9),
+    )
     tidy(axes)
     return figure
 

@@ -10,13 +10,14 @@ from ribbonopt.solution.solution import Solution
 
 from .camera import Camera, camera_for
 from .facets import Drawing, draw_surface
+from .generatrices import ETA_BOUND, LEAP_SLOPE
 from .lettering import wrapped
 from .marks import marks_of, paint_marks
 from .paper_style import PLAIN, USUAL, Style, sized, stroke
 from .pieces import Array
 from .style import FAINT, INK, blank, head
 from .subject import Subject, subject_of
-from .surface import ETA_BOUND, LEAP_SLOPE, Surface, sweep
+from .surface import Surface, sweep
 from .tint import tint_of
 
 if TYPE_CHECKING:
@@ -55,9 +56,7 @@ def plot_ribbon(
         return draw_ribbon(subject_of(solution, complete), half_width, style)
 
 
-def draw_ribbon(
-    subject: Subject, half_width: float | None = None, style: Style = PLAIN
-) -> Figure:
+def draw_ribbon(subject: Subject, half_width: float | None = None, style: Style = PLAIN) -> Figure:
     """Draw a ribbon; a rod with u1 as a strip along d2, which is straight across."""
     pieces = subject.pieces
     half_width = style.half_width if half_width is None else half_width

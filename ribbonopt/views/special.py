@@ -15,8 +15,7 @@ from ribbonopt.classes import dataclass
 from ribbonopt.plain import SPECIALS, Row, Rows, is_number
 from ribbonopt.text import drawn
 
-from .branch import COLOURS
-from .branch_style import STYLES, mark_of
+from .branch_style import COLOURS, STYLES, mark_of
 from .columns import is_logarithmic, is_numeric, numbers, words
 from .paper_style import sized, stroke
 from .style import FAINT, INK, blank, tidy
@@ -109,7 +108,9 @@ def _place(row: Row, x: str, i: int) -> Place | None:
 def _legend(figure: Figure, rows: Rows, colours: Mapping[str, str]) -> None:
     from matplotlib.lines import Line2D
 
-    lines = {drawn(kind): {"color": colour, "lw": stroke(2)} for kind, colour in colours.items() if kind}
+    lines = {
+        drawn(kind): {"color": colour, "lw": stroke(2)} for kind, colour in colours.items() if kind
+    }
     marks = dict.fromkeys(mark_of(point) for row in rows for point in row[SPECIALS])
     entries: dict[str, dict[str, Any]] = lines | {mark: STYLES[mark] for mark in marks}
     handles = [Line2D([], [], label=text, **style) for text, style in entries.items()]

@@ -41,9 +41,7 @@ LINES: Mapping[str, tuple[str, str]] = {
 }
 
 
-def plot_strains(
-    solution: Solution, complete: bool = True, style: Style = PLAIN
-) -> Figure:
+def plot_strains(solution: Solution, complete: bool = True, style: Style = PLAIN) -> Figure:
     """Plot u2, u3 and eta against s; u1, u2 and u3 where u1 is free.
 
     Parameters
