@@ -52,8 +52,8 @@ def plot_branch(
     """Plot quantity y against x, where "value" is the parameter; rows without either are left out.
 
     Parameters that differ by stage get axes each. `log` says whether they are logarithmic, or which
-    columns are; with values that are not positive they are not. `labels` are what columns are called
-    beside the axes, with formulas between $; `si` says whether numbers are in SI units.
+    columns are; with values that are not positive they are not. `labels` are what columns are
+    called beside the axes, with formulas between $; `si` says whether numbers are in SI units.
     """
     names = {row["parameter"] for row in rows}
     figure = BranchFigure(
@@ -119,7 +119,8 @@ def draw_branch(
     figure = blank(width, 5.4 if count == 1 else 3.8 * count + 0.6, style)
     grid = figure.add_gridspec(count, columns)
     for i, pair in enumerate(pairs):
-        _panel(figure, grid[divmod(i, columns)], subject, pair, numbered)
+        written = () if inside and i == 0 else numbered  # there are the ribbons themselves
+        _panel(figure, grid[divmod(i, columns)], subject, pair, numbered, written)
     title(figure.axes[0], subject.title)
     if subject.title and style.titles:
         across = len(subject.axes_of(pairs[0])) if columns == 1 else min(columns, len(pairs))
@@ -137,6 +138,7 @@ def _panel(
     subject: BranchFigure,
     pair: ColumnPair,
     numbered: Sequence[int],
+    written: Sequence[int],
 ) -> None:
     """Draw one pair of quantities, on axes of each parameter if these differ."""
     planes, first = subject.axes_of(pair), None
@@ -146,7 +148,7 @@ def _panel(
         axes = figure.add_subplot(inner[i], sharey=beside)
         first = first or axes
         if plane.rows:
-            _draw(axes, plane, numbered)
+            _draw(axes, plane, numbered, written)
         else:
             words: dict[str, Any] = {"ha": "center", "color": FAINT, "transform": axes.transAxes}
             axes.text(0.5, 0.5, "nothing recorded", **words)
@@ -158,8 +160,8 @@ def _panel(
         axes.tick_params(labelleft=beside is None)
 
 
-def _draw(axes: Axes, plane: Plane, numbered: Sequence[int]) -> None:
-    """Draw curves, marks and numbers of a plane that has points."""
+def _draw(axes: Axes, plane: Plane, numbered: Sequence[int], written: Sequence[int]) -> None:
+    """Draw curves, marks, dots and numbers of a plane that has points."""
     plain = plain_of(plane.figure)
     curves = [_curves(plane, piece) for piece in plane.pieces]
     for i, (piece, found) in enumerate(zip(plane.pieces, curves, strict=True)):
@@ -175,7 +177,7 @@ def _draw(axes: Axes, plane: Plane, numbered: Sequence[int]) -> None:
     regular = [row for row in plane.rows if row["number"] in numbered and row["kind"] == POINT]
     if regular:
         axes.plot(*plane.points(regular), ls="", color=INK, label="_", **thinner(DOT))
-    write_numbers(axes, plane, numbered, [curve for found in curves for curve in found])
+    write_numbers(axes, plane, written, [curve for found in curves for curve in found])
 
 
 def _curves(plane: Plane, piece: Piece) -> list[Array]:

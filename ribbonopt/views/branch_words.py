@@ -11,19 +11,21 @@ from ribbonopt.text import drawn
 from .branch_axes import label, unit_of
 from .branch_rows import POINT, BranchFigure
 from .branch_style import COLOURS, DOT, STYLES, UNKNOWN, mark_of, state_of
-from .paper_style import sized, spaced, thinner
+from .lettering import LETTER
+from .paper_style import NARROW, sized, spaced, thinner
 from .style import INK
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 ENTRY = 2.2  # inches for one of the legend
+HANDLE = 0.65  # inches of its line or mark, and between two
 
 
 def plain_of(subject: BranchFigure) -> dict[str, Any]:
     """Return how curves are drawn where stability is known nowhere; nothing where it is."""
     known = any(state_of(row) != UNKNOWN for row in subject.rows)
-    return {} if known else {"ls": "-", "lw": stroke(1.6)}
+    return {} if known else {"ls": "-", "lw": 1.6}
 
 
 def caption_of(row: Row, subject: BranchFigure) -> str:
@@ -50,7 +52,7 @@ def write_legend(figure: Figure, subject: BranchFigure, numbers: str) -> None:
     branches = sorted({row["branch"] for row in drawn})
     entries: dict[str, dict[str, Any]] = {}
     for branch in branches if len(branches) > 1 else []:
-        entries[f"branch {branch}"] = {"color": COLOURS[branch % len(COLOURS)], "lw": stroke(3)}
+        entries[f"branch {branch}"] = {"color": COLOURS[branch % len(COLOURS)], "lw": 3}
     for name in (name for name in STYLES if name in names):
         count = sum(row["kind"] != POINT and mark_of(row) == name for row in drawn)
         plain = plain_of(subject) if name == UNKNOWN else {}
@@ -58,7 +60,14 @@ def write_legend(figure: Figure, subject: BranchFigure, numbers: str) -> None:
     if numbers:
         entries[f"numbers: points in {numbers}"] = {"color": INK, "ls": ""} | DOT
     handles = [Line2D([], [], label=text, **thinner(style)) for text, style in entries.items()]
-    wide = max(1, int(figure.get_figwidth() / spaced(ENTRY)))
+    longest = max((len(text) for text in entries), default=0)
+    entry = max(spaced(ENTRY) if figure.get_figwidth() > NARROW else 0, worded(longest))
+    wide = max(1, int(figure.get_figwidth() / entry))
     n = math.ceil(len(handles) / math.ceil(len(handles) / wide)) if handles else 1
     look = {"ncols": n, "frameon": False, "fontsize": sized(9)}
     figure.legend(handles=handles, loc="outside lower center", **look)
+
+
+def worded(letters: int) -> float:
+    """Return the inches that an entry of so many letters takes."""
+    return spaced(HANDLE) + LETTER * letters * sized(9) / 72

@@ -22,7 +22,7 @@ AMBIENT = 0.5
 GLOSS = 0.16
 ONE_WAY = 0.5  # mean of unit vectors of forces that go about one way
 UPRIGHT = 4.0  # how much rather forces are seen upright
-AXES = {"x": (0, 0), "y": (90, 0), "z": (-90, 90)}  # azimuth and elevation (degrees)
+AXES = {"x": (0.0, 0.0), "y": (90.0, 0.0), "z": (-90.0, 90.0)}  # azimuth and elevation (degrees)
 FACING = 0.5  # a face this frontal (cosine) needs not be more so
 
 

@@ -23,12 +23,13 @@ if TYPE_CHECKING:
     from matplotlib.axes import Axes
 
 MOST = 12  # ribbons in a diagram
-LARGEST, LEAST = 0.28, 0.12  # of the axes: width and height of an inset
+LARGEST, LEAST = 0.34, 0.14  # of the axes: width and height of an inset
 WIDER = 0.3  # of what is drawn: room above and below it
 STEPS = 25  # places along each side that are tried
 APART = 0.012  # of the axes: least room between insets, and between these and the frame
 CROSSED = 4.0  # what it costs to lie on one sample of a curve, in lengths of the axes
 SAMPLES = 24  # of a line from an inset to its point
+BELOW = 0.04  # of their size: room below ribbons
 THIN = 0.55  # lines of ribbons, of the width of others
 
 
@@ -53,25 +54,28 @@ def draw_insets(
     marks = _within(axes, points)
     taken = _samples([_within(axes, curve) for curve in curves if curve.shape[1]])
     size = _size(axes, album, len(ribbons))
-    found = corners_of(marks, size, taken)
+    found, box = corners_of(marks, size, taken), album.box(BELOW)
+    low, high = np.array([box.left, box.low]), np.array([box.right, box.high])
     for number, drawing, mark, corner in zip(
         ribbons, album.drawings, marks.T, found.T, strict=True
     ):
         inset = axes.inset_axes((*corner, *size), zorder=3)
         inset.patch.set_alpha(0.0)
-        place(inset, drawing, album.box(below=0.04), THIN)
+        place(inset, drawing, box, THIN)
         inset.text(
-            *(0.0, 1.0, str(number)),
+            *(0.0, 0.5, f"{number} "),
             transform=inset.transAxes,
             fontsize=sized(8),
             color=INK,
-            va="top",
+            ha="right",
+            va="center",
         )
-        near = np.clip(mark, corner, corner + size)
+        seen = corner + size * (drawing.corners.reshape(-1, 2) - low) / (high - low)
+        near = seen[np.hypot(*(seen - mark).T).argmin()]
         ends = np.stack([mark, near], axis=1)
         axes.plot(*ends, transform=axes.transAxes, color=FAINT, lw=stroke(0.6), label="_lead")
     if album.tint:
-        album.tint.bar(axes.figure, axes)  # type: ignore[arg-type]
+        album.tint.bar(axes.figure.axes)
 
 
 def corners_of(marks: Array, size: Array, taken: Array) -> Array:
@@ -109,7 +113,7 @@ def corners_of(marks: Array, size: Array, taken: Array) -> Array:
         share = np.linspace(0, 1, SAMPLES)[:, None]
         ways.append(mark + share * (near[int(cost.argmin())] - mark))
     order = np.argsort(np.argsort(room))
-    return np.array([found[i] for i in order]).T
+    return np.stack([found[i] for i in order], axis=1)
 
 
 def _make_room(axes: Axes) -> None:
@@ -141,11 +145,11 @@ def _samples(curves: Sequence[Array]) -> Array:
 
 def _size(axes: Axes, album: Album, count: int) -> Array:
     """Return width and height (2,) of insets, in shares of the axes."""
-    box = album.box(below=0.04)
+    box = album.box(BELOW)
     tall = (box.high - box.low) / (box.right - box.left)
     frame = axes.get_position()
-    page = axes.figure
-    shape = frame.height * page.get_figheight() / (frame.width * page.get_figwidth())
+    page = axes.figure.bbox
+    shape = frame.height * page.height / (frame.width * page.width)
     largest = np.clip(LARGEST * np.sqrt(4 / max(count, 4)), LEAST, LARGEST)
     size = np.array([1.0, tall / shape])
     return np.asarray(size * largest / max(float(size.max()), 1.0))

@@ -151,7 +151,7 @@ class _Artist:
         """Return most of a circle (k, 2) about a moment (3,), right-handed, around the ribbon."""
         sheet, row = self.surface.at(s)
         middle, axis = sheet.piece.r[row], moment / np.linalg.norm(moment)
-        out = np.linalg.norm(sheet.sized(1)[row] - middle)
+        out = np.linalg.norm(sheet.points(1)[row] - middle)
         frame = (sheet.piece.d1[row], sheet.piece.d2[row], sheet.piece.d3[row])
         across = [v - (v @ axis) * axis for v in frame]
         first = _unit(max(across, key=lambda v: float(v @ v)))
@@ -206,7 +206,7 @@ class _Artist:
     def _beside(self, s: float, way: Array) -> Array:
         """Return the point (2,) that is so far from the centre line as the ribbon reaches."""
         sheet, row = self.surface.at(s)
-        reach = self._seen(sheet.sized(1)[row] - sheet.piece.r[row])
+        reach = self._seen(sheet.points(1)[row] - sheet.piece.r[row])
         return np.asarray(self._point(s) + abs(reach @ way) * way)
 
     def _seen(self, vectors: Array) -> Array:

@@ -115,7 +115,7 @@ class Style:
         """Width of lines, over that in a figure of its own size."""
         if self.line_scale is not None:
             return self.line_scale
-        return min((self.width or PAGE) / PAGE, 1.0) ** 0.5
+        return float(np.sqrt(min((self.width or PAGE) / PAGE, 1.0)))
 
     def page(self, width: float, height: float) -> tuple[float, float]:
         """Return the size of a figure (inches) that by itself has another.
@@ -146,7 +146,8 @@ class Style:
         """
         import matplotlib
 
-        with matplotlib.rc_context(settings_of(self)):
+        settings: Any = settings_of(self)  # any version of matplotlib knows these names
+        with matplotlib.rc_context(settings):
             yield
 
 
@@ -163,7 +164,7 @@ def settings_of(style: Style) -> dict[str, Any]:
     size = style.type_size / USUAL
     found: dict[str, Any] = {name: value * size for name, value in TYPE.items()}
     found |= {name: value * style.lines for name, value in SPACE.items()}
-    return found | FILES | _font(style.font)
+    return {**found, **FILES, **_font(style.font)}
 
 
 @cache
@@ -209,6 +210,11 @@ def stroke(width: float) -> float:
     from matplotlib import rcParams
 
     return width * float(rcParams["lines.linewidth"]) / SPACE["lines.linewidth"]
+
+
+def area(size: float) -> float:
+    """Return the area of a dot that has this one in a figure of its own size. In `applied`."""
+    return size * stroke(1) ** 2
 
 
 def thinner(look: Mapping[str, Any]) -> dict[str, Any]:

@@ -19,7 +19,7 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
-WIDTH = 6.6  # inches
+WIDTH, TITLE = 6.6, 0.3  # inches
 STRAIGHT = 1e-9  # largest strain, times L, of a ribbon that counts as straight
 
 
@@ -52,7 +52,8 @@ def draw_plane(subject: Subject, style: Style = PLAIN) -> Figure:
     (left, right), (low, high) = _limits(pieces, subject.units.strain)
     shape = (high - low) / (right - left)
     width, columns = style.width or WIDTH, 1 if style.narrow else 2
-    words = 1.75 + 0.22 * ((1 if subject.mirrored else 0) if columns == 2 else 2)
+    words = (1.3 if columns == 2 else 1.0) + 0.25 * (4 + bool(subject.mirrored)) / columns
+    words -= 0 if style.titles else TITLE
     figure = blank(width, words * style.type_size / USUAL + 5.6 / WIDTH * width * shape, style)
     axes = figure.add_subplot()
     far = 2 * max(-left, right, -low, high)
@@ -93,13 +94,9 @@ def draw_plane(subject: Subject, style: Style = PLAIN) -> Figure:
     axes.set_xlabel(subject.label(r"bending strain $u_2$", "1/m"))
     axes.set_ylabel(subject.label(r"twisting strain $u_3$", "1/m"))
     head(axes, subject.name, subject.units)
-    figure.legend(
-        loc="outside lower center",
-        ncols=columns,
-        labelspacing=0.3,
-        frameon=False,
-        fontsize=sized(9),
-    )
+    look = {"ncols": columns, "frameon": False, "fontsize": sized(9)}
+    look |= {"labelspacing": 0.3} if style.narrow else {}
+    figure.legend(loc="outside lower center", **look)
     tidy(axes)
     return figure
 

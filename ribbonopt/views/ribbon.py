@@ -90,7 +90,7 @@ def draw_ribbon(subject: Subject, half_width: float | None = None, style: Style 
     scale_bar(axes, box, size, " m" if subject.units.si else "")
     _triad(axes, camera, box, size)
     if tint:
-        tint.bar(figure, axes)
+        tint.bar([axes])
     if style.titles:
         caption = _caption(subject, surface, lit=tint is None).splitlines()
         text = "\n".join(wrapped(line, width - MARGINS, sized(8.5)) for line in caption)

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import product
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from ribbonopt.classes import dataclass
@@ -17,8 +18,9 @@ from ribbonopt.text import drawn
 
 from .branch_style import COLOURS, STYLES, mark_of
 from .columns import is_logarithmic, is_numeric, numbers, words
-from .paper_style import sized, stroke
+from .paper_style import PLAIN, Style, sized, spaced, stroke, thinner
 from .style import FAINT, INK, blank, tidy
+from .symbols import symbol
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -39,7 +41,12 @@ class _Axes:
     across: str
 
 
-def plot_special(rows: Rows, inputs: Sequence[str]) -> Figure:
+def plot_special(
+    rows: Rows,
+    inputs: Sequence[str],
+    labels: Mapping[str, str] = MappingProxyType({}),
+    style: Style = PLAIN,
+) -> Figure:
     """Draw the values at special points against the first number that was swept.
 
     A branch for which that number is not given has a level line.
@@ -49,7 +56,7 @@ def plot_special(rows: Rows, inputs: Sequence[str]) -> Figure:
     kinds = [_kinds(rows, name) for name in (axes.down, axes.across)]
     colours = dict(zip(_kinds(rows, axes.colour), _repeated(COLOURS), strict=False))
     count, across = (len(each) for each in kinds)
-    figure = blank(WIDTH * across + 1.0, HEIGHT * count + 0.6)
+    figure = blank(WIDTH * across + 1.0, HEIGHT * count + 0.6, style)
     panels = figure.subplots(count, across, squeeze=False, sharex=True, sharey="row")
     for panel, (down, beside) in zip(panels.flat, product(*kinds), strict=True):
         mine = [r for r in rows if (_kind(r, axes.down), _kind(r, axes.across)) == (down, beside)]
@@ -62,9 +69,9 @@ def plot_special(rows: Rows, inputs: Sequence[str]) -> Figure:
     if is_logarithmic(numbers(rows, axes.x)):
         panels[0, 0].set_xscale("log")
     for panel in panels[-1]:
-        panel.set_xlabel(drawn(axes.x))
+        panel.set_xlabel(symbol(axes.x, labels))
     for panel in panels[:, 0]:
-        panel.set_ylabel(drawn(", ".join(_parameters(rows))))
+        panel.set_ylabel(", ".join(symbol(name, labels) for name in _parameters(rows)))
     _legend(figure, rows, colours)
     return figure
 
@@ -88,7 +95,7 @@ def _draw(axes: Axes, rows: Rows, x: str, colour: str) -> None:
         if known:
             axes.plot([p[0] for p in known], [p[1] for p in known], color=colour, lw=stroke(1.4))
         for where, value, kind in known:
-            axes.plot(where, value, **STYLES[kind] | {"mec": colour, "ms": stroke(6)})
+            axes.plot(where, value, **thinner(STYLES[kind] | {"mec": colour, "ms": 6}))
         for at, value, _ in places:
             if at is None:
                 axes.axhline(value, color=colour, lw=stroke(1.2), ls=(0, (5, 2)))
@@ -108,13 +115,11 @@ def _place(row: Row, x: str, i: int) -> Place | None:
 def _legend(figure: Figure, rows: Rows, colours: Mapping[str, str]) -> None:
     from matplotlib.lines import Line2D
 
-    lines = {
-        drawn(kind): {"color": colour, "lw": stroke(2)} for kind, colour in colours.items() if kind
-    }
+    lines = {drawn(kind): {"color": colour, "lw": 2} for kind, colour in colours.items() if kind}
     marks = dict.fromkeys(mark_of(point) for row in rows for point in row[SPECIALS])
     entries: dict[str, dict[str, Any]] = lines | {mark: STYLES[mark] for mark in marks}
-    handles = [Line2D([], [], label=text, **style) for text, style in entries.items()]
-    count = max(1, int(figure.get_figwidth() / 1.6))
+    handles = [Line2D([], [], label=text, **thinner(style)) for text, style in entries.items()]
+    count = max(1, int(figure.get_figwidth() / spaced(1.6)))
     figure.legend(
         handles=handles, loc="outside lower center", ncols=count, frameon=False, fontsize=sized(9)
     )

@@ -116,7 +116,7 @@ def _name(axes: Axes, places: Mapping[float, str], length: float, below: bool) -
 
 def _width(axes: Axes) -> float:
     """Return the width of the page (inches)."""
-    return float(axes.figure.get_figwidth())
+    return float(axes.figure.bbox.width / axes.figure.dpi)
 
 
 def _shade(axes: Axes) -> None:

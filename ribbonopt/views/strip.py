@@ -2,13 +2,13 @@
 
 from __future__ import annotations
 
-import textwrap
 from collections.abc import Sequence
 from typing import TYPE_CHECKING
 
 from ribbonopt.solution.solution import Solution
 
 from .album import album_of, place
+from .lettering import wrapped
 from .paper_style import PLAIN, USUAL, Style, sized
 from .ribbon import scale_bar
 from .style import FAINT, INK, blank
@@ -19,7 +19,7 @@ if TYPE_CHECKING:
 PICTURE, ROW, TALLEST, NARROWEST = 3.0, 14.0, 3.2, 1.7  # inches
 MOST = 6  # pictures in a row
 THIN = 0.6  # lines of small pictures, of the width of others
-LETTERS = 13  # of a caption, in an inch
+APART = 0.1  # inches between captions
 
 
 def plot_strip(
@@ -36,8 +36,10 @@ def plot_strip(
     width = max(min(PICTURE, ROW / columns, TALLEST / tall), NARROWEST)
     if style.width is not None:
         width = style.width / columns
-    fill = textwrap.TextWrapper(round(LETTERS / size * width)).fill
-    texts = ["\n".join(map(fill, caption.splitlines())) for caption in captions]
+    texts = [
+        "\n".join(wrapped(line, width - APART, sized(9)) for line in caption.splitlines())
+        for caption in captions
+    ]
     below = size * (0.4 + 0.17 * max(text.count("\n") for text in texts))
     height = min(width * tall, TALLEST) + below
     figure = blank(style.width or max(width * columns, 3.4), rows * height + 0.2 * size, style)
@@ -49,7 +51,7 @@ def plot_strip(
         axes.set_xlabel(text, fontsize=sized(9), color=INK)
     scale_bar(panels[0], box, album.size, " m" if album.subjects[0].units.si else "")
     if album.tint:
-        album.tint.bar(figure, list(panels[:count]))
+        album.tint.bar(list(panels[:count]))
     if style.titles:
         note = "; light: by symmetry" if album.mirrored and not album.tint else ""
         figure.supxlabel(f"one scale, one view{note}", fontsize=sized(8.5), color=FAINT)

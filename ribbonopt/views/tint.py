@@ -1,4 +1,4 @@
-"""The surface coloured by a field, and its bar of colours: one scale for all ribbons of a figure."""
+"""The surface coloured by a field, and its bar of colours: one scale for all of a figure."""
 
 from __future__ import annotations
 
@@ -18,7 +18,6 @@ from .subject import Subject
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-    from matplotlib.figure import Figure
 
 #: what a surface can be coloured by: how a bar calls it, and its SI unit
 FIELDS = {
@@ -65,7 +64,7 @@ class Tint:
         place = (middle - self.low) / (self.high - self.low) * (TINTS - 1)
         return np.asarray(self.table[np.clip(np.rint(place), 0, TINTS - 1).astype(int)])
 
-    def bar(self, figure: Figure, axes: Axes | Sequence[Axes]) -> None:
+    def bar(self, axes: Sequence[Axes]) -> None:
         """Draw the bar of colours beside axes."""
         from matplotlib.cm import ScalarMappable
         from matplotlib.colors import ListedColormap, Normalize
@@ -74,9 +73,9 @@ class Tint:
         words, unit = FIELDS[self.field]
         shades = ScalarMappable(Normalize(self.low, self.high), ListedColormap(self.table.tolist()))
         extend = {(True, True): "both", (True, False): "min", (False, True): "max"}
-        bar = figure.colorbar(
+        bar = axes[0].figure.colorbar(
             shades,
-            ax=axes,
+            ax=list(axes),
             shrink=0.7,
             aspect=25,
             pad=0.02,
