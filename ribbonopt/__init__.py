@@ -1,8 +1,8 @@
 """Equilibria of elastic ribbons as optimal-control problems, from YAML scenes.
 
 `load_scene` reads a scene, `solve` finds its equilibrium, a `Solution` is sampled, saved, plotted
-or used as the next guess; `Continuation`, `run_batch` and `compare` solve many. Names are imported
-when first used.
+or used as the next guess; `Continuation`, `run_batch` and `compare` solve many. `load` reads back
+whatever was written: a `Solution`, a `Branch` or a `Batch`. Names are imported when first used.
 """
 
 from __future__ import annotations
@@ -20,16 +20,21 @@ if TYPE_CHECKING:
     from .solution.solution import Solution
     from .studies.batch.batch import run_batch
     from .studies.batch.files import load_batch
+    from .studies.batch.results import Batch
     from .studies.batch.sweep import load_study
     from .studies.buckling.buckling import buckling_loads
     from .studies.comparison.compare import compare
+    from .studies.continuation.branch import Branch
     from .studies.continuation.continuation import Continuation
     from .studies.continuation.files import load_branch
+    from .studies.loading import load
     from .views import plot_plane, plot_ribbon, plot_strains, save_figures
 
 __version__ = version.VERSION
 
 __all__ = [
+    "Batch",
+    "Branch",
     "Continuation",
     "Scene",
     "Solution",
@@ -38,6 +43,7 @@ __all__ = [
     "compare",
     "dump_scene",
     "json_schema",
+    "load",
     "load_batch",
     "load_branch",
     "load_scene",
@@ -56,6 +62,8 @@ __all__ = [
 ]
 
 _HOMES = {
+    "Batch": "studies.batch.results",
+    "Branch": "studies.continuation.branch",
     "Continuation": "studies.continuation.continuation",
     "Scene": "scene",
     "Solution": "solution.solution",
@@ -63,6 +71,7 @@ _HOMES = {
     "compare": "studies.comparison.compare",
     "dump_scene": "scene",
     "json_schema": "scene",
+    "load": "studies.loading",
     "load_batch": "studies.batch.files",
     "load_branch": "studies.continuation.files",
     "load_scene": "scene",

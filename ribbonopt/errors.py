@@ -44,6 +44,10 @@ class ViewError(RibbonoptError, ValueError):
     """A picture that there is none of, such as the surface of a rod: says why."""
 
 
+class PackageError(RibbonoptError, ImportError):
+    """A package that is needed for one thing alone and is not installed: says which, and how."""
+
+
 class ConvergenceError(RibbonoptError, RuntimeError):
     """No equilibrium can be, or was, found: says which condition resists and the remedy.
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 
 NOTHING = 1e-50  # what guards the laws where m = 0 leaves of zero
+SMALL = 1e-3  # largest component of what is written with powers of ten
 
 
 def upwards(error: float) -> str:

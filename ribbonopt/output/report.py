@@ -7,9 +7,7 @@ from typing import Any
 
 from ribbonopt.checks.phase_words import phase_words
 
-from .digits import digits, upwards
-
-SMALL = 1e-3  # largest component of what is written with powers of ten
+from .digits import SMALL, digits, upwards
 
 
 def report(summary: Mapping[str, Any], *, steps: bool = True) -> str:

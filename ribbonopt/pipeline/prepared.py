@@ -18,11 +18,12 @@ from ribbonopt.checks.zero_moment import unbent_share
 from ribbonopt.classes import dataclass
 from ribbonopt.errors import ConvergenceError
 from ribbonopt.guess import Guess
-from ribbonopt.problem import BoundaryValueProblem, Posed, Ribbon
+from ribbonopt.problem import BoundaryValueProblem, Posed, Ribbon, formulation_name
 from ribbonopt.problem.wellposed.examine import examine, refuse_idle_settings, refuse_unreachable
 from ribbonopt.scene import Scene, validate_scene
 from ribbonopt.solution.solution import Solution
 from ribbonopt.solvers import Status
+from ribbonopt.text import one_line, shortened
 from ribbonopt.transcription import NLP
 
 from .given import own_guess, saved, step_of
@@ -52,6 +53,12 @@ class Prepared:
     def scene(self) -> Scene:
         """The scene it was built for."""
         return self.structure.posed.given
+
+    def __repr__(self) -> str:
+        """Say what it is in one line."""
+        scene = self.scene
+        name, law = (shortened(one_line(text), 40) for text in (scene.name, scene.law.type))
+        return f"<Prepared {name}: law {law}, {formulation_name(scene)} formulation, built>"
 
     @property
     def ribbon(self) -> Ribbon:

@@ -184,3 +184,9 @@ class Scene:
     membrane: AnyMembrane | None = None
     planar: bool = False
     symmetric: bool | Literal["d1", "d2", "-d1", "-d2"] = False
+
+    def __repr__(self) -> str:
+        """Say what it is in one line; `dump_scene` says all of it."""
+        from .in_short import in_short  # scenes are read more often than shown
+
+        return in_short(self)

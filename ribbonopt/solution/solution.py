@@ -18,6 +18,8 @@ from ribbonopt.scene.units import Units
 from ribbonopt.solvers import Status
 from ribbonopt.transcription import Mesh
 
+from .as_guess import unknowns_of
+from .at_home import AtHome
 from .named import Each
 from .trajectory import Trajectory
 from .verification import Verification
@@ -27,7 +29,7 @@ if TYPE_CHECKING:
 
 
 @dataclass(frozen=True, eq=False)
-class Solution:
+class Solution(AtHome):
     """Equilibrium of one ribbon.
 
     Lab-frame vectors, arclength s as in the scene's interval. What is sampled is in the units of
@@ -187,20 +189,7 @@ class Solution:
 
         None where they cannot be taken as they are; lengths of phases and slack are not among them.
         """
-        mine, own = self.problem, self.dense
-        same = mine is problem or (
-            mine.state_names == problem.state_names
-            and mine.algebraic.numel() == problem.algebraic.numel() == 0
-        )
-        # Moments are about a point of reference.
-        points = [
-            [t[p.parameter_names.index(f"reference.{axis}")] for axis in "xyz"]
-            for p, t in ((mine, own.theta), (problem, theta))
-        ]
-        if not same or points[0] != points[1]:
-            return None
-        rod = len(own.constants) - mine.lengths - mine.slack
-        return self.trajectory.approximate(fraction), own.constants[:rod]
+        return unknowns_of(self.trajectory, problem, theta, fraction)
 
     def fields(self, fraction: Array) -> RodFields:
         """Fields at fractions (k,) of the length, units Dw = L = 1: a solution is a guess."""
@@ -244,6 +233,8 @@ class Solution:
         """Twist of the directors about the centre line, in turns."""
         found = self.trajectory
         return float(found.length * found.stages[2] @ found.at_stages["u"][:, 2]) / (2 * np.pi)
+
+    __repr__ = AtHome.__repr__  # or else the one of dataclasses, of all numbers
 
     def _in_own_units(self, values: Mapping[str, Array]) -> Mapping[str, Array]:
         same, unit_of = self.posed.given is self.posed.scene, self.units.of

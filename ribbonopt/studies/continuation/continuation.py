@@ -22,6 +22,7 @@ from ribbonopt.scene.lens import value_at
 from ribbonopt.scene.stages import ends_of, stages_of
 from ribbonopt.scene.units import units_of
 from ribbonopt.solution.solution import Solution
+from ribbonopt.text import one_line, shortened
 
 from .curve import Curve
 from .recorded import Recorder
@@ -108,6 +109,17 @@ class Continuation:
         ways = [len(ends_of(stage)) for stage in self.stages]
         mains = [e for (stage, branch), e in self.endings.items() if branch < ways[stage]]
         return next((ending for ending in mains if not ending.reached), mains[-1])
+
+    def __repr__(self) -> str:
+        """Say what is followed, and how far, in one line."""
+        name = shortened(one_line(self.scene.name), 40)
+        ways = [
+            f"{stage.parameter} from {stage.from_:.6g} to {end:.6g}"
+            for stage in self.stages
+            for end in ends_of(stage)
+        ]
+        done = f"{self.register.number} points so far" if self.register.number else "not begun"
+        return f"<Continuation {name}: {shortened('; '.join(ways), 160)}; {done}>"
 
     def _stage(self, number: int, before: Point[Solution] | None) -> RibbonStage:
         """Return a stage that begins where the one before has ended."""

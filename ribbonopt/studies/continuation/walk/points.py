@@ -65,3 +65,10 @@ class Point(Generic[S]):
     def position(self) -> float:
         """The last parameter, lk."""
         return float(self.unknowns[-1])
+
+    def __repr__(self) -> str:
+        """Say which point it is in one line, without its numbers."""
+        moved = self.row.get("parameter")
+        where = f"{moved} = {self.row[moved]:.10g}" if moved else f"position {self.position:.10g}"
+        place = f"{self.number} of stage {self.stage}, branch {self.branch}"
+        return f"<Point {place}: {self.kind}, {where}>"

@@ -1,0 +1,64 @@
+"""Doors to rooms above: what shows a solution, by names that are imported when they are called.
+
+A room imports only rooms that know less than it does. That `solution.plot()` draws is a convenience
+of words, no knowledge: nothing below depends on what is drawn, or on whether it can be. So the name
+of the function stands here as text, and its room is loaded by the first call, never by an import.
+"""
+
+from __future__ import annotations
+
+from importlib import import_module
+from typing import TYPE_CHECKING, Any
+
+from ribbonopt.errors import ViewError
+
+if TYPE_CHECKING:
+    from collections.abc import Callable
+
+    from matplotlib.figure import Figure
+    from pandas import DataFrame
+
+    from ribbonopt.plain import Rows
+
+
+def door(room: str, name: str) -> Callable[..., Any]:
+    """Return a function of a room of the package, such as "views", by its name."""
+    found: Callable[..., Any] = getattr(import_module(f"ribbonopt.{room}"), name)
+    return found
+
+
+def told_in_short(solution: object) -> str:
+    """Return what a solution is, in one line."""
+    words: str = door("output.words", "in_short")(solution)
+    return words
+
+
+def embedded(thing: object) -> str | None:
+    """Return the viewer of a solution, a branch or a batch as HTML, for a notebook.
+
+    None where there is nothing to be seen, so that a notebook shows words.
+    """
+    try:
+        page: str = door("viewer", "embedded")(thing)
+    except ViewError:
+        return None
+    return page
+
+
+def solution_drawn(solution: object, kind: str, style: object | None) -> Figure:
+    """Return a figure of a solution; without a style as the command line draws it."""
+    more = () if style is None else (style,)
+    figure: Figure = door("views", "plot_solution")(solution, kind, *more)
+    return figure
+
+
+def frame_along(solution: object, s: object | None) -> DataFrame:
+    """Return a table of a solution along s."""
+    table: DataFrame = door("output.frames", "frame_along")(solution, s)
+    return table
+
+
+def frame_of(rows: Rows, names: list[str]) -> DataFrame:
+    """Return a table of rows with these columns."""
+    table: DataFrame = door("output.frames", "frame_of")(rows, names)
+    return table

@@ -1,0 +1,51 @@
+"""What a solution offers at a prompt or in a notebook: a short name, a figure, a table, a viewer.
+
+All of it is made in rooms above, through `ribbonopt.doors`, when it is asked for.
+"""
+
+from __future__ import annotations
+
+from typing import TYPE_CHECKING, Any
+
+from ribbonopt.doors import embedded, frame_along, solution_drawn, told_in_short
+
+if TYPE_CHECKING:
+    from matplotlib.figure import Figure
+    from pandas import DataFrame
+
+
+class AtHome:
+    """Methods of a solution that show it, and that nothing else needs."""
+
+    def plot(self, kind: str = "ribbon", style: object | None = None) -> Figure:
+        """Return a figure.
+
+        Parameters
+        ----------
+        kind
+            "ribbon", the shape; "strains" along s; "plane", the path in the (u2, u3) plane.
+        style
+            A `ribbonopt.views.Style`, as for a paper; unless given as the command line draws.
+
+        Raises
+        ------
+        ViewError
+            If there is no such picture, such as the plane of a rod.
+        """
+        return solution_drawn(self, kind, style)
+
+    def to_pandas(self, s: Any = None) -> DataFrame:
+        """Return a table along s: 201 evenly spaced rows, or one for each of arclengths s (k,).
+
+        Positions, directors, force and moment in the lab frame, strains and components along the
+        directors, in the units of the scene; `ribbonopt.output.frames.frame_along` lists the
+        columns. Needs pandas (`pip install ribbonopt[pandas]`).
+        """
+        return frame_along(self, s)
+
+    def __repr__(self) -> str:
+        """Say what it is in one line."""
+        return told_in_short(self)
+
+    def _repr_html_(self) -> str | None:
+        return embedded(self)
