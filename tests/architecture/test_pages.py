@@ -159,6 +159,11 @@ def test_no_status_is_on_the_page_that_nothing_says() -> None:
     assert listed - statuses() - {"some_failed"} == set()  # of a whole batch, in its JSON
 
 
+def test_every_command_is_on_the_page_of_commands() -> None:
+    text = text_of(ROOT / "docs" / "commands.md")
+    assert [verb for verb in VERBS if f"| `ribbonopt {verb}" not in text] == []
+
+
 def test_every_failed_folder_is_on_the_page_of_messages() -> None:
     text = text_of(ROOT / "docs" / "messages.md")
     for failure in {status.failure for status in Status} - {""}:
