@@ -7,9 +7,12 @@ from functools import cache
 from pathlib import Path
 
 import pytest
+import yaml
 
 import ribbonopt
 from ribbonopt.cli.arguments import VERBS, parser
+from ribbonopt.scene import Scene
+from ribbonopt.scene.schema.annotations import written_keys
 from ribbonopt.scene.yamlio import loads_scene
 from ribbonopt.solvers import Status
 from ribbonopt.studies.batch.sweep import load_study
@@ -20,6 +23,18 @@ ELSEWHERE = {"viewer.md", "exports.md", "figures.md", "python.md"}  # until all 
 PAGES = [path for path in sorted((ROOT / "docs").glob("*.md")) if path.name not in MADE]
 README = ROOT / "README.md"
 each_page = pytest.mark.parametrize("page", [README, *PAGES], ids=lambda path: path.stem)
+KEYS = {*written_keys(Scene)}
+#: what a part of a scene on a page is put into
+BASE = """
+name: base
+law: {type: sadowsky}
+parameters: {distance: 0.9, turn: 0, angle: 0}
+boundary:
+  start: {support: clamped, position: [0, 0, 0], directors: identity}
+  end: {support: clamped, position: [0, 0, distance], directors: {turns: [{y: turn*deg}]}}
+"""
+SIZES = {"length": 1, "width": 0.01, "thickness": 1e-4, "youngs_modulus": 4.5e9}
+SIZES |= {"poisson_ratio": 0.3, "density": 1000}
 #: statuses that are not those of a solve, by the call or the name that says them
 SAYING = {"ConvergenceError", "_fail", "indeterminate"}
 NAMED = {"NOT_REACHED", "DOUBTFUL", "LOST", "AGAIN"}
@@ -104,6 +119,16 @@ def test_scenes_and_studies_can_be_read(page: Path, tmp_path: Path) -> None:
             assert study.count > 1
         else:
             loads_scene(block, page.name)
+
+
+@each_page
+def test_parts_of_scenes_are_parts_of_scenes(page: Path) -> None:
+    for block in blocks(page, "yaml"):
+        part = yaml.safe_load(block)
+        if block.startswith("name:") or not isinstance(part, dict) or not part.keys() <= KEYS:
+            continue
+        whole = yaml.safe_load(BASE) | ({"ribbon": SIZES} if "gravity" in part else {}) | part
+        loads_scene(yaml.safe_dump(whole, sort_keys=False), page.name)
 
 
 @each_page
