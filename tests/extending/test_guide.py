@@ -1,4 +1,4 @@
-"""CONTRIBUTING.md and docs/extending.md say what is so: code is tested, files exist, rooms are all."""
+"""CONTRIBUTING.md and docs/extending.md say what is so: code is tested, files and rooms exist."""
 
 import re
 from pathlib import Path
