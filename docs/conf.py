@@ -20,6 +20,7 @@ extensions = [
     "sphinx.ext.napoleon",
     "myst_parser",
     "sphinx_gallery.gen_gallery",
+    "docstrings",
     "mathml",
     "linked",
     "generated",
@@ -33,7 +34,7 @@ myst_heading_anchors = 4
 suppress_warnings = ["config.cache"]
 
 napoleon_google_docstring = False
-napoleon_use_ivar = True
+napoleon_custom_sections = [("Attributes", "params_style")]  # types are words, no references
 napoleon_use_param = False
 napoleon_use_rtype = False
 autodoc_typehints = "none"

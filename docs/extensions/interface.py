@@ -52,6 +52,7 @@ def pages(folder: Path) -> dict[str, str]:
         *extended,
         *("## Errors", "Import these from `ribbonopt.errors`."),
         *(_directive(f"autoexception:: ribbonopt.errors.{name}") for name in ERRORS),
+        _directive("autoexception:: ribbonopt.scene.formulas.parsing.FormulaError"),
     )
     return {"interface.md": page(*parts)}
 
