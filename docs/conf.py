@@ -29,7 +29,7 @@ exclude_patterns = ["_build", "results", "examples", "notebooks", "generated/exa
 nitpicky = True
 default_role = "literal"  # what docstrings put in backquotes
 
-myst_enable_extensions = ["dollarmath", "colon_fence"]
+myst_enable_extensions = ["dollarmath", "colon_fence", "deflist"]
 myst_heading_anchors = 4
 suppress_warnings = ["config.cache"]
 
@@ -65,6 +65,7 @@ sphinx_gallery_conf = {
     "filename_pattern": "/",
     "download_all_examples": False,
     "show_memory": False,
+    "write_computation_times": False,
     "show_signature": False,
     "remove_config_comments": True,
     "min_reported_time": 60,

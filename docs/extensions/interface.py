@@ -14,8 +14,9 @@ import ribbonopt
 from ribbonopt import scene
 
 WORDS = """\
-All names of `ribbonopt`; how they are used is in [Python](../python.md). Arrays are numpy's; shapes are in parentheses, k being the number of places that
-are asked for. Vectors are in the lab frame unless named along directors.
+All names of `ribbonopt`; how they are used is in [Python](../python.md). Arrays are numpy's;
+shapes are in parentheses, k being the number of places that are asked for. Vectors are in the lab
+frame unless named along directors.
 """
 #: what one extends, by module
 EXTENDED = {

@@ -1,7 +1,7 @@
 """Sphinx extension: formulas as MathML, which browsers draw by themselves, without any script.
 
-Pages can be read offline, and hold no program of others for it. The translation is that of docutils;
-a formula that it does not know is a warning, so that the strict build fails.
+Pages can be read offline, and hold no program of others for it. The translation is that of
+docutils; a formula that it does not know is a warning, so that the strict build fails.
 """
 
 from __future__ import annotations
@@ -15,14 +15,15 @@ from sphinx.application import Sphinx
 from sphinx.util import logging
 
 LOG = logging.getLogger(__name__)
+PRIMES = re.compile("'+")
 SIZED = re.compile(r"\\(?:big|Big|bigg|Bigg)[lrm]?(?![a-zA-Z])")
 
 
 def mathml(node: nodes.Element, block: bool) -> str:
     """Return the MathML of a formula; its TeX, where that cannot be translated."""
     tex = node.astext()
-    # Sizes of parentheses are left to the browser, which stretches them.
-    plain = SIZED.sub("", tex)
+    # Sizes of parentheses are left to the browser; primes are raised, and not apostrophes.
+    plain = SIZED.sub("", PRIMES.sub(lambda found: "^{" + r"\prime" * len(found[0]) + "}", tex))
     try:
         return str(latex2mathml.tex2mathml(plain, as_block=block))
     except MathError as error:
@@ -38,7 +39,7 @@ def inline(translator: Any, node: nodes.math) -> None:
 
 def display(translator: Any, node: nodes.math_block) -> None:
     """Write a formula on a line of its own; a wide one is scrolled, not the page."""
-    translator.body.append(f'<div class="math">{mathml(node, block=True)}</div>\n')
+    translator.body.append(f'<div class="formula">{mathml(node, block=True)}</div>\n')
     raise nodes.SkipNode
 
 

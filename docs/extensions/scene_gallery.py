@@ -21,8 +21,8 @@ CONFIGS = ROOT / "configs"
 KEPT = ROOT / "docs" / "_build" / "scenes"
 HEAD = "# yaml-language-server"
 WORDS = """\
-Every scene and every study that comes with ribbonopt, solved as this page was built. Behind each picture: what the scene is and where its
-truth is from, the command, the report, and the scene.
+Every scene and every study that comes with ribbonopt, solved as this page was built. Behind each
+picture: what the scene is and where its truth is from, the command, the report, and the scene.
 """
 GROUPS = {
     "": "Scenes",
@@ -41,7 +41,10 @@ def pages(folder: Path) -> dict[str, str]:
     made = {f"scenes/{_name(path)}.md": _page(path, drawn[path]) for path in paths}
     for path in paths:
         _copied(drawn[path].picture, folder / "scenes" / f"{_name(path)}.png")
-    sections = [_section(group, [p for p in paths if p.parts[:-1] == ((group,) if group else ())]) for group in GROUPS]
+    sections = [
+        _section(group, [p for p in paths if p.parts[:-1] == ((group,) if group else ())])
+        for group in GROUPS
+    ]
     assert sum(text.count("figure}") for text in sections) == len(paths), "a folder has no group"
     hidden = "```{toctree}\n:hidden:\n\n" + "\n".join(f"scenes/{_name(p)}" for p in paths) + "\n```"
     return {"gallery.md": page("# Gallery", WORDS, *sections, hidden)} | made
@@ -93,7 +96,7 @@ def _page(path: Path, drawn: Drawn) -> str:
     shown = f"configs/{path.as_posix()}"
     verb = "batch" if drawn.study else "solve"
     return page(
-        f"# {code(path.stem)}",
+        f"# {code(path.with_suffix('').as_posix())}",
         f"```{{image}} {_name(path)}.png\n:alt: the ribbon of {shown}\n:class: scene\n```",
         "The picture shows the first ribbon of the study." if drawn.study else "",
         fenced(says),

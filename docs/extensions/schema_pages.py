@@ -6,7 +6,7 @@ import json
 from pathlib import Path
 from typing import Any
 
-from markdown import code, page, table
+from markdown import code, page
 
 from ribbonopt import json_schema
 from ribbonopt.studies.batch.written import study_schema
@@ -26,15 +26,18 @@ PLAIN = {
     "null": "null",
 }
 SCENES = """\
-Every key of a scene: what it is, what it may be, what it is by default. This page is made of the schema that editors use
-(`ribbonopt schema`). [How a scene is written](../scenes.md) says what belongs together.
+Every key of a scene: what it is, what it may be, what it is by default. This page is made of the
+schema that editors use (`ribbonopt schema`). [How a scene is written](../scenes.md) says what
+belongs together.
 
-Where a *formula* may stand, it is one of the scene's `parameters`, of `pi`, `deg` and functions such as `sqrt` and `sin`;
-along the ribbon it may have the arclength `s` as well. A key of which no default is told may be left out.
+Where a *formula* may stand, it is one of the scene's `parameters`, of `pi`, `deg` and functions
+such as `sqrt` and `sin`; along the ribbon it may have the arclength `s` as well. A key of which no
+default is told may be left out.
 """
 STUDIES = """\
-Every key of a study file, which `ribbonopt batch` solves. This page is made of the schema that editors use
-(`ribbonopt schema study`). [Batches](../batches.md) says how studies are solved and what they write.
+Every key of a study file, which `ribbonopt batch` solves. This page is made of the schema that
+editors use (`ribbonopt schema study`). [Batches](../batches.md) says how studies are solved and
+what they write.
 """
 
 
@@ -62,33 +65,36 @@ class Reference:
         told = []
         while self.todo:
             anchor, schema, says = self.todo.pop(0)
-            rows = [self._row(anchor, schema, key) for key in schema["properties"]]
-            told.append((anchor, schema, says, rows))
+            keys = [self._key(anchor, schema, key) for key in schema["properties"]]
+            told.append((anchor, schema, says, keys))
         return [self._section(*parts) for parts in told]
 
-    def _section(self, anchor: str, schema: Schema, says: str, rows: list[list[str]]) -> str:
+    def _section(self, anchor: str, schema: Schema, says: str, keys: list[str]) -> str:
         paths = self.paths[anchor]
         where = ", ".join(code(path) for path in paths[:4]) + (", ..." if len(paths) > 4 else "")
-        kind = schema["properties"].get("type", {}).get("const")
-        title = schema["title"] + (f": `type: {kind}`" if kind else "")
         return page(
             f"({anchor})=",
-            f"## {title}",
+            f"## {_named(schema)}",
             f"Under {where}." if paths[0] else "",
             says,
-            table(("key", "what it may be", "default", "what it is"), rows),
+            *keys,
         )
 
-    def _row(self, anchor: str, schema: Schema, key: str) -> list[str]:
+    def _key(self, anchor: str, schema: Schema, key: str) -> str:
+        """Return a key as a term with its definitions: what it is, and what it may be."""
         member, base = schema["properties"][key], self.paths[anchor][0]
-        required = key in schema.get("required", ())
-        default = code(json.dumps(member["default"])) if "default" in member else ""
-        path = f"{base}.{key}" if base else key
+        if key == "type":
+            return f"{code(key)}\n: {code(member['const'])}"
+        term = code(key) + ("  required" if key in schema.get("required", ()) else "")
         words = member["description"].partition("\n\n")[0]
-        examples = [code(_yaml(value)) for value in member.get("examples", ())]
-        shown = f"{words} Example: {', or '.join(examples)}" if examples else words
-        kind = self.kind(member, path, held=True)
-        return [code(key), kind, "required" if required else default, shown]
+        examples = " or ".join(code(_yaml(value)) for value in member.get("examples", ()))
+        kind = self.kind(member, f"{base}.{key}" if base else key, held=True)
+        facts = [kind[0].upper() + kind[1:] if kind[0].isalpha() else kind]
+        if "default" in member:
+            facts.append(f"by default {code(json.dumps(member['default']))}")
+        if examples:
+            facts.append(f"for example {examples}")
+        return f"{term}\n: {words}\n: {'; '.join(facts)}."
 
     def kind(self, schema: Schema, path: str, held: bool = False) -> str:
         """Return what a value may be, in words; objects are links to their sections."""
@@ -99,14 +105,27 @@ class Reference:
         if "enum" in schema:
             return ", ".join(code(str(value)) for value in schema["enum"])
         if "oneOf" in schema:
-            kinds = [self.kind(some, path) for some in schema["oneOf"] if not _null(some)]
+            named = {
+                some["properties"]["type"]["const"]
+                for some in schema["oneOf"]
+                if "type" in some.get("properties", ())
+            }
+            kinds = [
+                "one of these names alone"
+                if named and named == set(some.get("enum", [some.get("const")]))
+                else self.kind(some, path)
+                for some in schema["oneOf"]
+                if not _null(some)
+            ]
             words = " or ".join(dict.fromkeys(kinds))
             return words.replace("number or text", "number or formula")
         if "properties" in schema:
             says = schema["description"]
             return self._met(schema, path, says.partition("\n\n")[2] if held else says)
         if schema.get("type") == "object":
-            return f"mapping of names to {self.kind(schema['additionalProperties'], f'{path}.NAME')}"
+            return (
+                f"mapping of names to {self.kind(schema['additionalProperties'], f'{path}.NAME')}"
+            )
         if schema.get("type") == "array":
             return self._array(schema, path)
         if "type" not in schema:
@@ -134,7 +153,13 @@ class Reference:
         anchor = self.found[same]
         if path not in self.paths[anchor]:
             self.paths[anchor].append(path)
-        return f"[{title}](#{anchor})"
+        return f"[{_named(schema)}](#{anchor})"
+
+
+def _named(schema: Schema) -> str:
+    """Return the name of an object: the type that picks it, or the name of its class."""
+    kind = schema["properties"].get("type", {}).get("const")
+    return code(kind) if kind else str(schema["title"])
 
 
 def _null(schema: Schema) -> bool:

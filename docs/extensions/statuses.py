@@ -9,8 +9,9 @@ from markdown import code, page, table
 from ribbonopt.solvers import Status
 
 WORDS = """\
-How a solve may end, in the words that are printed: what is wrong, and what to do. `status` in `summary.json`, in rows of a batch and in
-`--json` is the name. [Messages and exit states](../messages.md) says more.
+How a solve may end, in the words that are printed: what is wrong, and what to do. `status` in
+`summary.json`, in rows of a batch and in `--json` is the name. [Messages and exit
+states](../messages.md) says more.
 """
 
 

@@ -11,7 +11,8 @@ from markdown import code, fenced, page, table
 from ribbonopt.cli.arguments import VERBS, parser
 
 WORDS = """\
-What `ribbonopt --help` and `ribbonopt COMMAND --help` print. [Commands](../commands.md) says what they are for and what they write, [messages](../messages.md) what they end with.
+What `ribbonopt --help` and `ribbonopt COMMAND --help` print. [Commands](../commands.md) says what
+they are for and what they write, [messages](../messages.md) what they end with.
 """
 
 
@@ -21,7 +22,11 @@ def pages(folder: Path) -> dict[str, str]:
     whole = parser()
     found = [action for action in whole._actions if isinstance(action, argparse._SubParsersAction)]
     sections = [_section(name, found[0].choices[name]) for name in VERBS]
-    return {"options.md": page("# Options of all commands", WORDS, fenced(whole.format_help()), *sections)}
+    return {
+        "options.md": page(
+            "# Options of all commands", WORDS, fenced(whole.format_help()), *sections
+        )
+    }
 
 
 def _section(name: str, verb: argparse.ArgumentParser) -> str:
