@@ -154,6 +154,9 @@ class Scene:
     symmetric
         Whether half of a strip is solved whose clamps half a turn maps to each other; or which
         director is along its axis in the middle, where there are two. Example: `d1`
+    labels
+        What numbers are called beside the axes of figures, by their columns; formulas stand between
+        $. Example: `{energy: $E$, middle: height}`
     """
 
     name: str
@@ -184,6 +187,7 @@ class Scene:
     membrane: AnyMembrane | None = None
     planar: bool = False
     symmetric: bool | Literal["d1", "d2", "-d1", "-d2"] = False
+    labels: dict[str, str] = field(default_factory=dict)
 
     def __repr__(self) -> str:
         """Say what it is in one line; `dump_scene` says all of it."""

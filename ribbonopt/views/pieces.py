@@ -9,6 +9,7 @@ and to any value: pieces are the phases, where there are any.
 
 from __future__ import annotations
 
+from dataclasses import field
 from itertools import pairwise
 
 import numpy as np
@@ -46,6 +47,10 @@ class Piece:
         Whether these rows follow by symmetry from those that were solved.
     width : (k,) array, or 1
         Of the ribbon, in units of its own.
+    n, m : (k, 3) arrays
+        Force and moment, lab frame, in the units of the scene.
+    energy : (k,) array
+        Strain energy per length; nan where the law has none.
     """
 
     s: Array
@@ -59,6 +64,9 @@ class Piece:
     d3: Array
     mirrored: bool = False
     width: Array | float = 1.0
+    n: Array = field(default_factory=lambda: np.empty((0, 3)))
+    m: Array = field(default_factory=lambda: np.empty((0, 3)))
+    energy: Array = field(default_factory=lambda: np.empty(0))
 
     @property
     def widths(self) -> Array:
@@ -113,7 +121,10 @@ def _piece(solution: Solution, s: Array, values: dict[str, Array], scale: float)
     r, d1, d2, d3 = (values[name] for name in ("r", "d1", "d2", "d3"))
     width = widths(solution.scene, s)
     eta = np.zeros(len(s)) if is_rod(solution) else _eta(u2, u3, scale)
-    return Piece(s, u1, u2, u3, eta, r, d1, d2, d3, width=width)
+    n, m, energy = values["n"], values["m"], values["energy"]
+    if not capabilities(solution.scene).variational:
+        energy = np.full(len(s), np.nan)  # found is m . u / 2, which is no energy of such a law
+    return Piece(s, u1, u2, u3, eta, r, d1, d2, d3, width=width, n=n, m=m, energy=energy)
 
 
 def _scale(values: dict[str, Array]) -> float:

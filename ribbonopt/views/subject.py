@@ -101,14 +101,17 @@ class Subject:
         return f"{quantity}  [{unit}]" if self.units.si else quantity
 
 
-def subject_of(solution: Solution, complete: bool) -> Subject:
-    """Sample a solution, once for all figures; with the rest of its band where it has one."""
+def subject_of(solution: Solution, complete: bool, rows: int = ROWS) -> Subject:
+    """Sample a solution, once for all figures; with the rest of its band where it has one.
+
+    `rows` are about how many there are of what was solved: fewer of a piece among many.
+    """
     start, end = solution.scene.interval
     width = own_width(solution.scene)
     band = closure(solution) if complete else None
     half = other_half(solution) if complete and band is None else None
     count = 2 if half is not None else 1 if band is None else band.pieces
-    solved = sample_pieces(solution, max(FEWEST_ROWS, min(ROWS, 2 * ROWS // count)))
+    solved = sample_pieces(solution, min(rows, max(FEWEST_ROWS, 2 * rows // count)))
     return Subject(
         name=solution.scene.name,
         interval=(float(start), float(end)),

@@ -50,6 +50,10 @@ def image(flip: Flip, piece: Piece) -> Piece:
         d3=-flip.rotate(piece.d3)[::-1],
         mirrored=True,
         width=piece.widths[::-1],
+        # What acts on a section from ahead acts on its image from behind.
+        n=-flip.rotate(piece.n)[::-1],
+        m=-flip.rotate(piece.m)[::-1],
+        energy=piece.energy[::-1],
     )
 
 
@@ -72,5 +76,7 @@ def turned(band: ClosedBand, piece: Piece) -> Piece:
         d1=sign * piece.d1 @ band.turn.T,
         d2=sign * piece.d2 @ band.turn.T,
         d3=piece.d3 @ band.turn.T,
+        n=piece.n @ band.turn.T,
+        m=piece.m @ band.turn.T,
         mirrored=True,
     )

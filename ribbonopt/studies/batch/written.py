@@ -163,6 +163,9 @@ class StudyFile:
         Which full solutions are kept; rows of numbers always are. Example: `all`
     time_limit
         Seconds that one ribbon may take. Example: `60`
+    labels
+        What columns are called beside the axes of figures; formulas stand between $.
+        Example: `{parameters.turn: turn, energy: $E$}`
     """
 
     scene: str | Scene | tuple[str | Scene, ...]
@@ -172,6 +175,7 @@ class StudyFile:
     continue_: bool = False
     save: Literal["all", "failed", "none"] = "failed"
     time_limit: Annotated[float, Bounds(gt=0, le=SECONDS)] = 300.0
+    labels: dict[str, str] = _left_out()
 
 
 def study_schema() -> dict[str, Any]:
