@@ -37,7 +37,8 @@ napoleon_google_docstring = False
 napoleon_custom_sections = [("Attributes", "params_style")]  # types are words, no references
 napoleon_use_param = False
 napoleon_use_rtype = False
-autodoc_typehints = "none"
+autodoc_typehints = "signature"
+autodoc_typehints_format = "short"
 autodoc_member_order = "bysource"
 autodoc_preserve_defaults = True
 add_module_names = False
@@ -70,5 +71,7 @@ sphinx_gallery_conf = {
     "remove_config_comments": True,
     "min_reported_time": 60,
     "abort_on_example_error": True,
+    "image_scrapers": ("shown.figures",),
+    "ignore_repr_types": r"matplotlib\.figure",
     "reset_modules": ("matplotlib",),
 }

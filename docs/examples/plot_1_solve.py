@@ -29,11 +29,11 @@ print("moment at the start", solution.m0)
 
 # %%
 # The ribbon as a surface.
-figure = solution.plot("ribbon")
+solution.plot("ribbon")
 
 # %%
 # Bending u2 and twist u3 along it. At s = 0.5, where m2 changes its sign, both leap.
-figure = solution.plot("strains")
+solution.plot("strains")
 
 # %%
 # Anything can be sampled anywhere, as a formula of named quantities.

@@ -32,11 +32,11 @@ for row in branch.special:
 
 # %%
 # Stable up to the fold (solid), unstable behind it (dashed).
-figure = branch.plot("angle", "middle")
+branch.plot("angle", "middle")
 
 # %%
 # Each point is a solution. This is the last one, which no real strip would stay in.
-figure = branch[-1].plot("ribbon")
+branch[-1].plot("ribbon")
 
 # %%
 # As a table.

@@ -52,4 +52,4 @@ rows.pivot(index="parameters.distance", columns="parameters.turn", values="energ
 
 # %%
 # Any two columns as a scatter.
-figure = batch.plot("turn", "energy")
+batch.plot("turn", "energy")

@@ -15,20 +15,30 @@ from sphinx.application import Sphinx
 from sphinx.util import logging
 
 LOG = logging.getLogger(__name__)
-PRIMES = re.compile("'+")
+#: sizes of parentheses, which are left to the browser
 SIZED = re.compile(r"\\(?:big|Big|bigg|Bigg)[lrm]?(?![a-zA-Z])")
+#: fractions of two digits without braces, which docutils takes for one number
+SHORT = re.compile(r"(\\[td]?frac)(\d)(\d)")
+#: operators that browsers would put blanks around: primes, and bars of sizes
+TIGHT = {
+    "<mo>'</mo>": '<mo form="postfix" lspace="0" rspace="0">\u2032</mo>',
+    '<mo class="mathopen">|</mo>': '<mo lspace="0" rspace="0" stretchy="false">|</mo>',
+    "<mo>|</mo>": '<mo lspace="0" rspace="0" stretchy="false">|</mo>',
+}
 
 
 def mathml(node: nodes.Element, block: bool) -> str:
     """Return the MathML of a formula; its TeX, where that cannot be translated."""
     tex = node.astext()
-    # Sizes of parentheses are left to the browser; primes are raised, and not apostrophes.
-    plain = SIZED.sub("", PRIMES.sub(lambda found: "^{" + r"\prime" * len(found[0]) + "}", tex))
+    plain = SHORT.sub(r"\1{\2}{\3}", SIZED.sub("", tex))
     try:
-        return str(latex2mathml.tex2mathml(plain, as_block=block))
+        found = str(latex2mathml.tex2mathml(plain, as_block=block))
     except MathError as error:
         LOG.warning("formula %r: %s", tex, error, location=node, type="mathml")
         return nodes.Text(tex).astext().replace("&", "&amp;").replace("<", "&lt;")
+    for loose, tight in TIGHT.items():
+        found = found.replace(loose, tight)
+    return found
 
 
 def inline(translator: Any, node: nodes.math) -> None:

@@ -99,7 +99,7 @@ def _page(path: Path, drawn: Drawn) -> str:
         f"# {code(path.with_suffix('').as_posix())}",
         f"```{{image}} {_name(path)}.png\n:alt: the ribbon of {shown}\n:class: scene\n```",
         "The picture shows the first ribbon of the study." if drawn.study else "",
-        fenced(says),
+        f"```{{code-block}} text\n:class: says\n\n{says}\n```",
         fenced(f"ribbonopt {verb} {shown} --plot", "sh"),
         fenced(f"ribbonopt continue {shown} --plot", "sh") if drawn.continued else "",
         fenced(drawn.report),
