@@ -21,12 +21,15 @@ extensions = [
     "myst_parser",
     "sphinx_gallery.gen_gallery",
     "docstrings",
+    "homes",
     "mathml",
     "linked",
     "generated",
 ]
 exclude_patterns = ["_build", "results", "examples", "notebooks", "generated/examples/*.ipynb"]
 nitpicky = True
+# In signatures: what is not public, or of other packages. A public name that is not there fails.
+nitpick_ignore_regex = [("py:(class|data|obj)", r"(?!ribbonopt\.\w+$).*")]
 default_role = "literal"  # what docstrings put in backquotes
 
 myst_enable_extensions = ["dollarmath", "colon_fence", "deflist"]
@@ -72,6 +75,6 @@ sphinx_gallery_conf = {
     "min_reported_time": 60,
     "abort_on_example_error": True,
     "image_scrapers": ("shown.figures",),
-    "ignore_repr_types": r"matplotlib\.figure",
+    "ignore_repr_types": r"matplotlib\.figure|ribbonopt\.views",
     "reset_modules": ("matplotlib",),
 }

@@ -32,7 +32,7 @@ print("moment at the start", solution.m0)
 solution.plot("ribbon")
 
 # %%
-# Bending u2 and twist u3 along it. At s = 0.5, where m2 changes its sign, both leap.
+# Bending u2 and twist u3 along it. At s = 0.5, where m2 changes its sign, u2 leaps.
 solution.plot("strains")
 
 # %%

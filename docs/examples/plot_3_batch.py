@@ -2,7 +2,7 @@
 Solve a batch, and read it with pandas
 ======================================
 
-Forty arches between clamps that stand closer and closer, one of them turned: forces as a table.
+Thirty-five arches between clamps that stand closer and closer, one of them turned: a table.
 """
 
 # %%
@@ -19,15 +19,15 @@ name: arches
 scene:
   name: arch
   law: {type: variational, delta: 0.1}
-  parameters: {distance: 0.8, turn: 0.2}
+  parameters: {distance: 0.8, turn: 0}
   boundary:
     start: {support: clamped, position: [0, 0, 0], directors: identity}
-    end: {support: clamped, position: [0, 0.05, distance], directors: {turns: [{z: turn}]}}
+    end: {support: clamped, position: [0, 0, distance], directors: {turns: [{y: turn}]}}
   tolerance: 1e-6
 sweep:
   grid:
-    parameters.distance: {from: 0.6, to: 0.9, count: 8}
-    parameters.turn: [0.2, 0.5, 0.8, 1.1, 1.4]
+    parameters.distance: {from: 0.6, to: 0.9, count: 7}
+    parameters.turn: [-0.4, -0.2, 0, 0.2, 0.4]
 """,
     encoding="utf-8",
 )
@@ -52,4 +52,4 @@ rows.pivot(index="parameters.distance", columns="parameters.turn", values="energ
 
 # %%
 # Any two columns as a scatter.
-batch.plot("turn", "energy")
+batch.plot("distance", "energy")
