@@ -3,6 +3,7 @@
 import ast
 import re
 import shlex
+import shutil
 from functools import cache
 from pathlib import Path
 
@@ -139,6 +140,27 @@ def test_python_uses_public_names(page: Path) -> None:
         for node in ast.walk(ast.parse(block)):
             if isinstance(node, ast.ImportFrom) and node.module == "ribbonopt":
                 assert {name.name for name in node.names} <= set(ribbonopt.__all__), block
+
+
+WITH_PYTHON = [
+    page for page in (README, *PAGES) if blocks(page, "python") and page.name != "extending.md"
+]
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("page", WITH_PYTHON, ids=lambda path: path.stem)
+def test_python_runs(page: Path, tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.chdir(tmp_path)
+    shutil.copytree(ROOT / "configs", tmp_path / "configs")
+    study = tmp_path / "configs" / "studies" / "arches.yaml"
+    text = study.read_text(encoding="utf-8")
+    study.write_text(re.sub(r"count: \d+", "count: 2", text), encoding="utf-8")  # 4 of 500
+    saved = ribbonopt.solve(ribbonopt.load_scene("configs/moebius_half.yaml"))
+    folder = tmp_path / "results" / "moebius-half"
+    folder.mkdir(parents=True)
+    ribbonopt.save_solution(saved, folder)
+    for block in blocks(page, "python"):
+        exec(compile(block, str(page), "exec"), {})
 
 
 @pytest.mark.parametrize("page", PAGES, ids=lambda path: path.stem)
