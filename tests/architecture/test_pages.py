@@ -142,9 +142,9 @@ def test_python_uses_public_names(page: Path) -> None:
                 assert {name.name for name in node.names} <= set(ribbonopt.__all__), block
 
 
-WITH_PYTHON = [
-    page for page in (README, *PAGES) if blocks(page, "python") and page.name != "extending.md"
-]
+#: whose Python stands by itself, block by block; others have tests of their own
+ALONE = ("batches", "bifurcations", "commands", "start")
+WITH_PYTHON = [README, *(ROOT / "docs" / f"{name}.md" for name in ALONE)]
 
 
 @pytest.mark.slow
