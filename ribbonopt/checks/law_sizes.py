@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator
 
 from ribbonopt.scene import RibbonSizes
-from ribbonopt.scene.laws import OfWidth, Sized
+from ribbonopt.scene.sized import OfWidth, Sized
 from ribbonopt.solution.solution import Solution
 
 SLENDER = 10.0  # least ratio of length to width, and of width to thickness

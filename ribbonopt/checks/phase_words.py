@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ribbonopt.scene import Scene
-from ribbonopt.scene.laws import OfWidth
+from ribbonopt.scene.sized import OfWidth
 from ribbonopt.solution.solution import Solution
 
 

@@ -18,8 +18,8 @@ from ribbonopt.mechanics.laws.catalogue import is_developable
 from ribbonopt.mechanics.outputs import sheet_slopes
 from ribbonopt.mechanics.widths import widths
 from ribbonopt.scene import RibbonSizes
-from ribbonopt.scene.laws import OfWidth
 from ribbonopt.scene.limits import STRETCH
+from ribbonopt.scene.sized import OfWidth
 from ribbonopt.solution.solution import Solution
 
 from .convexity import leap_problems

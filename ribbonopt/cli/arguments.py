@@ -26,7 +26,7 @@ VERBS = {
     ),
     "batch": ("solve all ribbons of a study, on all cores", options.batch),
     "verify": ("compute numbers with sources again, and say which are confirmed", options.verify),
-    "schema": ("print the JSON schema of scenes, for editors", options.schema),
+    "schema": ("print the JSON schema of scenes or studies, for editors", options.schema),
     "plot": ("draw the pictures of a saved result", options_shown.plot),
     "export": ("write a saved result for ParaView, Blender, pandas, ...", options_shown.export),
     "view": (

@@ -113,7 +113,15 @@ def verify(verb: argparse.ArgumentParser) -> None:
 
 
 def schema(verb: argparse.ArgumentParser) -> None:
-    """Add nothing."""
+    """Options of `schema`."""
+    verb.add_argument(
+        "what",
+        metavar="WHAT",
+        nargs="?",
+        default="scene",
+        choices=("scene", "study"),
+        help="of which files: scene (default) or study",
+    )
 
 
 class _Versions(argparse.Action):

@@ -131,8 +131,13 @@ def _checked(found: dict[str, Any]) -> str:
 
 
 def schema(options: argparse.Namespace) -> int:
-    """Print the JSON schema of scenes."""
-    from ribbonopt.scene import json_schema
+    """Print the JSON schema of scenes, or of studies."""
+    if options.what == "study":
+        from ribbonopt.studies.batch.written import study_schema
 
-    say_json(json_schema(), indent=2)
+        say_json(study_schema(), indent=2)
+    else:
+        from ribbonopt.scene import json_schema
+
+        say_json(json_schema(), indent=2)
     return 0

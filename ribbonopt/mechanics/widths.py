@@ -6,7 +6,7 @@ import numpy as np
 
 from ribbonopt.arrays import Array
 from ribbonopt.scene import Scene
-from ribbonopt.scene.laws import Sized
+from ribbonopt.scene.sized import Sized
 
 
 def own_width(scene: Scene) -> float | None:

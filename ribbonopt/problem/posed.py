@@ -21,8 +21,8 @@ from ribbonopt.mechanics.laws.asymmetry import changed_by_flip, leaves_plane, ne
 from ribbonopt.mechanics.laws.catalogue import bends_alone, fields_of, membrane_numbers, numbers_of
 from ribbonopt.mechanics.loads.load import Load
 from ribbonopt.scene import Loads, Scene
-from ribbonopt.scene.laws import OfWidth
 from ribbonopt.scene.planes import held
+from ribbonopt.scene.sized import OfWidth
 from ribbonopt.scene.units import Units, in_special_units, units_of
 
 if TYPE_CHECKING:

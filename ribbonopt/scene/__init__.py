@@ -4,13 +4,11 @@ from __future__ import annotations
 
 from .along import Along, Scaled, Table, TableFile
 from .continuation import ContinuationStage
-from .ends import (
+from .ends import Boundary, End, Loop
+from .frames import (
     AnyVector,
-    Boundary,
     Directors,
-    End,
     LabVector,
-    Loop,
     Quaternion,
     Rotation,
     RotationVector,
@@ -18,8 +16,18 @@ from .ends import (
     Turns,
     Value,
 )
+from .guesses import (
+    ArcGuess,
+    Band,
+    Guess,
+    Helix,
+    HelixGuess,
+    LoadGuess,
+    MoebiusGuess,
+    SolutionGuess,
+    StrainGuess,
+)
 from .laws import (
-    Extensible,
     Homotopy,
     Kirchhoff,
     Law,
@@ -27,34 +35,15 @@ from .laws import (
     Regularized,
     Rod,
     Sadowsky,
-    Sano,
     SingleSheet,
     Variational,
-    Wunderlich,
 )
 from .loads import Loads, OwnLoad
 from .membrane import Membrane
-from .model import (
-    Algebraic,
-    ArcGuess,
-    Auto,
-    Band,
-    Collocation,
-    Guess,
-    Helix,
-    HelixGuess,
-    Ipopt,
-    LoadGuess,
-    MoebiusGuess,
-    Newton,
-    Reference,
-    RibbonSizes,
-    Scene,
-    Shooting,
-    SolutionGuess,
-    StrainGuess,
-)
+from .model import Reference, RibbonSizes, Scene
 from .natural import Natural
+from .sized import Extensible, Sano, Wunderlich
+from .solving import Algebraic, Auto, Collocation, Ipopt, Newton, Shooting
 from .stations import InteriorSupport, PointLoad
 from .supports import Support, SupportName
 from .yamlio import (

@@ -28,6 +28,13 @@ class Table:
 
     Third derivatives jump at the arclengths of the table, so that a mesh that has no nodes there
     converges as h^4 about them, whatever its degree; error bars see that.
+
+    Attributes
+    ----------
+    s
+        Arclengths, ascending; they cover the interval. Example: `[0, 0.5, 1]`
+    values
+        Value at each. Example: `[1, 2, 1]`
     """
 
     s: tuple[float, ...]
@@ -38,8 +45,13 @@ class Table:
 class TableFile:
     """A text file of rows s, value (commas or blanks between; `#` begins a comment).
 
-    The path is relative to the folder of the scene file. With more than two columns a first row
-    names them, and `column` says which.
+    Attributes
+    ----------
+    file
+        Its path, relative to the folder of the scene file. Example: `weights.csv`
+    column
+        Which column has the values, by the name in the first row, where there are more than two.
+        Example: `force`
     """
 
     file: str

@@ -25,29 +25,38 @@ class ContinuationStage:
     Attributes
     ----------
     parameter
-        Dotted path of a number of the scene, such as law.epsilon or boundary.end.position.x.
-    to, from_
-        Last and first value; `from` in a file, by default where the scene or an earlier stage is.
-        Two values of `to`, on both sides of `from`, are gone to one after the other.
+        Dotted path of the number of the scene that moves. Example: `law.epsilon` or
+        `boundary.end.position.x`
+    to
+        Last value. Two, on both sides of `from`, are gone to one after the other.
+        Example: `1e-4` or `[35, 60]`
+    from_
+        First value (`from` in a file); by default where the scene or an earlier stage is.
+        Example: `0.1`
     values
-        In place of `to`: exactly these values, strictly monotonic.
+        In place of `to`: exactly these values, strictly monotonic. Example: `[0.1, 0.03, 0.01]`
     scale
-        What steps are measured in.
-    first, smallest, largest
-        Sizes of steps.
+        What steps are measured in. Example: `log`
+    first
+        Size of the first step; found by itself if not given. Example: `0.05`
+    smallest
+        Smallest step, at which the stage gives up. Example: `1e-6`
+    largest
+        Largest step. Example: `0.2`
     points
-        Most points.
+        Most points. Example: `200`
     stop
-        What ends the stage: conditions such as "energy > 30", and special points such as "fold",
-        "branch point", or "2 folds" for the second.
+        What ends the stage: conditions, and special points, or which of them.
+        Example: `["energy > 30"]` or `[fold]` or `[2 branch points]`
     special
         Whether folds and branch points are located.
     switch
         Whether the branches that cross are followed, in both directions; 2 for those as well that
-        cross them, and so on.
+        cross them, and so on. Example: `2`
     stability
         Whether negative directions are counted where the scene is conservative; `eigenvalue` if the
         smallest eigenvalue of the second variation is recorded besides, as `softest`.
+        Example: `eigenvalue`
     """
 
     parameter: str

@@ -1,8 +1,4 @@
-"""What a scene may say of the ends of a ribbon: components, frames, supports, and loops.
-
-A `Value` is a number, or a formula of the scene's `parameters` such as "1 - shortening". Vectors
-are in the lab frame unless named along directors; angles are in radians.
-"""
+"""What a scene may say of the ends of a ribbon: what is held, what acts there, and loops."""
 
 from __future__ import annotations
 
@@ -11,86 +7,11 @@ from typing import Annotated, Literal
 from ribbonopt.classes import dataclass
 
 from . import limits
+from .frames import AnyVector, Director, LabVector, Rotation, Triple, Value
 from .schema.bounds import Bounds, InPython
 from .supports import SUPPORTS, Support, SupportName
 
-Value = float | str
-Triple = tuple[Value, Value, Value]
-Director = Literal["d1", "d2", "d3"]
 HalfTwists = Annotated[int, Bounds(most=limits.HALF_TWISTS)]
-
-
-@dataclass(frozen=True)
-class LabVector:
-    """Some components of a vector in the lab frame; those not named are left free."""
-
-    x: Value | None = None
-    y: Value | None = None
-    z: Value | None = None
-
-
-@dataclass(frozen=True)
-class AnyVector:
-    """Some components of a vector: in the lab frame (x, y, z) or along directors (d1, d2, d3)."""
-
-    x: Value | None = None
-    y: Value | None = None
-    z: Value | None = None
-    d1: Value | None = None
-    d2: Value | None = None
-    d3: Value | None = None
-
-
-@dataclass(frozen=True)
-class Directors:
-    """A whole frame: two or three of its directors, each by its lab components."""
-
-    d1: Triple | None = None
-    d2: Triple | None = None
-    d3: Triple | None = None
-
-
-@dataclass(frozen=True)
-class Quaternion:
-    """A whole frame: the unit quaternion, scalar first, that turns the lab axes to directors."""
-
-    quaternion: tuple[Value, Value, Value, Value]
-
-
-@dataclass(frozen=True)
-class RotationVector:
-    """A whole frame: axis times angle of the rotation that takes the lab axes to the directors.
-
-    More than half a turn counts as in `turns`.
-    """
-
-    rotation_vector: Triple
-
-
-@dataclass(frozen=True)
-class Turn:
-    """One rotation by an angle about one named axis: of the lab, or a director as it then is."""
-
-    x: Value | None = None
-    y: Value | None = None
-    z: Value | None = None
-    d1: Value | None = None
-    d2: Value | None = None
-    d3: Value | None = None
-
-
-@dataclass(frozen=True)
-class Turns:
-    """A whole frame: the lab axes after these rotations in order; more than half a turn counts.
-
-    Where one is by more than half a turn, the automatic start winds the ribbon so, whole turns
-    included, from the frame of its start. Equations and other guesses know of the frame alone.
-    """
-
-    turns: tuple[Turn, ...]
-
-
-Rotation = Literal["identity"] | Directors | Quaternion | RotationVector | Turns
 
 
 @dataclass(frozen=True)
@@ -99,10 +20,37 @@ class End:
 
     A support says what is held and makes the loads that go with what is free vanish, unless they
     are given (`force`, `moment`: dead loads). They are declared in `ribbonopt.scene.supports`;
-    a declaration of one's own may stand in the place of a name, in Python.
+    a declaration of one's own may stand in the place of a name, in Python. Vectors are in the lab
+    frame unless named along directors; numbers may be formulas of `parameters`.
 
-    `edge` says for law wunderlich whether the edge across the ribbon is held straight, which
-    supports tell by themselves (see `ribbonopt.scene.edges`).
+    Attributes
+    ----------
+    support
+        What holds the end. Example: `clamped`
+    position
+        Place of the centre line's end r: all three lab components, or some. Example: `[0, 0, 0.7]`
+        or `{y: 0}`
+    directors
+        The whole frame at the end: `identity` (d1, d2, d3 along x, y, z), some directors, a
+        quaternion, a rotation vector, or turns. Example: `identity` or `{turns: [{z: pi/2}]}`
+    d1, d2, d3
+        Lab components of this director that are held, all or some, where not the whole frame is.
+        Example: `{x: 0}`
+    axis
+        The director that a hinge, or an axis of two-fold symmetry, holds. Example: `d2`
+    along
+        The direction of this axis, or of the line on which the end slides; lab components, of any
+        length. Example: `[0, 1, 0]`
+    distance
+        How far the end is held from the start (support `held`). Example: `0.5`
+    force
+        Force n that is given at the end: at the end of the ribbon what acts on it there, at its
+        start what the ribbon carries away, so minus what acts. Example: `{d1: 0}` or `[0, 0, -3]`
+    moment
+        Moment m that is given at the end, with signs as for `force`. Example: `[0, 2.5, 0]`
+    edge
+        For law wunderlich: whether the edge across the ribbon is held straight, or is free;
+        supports tell by themselves. Example: `free`
     """
 
     support: SupportName | Annotated[Support, InPython()] | None = None
@@ -128,9 +76,16 @@ class End:
 class Loop:
     """A closed band of `half_twists` (2 (twist + writhe) of its directors; negative: mirrored).
 
-    The interval is the `piece` that is solved: the whole loop, a half (flip symmetry), or the
-    fundamental one of length L / (2 |half_twists|) of a band with dihedral symmetry. With `auto` it
-    is the whole loop, of which the smallest piece is solved that law, loads and guess allow.
+    Attributes
+    ----------
+    half_twists
+        How many half twists the band has; 1 is a Moebius band, 0 a ring. Negative: mirrored.
+        Example: `3`
+    piece
+        What the interval is, which is solved: the whole loop, a half (flip symmetry), or the
+        fundamental piece of length L / (2 ``|half_twists|``) of a band with dihedral symmetry. With
+        `auto` the interval is the whole loop, of which the smallest piece is solved that law, loads
+        and guess allow. Example: `auto`
     """
 
     half_twists: HalfTwists
@@ -150,10 +105,20 @@ class Loop:
 
 @dataclass(frozen=True)
 class Boundary:
-    """Conditions at both ends; `also` holds further equations as formulas.
+    """Conditions at both ends.
 
-    With a `loop`, both ends follow from it, and only the place of a whole or half loop may be
-    given, as position and directors of the start.
+    Attributes
+    ----------
+    start, end
+        What holds this end, and what acts there; with a `loop` both follow from it, and only the
+        place of a whole or half loop may be given, as position and directors of the start.
+        Example: `{support: clamped, position: [0, 0, 0], directors: identity}`
+    also
+        Further equations, as formulas of r, d1, d2, d3, n, m (vectors, lab frame) and n1 ... m3,
+        u1, u2, u3 (along directors) at (start) or (end). Example: `["dot(n, d1(start)) = 0"]`
+    loop
+        Closes the ribbon to a band; in the place of conditions at its ends.
+        Example: `{half_twists: 1}`
     """
 
     start: End = End()

@@ -8,18 +8,27 @@ for (`OwnLaw`).
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import fields, replace
+from dataclasses import replace
 from typing import Annotated, Any, ClassVar, Literal, Protocol, runtime_checkable
 
 from ribbonopt.classes import dataclass
 
 from .faults import KeyPath
 from .schema.bounds import Bounds, InPython
+from .sized import Extensible, Sano, Wunderlich
 
 
 @dataclass(frozen=True)
 class Kirchhoff:
-    """Linear rod, section 2: m2 = B2 u2, m3 = B3 u3 and u1 = 0 (units of Dw)."""
+    """Linear rod, section 2: m2 = B2 u2, m3 = B3 u3 and u1 = 0.
+
+    Attributes
+    ----------
+    B2
+        Stiffness of bending about d2, in units of Dw. Example: `0.91`
+    B3
+        Stiffness of twist, in units of Dw. Example: `1.4`
+    """
 
     type: Literal["kirchhoff"] = "kirchhoff"
     B2: Annotated[float, Bounds(gt=0)] = 1.0
@@ -43,8 +52,15 @@ Stiffness = Annotated[float, Bounds(gt=0)]
 class Rod:
     """Linear rod that bends about d1 too: m_i = B_i (u_i - k_i), along d1, d2, d3.
 
-    `B` are stiffnesses (units of Dw): bending about d1 and d2, twist. `natural` are the strains
-    k_i without stress (1 / L). Their paths are law.B.d1, law.natural.d3 and so on.
+    Numbers have paths such as law.B.d1 and law.natural.d3.
+
+    Attributes
+    ----------
+    B
+        Stiffnesses in units of Dw: of bending about d1 and d2, and of twist.
+        Example: `[100, 1, 2]`
+    natural
+        Strains k1, k2, k3 without stress (1 / length). Example: `[0, 2, 0]`
     """
 
     type: Literal["rod"] = "rod"
@@ -76,7 +92,13 @@ class Sadowsky:
 
 @dataclass(frozen=True)
 class SingleSheet:
-    """One sheet chi = sign(u2) of Sadowsky's relation, eq. (B 1) with its sign mended."""
+    """One sheet of Sadowsky's relation, eq. (B 1) with its sign mended.
+
+    Attributes
+    ----------
+    chi
+        Which sheet: the sign of u2. Example: `-1`
+    """
 
     type: Literal["single_sheet"] = "single_sheet"
     chi: Literal[1, -1] = 1
@@ -84,7 +106,13 @@ class SingleSheet:
 
 @dataclass(frozen=True)
 class Regularized:
-    """Sadowsky's law smoothed by epsilon, eq. (6.1)."""
+    """Sadowsky's law smoothed, eq. (6.1); no energy.
+
+    Attributes
+    ----------
+    epsilon
+        How much it is smoothed; 0 is Sadowsky's law. Example: `1e-3`
+    """
 
     type: Literal["regularized"] = "regularized"
     epsilon: Annotated[float, Bounds(ge=0)] = 0.01
@@ -92,7 +120,15 @@ class Regularized:
 
 @dataclass(frozen=True)
 class Homotopy:
-    """From rod (rho = 0) to ribbon (rho = 1), eq. (C 1)."""
+    """From rod to ribbon, eq. (C 1); no energy.
+
+    Attributes
+    ----------
+    rho
+        How far it is on the way: 0 is the rod, 1 the ribbon. Example: `0.5`
+    epsilon
+        How much the ribbon's part is smoothed, as in `regularized`. Example: `1e-3`
+    """
 
     type: Literal["homotopy"] = "homotopy"
     rho: Annotated[float, Bounds(ge=0, le=1)] = 1.0
@@ -101,91 +137,17 @@ class Homotopy:
 
 @dataclass(frozen=True)
 class Variational:
-    """Smooth law that keeps an energy: W_Leg = (sqrt(m2^2 + delta^2 m3^2) + |m|)^2 / 8."""
+    """Smooth law that keeps an energy: W_Leg = (sqrt(m2^2 + delta^2 m3^2) + ``|m|``)^2 / 8.
+
+    Attributes
+    ----------
+    delta
+        How much it is smoothed; towards 0 it becomes Sadowsky's law, 1 is a rod.
+        Example: `0.01`
+    """
 
     type: Literal["variational"] = "variational"
     delta: Annotated[float, Bounds(gt=0, le=1)] = 0.01
-
-
-Length = Annotated[float, Bounds(gt=0)]
-Poisson = Annotated[float, Bounds(gt=-1, le=0.5)]
-
-
-@dataclass(frozen=True)
-class Wunderlich:
-    """Inextensible ribbon of finite width (1 in units of L), section 6.3; by default `ribbon`'s."""
-
-    type: Literal["wunderlich"] = "wunderlich"
-    width: Length | None = None
-
-    def of_sizes(self, width: float, thickness: float, ratio: float) -> Wunderlich:
-        """Return the law with the numbers of a ribbon where it has none of its own."""
-        return replace(self, width=_or(self.width, width))
-
-    def in_units(self, stiffness: float, strain: float) -> Wunderlich:
-        """Return the same law, its numbers divided by these units."""
-        return self if self.width is None else replace(self, width=self.width * strain)
-
-
-@dataclass(frozen=True)
-class Extensible:
-    """Extensible ribbon (RIBEXT) of a width and a thickness (units of L); by default `ribbon`'s."""
-
-    type: Literal["extensible"] = "extensible"
-    width: Length | None = None
-    thickness: Length | None = None
-    poisson_ratio: Poisson | None = None
-
-    def of_sizes(self, width: float, thickness: float, ratio: float) -> Extensible:
-        """Return the law with the numbers of a ribbon where it has none of its own."""
-        sizes = _or(self.width, width), _or(self.thickness, thickness)
-        return Extensible(self.type, *sizes, _or(self.poisson_ratio, ratio))
-
-    def in_units(self, stiffness: float, strain: float) -> Extensible:
-        """Return the same law, its numbers divided by these units."""
-        lengths = {"width": self.width, "thickness": self.thickness}
-        known = {name: value * strain for name, value in lengths.items() if value is not None}
-        return replace(self, **known)  # type: ignore[arg-type]
-
-
-@dataclass(frozen=True)
-class Sano:
-    """Sano and Wada's ribbon: W = (B2 u2^2 + B3 u3^2 + u3^4 / (1/zeta^2 + u2^2)) / 2.
-
-    B2 and B3 in units of Dw, zeta a length; by default of `ribbon`: 1 - nu^2, 2 (1 - nu) and
-    zeta^2 = (1 - nu^2) w^4 / (60 h^2).
-    """
-
-    type: Literal["sano"] = "sano"
-    B2: Stiffness | None = None
-    B3: Stiffness | None = None
-    zeta: Length | None = None
-
-    def of_sizes(self, width: float, thickness: float, ratio: float) -> Sano:
-        """Return the law with the numbers of a ribbon where it has none of its own."""
-        zeta = ((1 - ratio**2) / 60) ** 0.5 * width**2 / thickness
-        moduli = _or(self.B2, 1 - ratio**2), _or(self.B3, 2 * (1 - ratio))
-        return Sano(self.type, *moduli, _or(self.zeta, zeta))
-
-    def in_units(self, stiffness: float, strain: float) -> Sano:
-        """Return the same law, its numbers divided by these units."""
-        return self if self.zeta is None else replace(self, zeta=self.zeta * strain)
-
-
-#: laws that know the edges of the ribbon
-OfWidth = Wunderlich
-
-#: laws whose numbers are those of the `ribbon` of a scene where they are not said
-Sized = Wunderlich | Extensible | Sano
-
-
-def missing_of(law: Sized) -> list[str]:
-    """Return the names of the numbers that a law does not say."""
-    return [f.name for f in fields(law) if getattr(law, f.name) is None]
-
-
-def _or(own: float | None, other: float) -> float:
-    return other if own is None else own
 
 
 @runtime_checkable

@@ -28,7 +28,14 @@ class OwnLoad(Protocol):
 
 @dataclass(frozen=True)
 class AlongAxes:
-    """Components in the lab frame, each a number along the ribbon; those not given are zero."""
+    """Components in the lab frame, each a number along the ribbon; those not given are zero.
+
+    Attributes
+    ----------
+    x, y, z
+        Component along this axis: a number, a formula of s, or a table.
+        Example: `-5` or `-20*(1 - 0.7*s)`
+    """
 
     x: Along | None = None
     y: Along | None = None
@@ -42,10 +49,20 @@ AlongVector = tuple[Along, Along, Along] | AlongAxes
 class Loads:
     """Loads along the ribbon, and at single places.
 
-    `force` and `couple` are dead: per length, in the lab frame, they keep their direction while the
-    ribbon moves. `pressure` follows it: a force per length along the normal d1, in SI a pressure in
-    pascals times the width. All three are numbers, formulas of s, or tables. `points` act at single
-    arclengths; `own` are declared in Python.
+    Attributes
+    ----------
+    force
+        Dead force per length, lab frame: it keeps its direction while the ribbon moves.
+        Example: `{z: -5}`
+    couple
+        Dead couple per length, lab frame. Example: `{y: 0.5}`
+    pressure
+        Force per length along the normal d1, which follows the ribbon; in SI a pressure in pascals
+        times the width. Example: `8`
+    points
+        What acts at single arclengths. Example: `[{at: 0.5, force: [-2, 0, 0]}]`
+    own
+        Loads declared in Python; no file can say them.
     """
 
     force: AlongVector | None = None

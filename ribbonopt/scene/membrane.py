@@ -17,11 +17,17 @@ Modulus = Annotated[float, Bounds(gt=0)]
 
 @dataclass(frozen=True)
 class Membrane:
-    """Stiffnesses in the ribbon's own plane; one that is left out is infinite.
+    """Stiffnesses in the ribbon's own plane.
 
-    `bending` is B1, about d1, in units of Dw, and `stretching` is EA, in units of Dw / L^2: with
-    `ribbon` of its own D, w and L, as law.B2 is. A ribbon of one material has
-    B1 = (1 - nu^2) (w / h)^2 and EA = 12 (1 - nu^2) (L / h)^2.
+    A ribbon of one material has B1 = (1 - nu^2) (w / h)^2 and EA = 12 (1 - nu^2) (L / h)^2. With
+    `ribbon` units are of its own D, w and L, as those of law.B2 are.
+
+    Attributes
+    ----------
+    bending
+        Stiffness B1 of bending about d1, in units of Dw; left out: infinite. Example: `9100`
+    stretching
+        Stiffness EA of stretch, in units of Dw / L^2; left out: infinite. Example: `1.09e7`
     """
 
     bending: Modulus | None = None

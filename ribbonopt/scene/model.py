@@ -15,154 +15,29 @@ from ribbonopt.classes import dataclass
 from . import limits
 from .along import Along
 from .continuation import ContinuationStage
-from .ends import Boundary, HalfTwists, LabVector, Loop, Triple, Value
+from .ends import Boundary, Loop
+from .frames import LabVector, Triple
+from .guesses import Guess, Numbers3
 from .laws import Law
 from .loads import Loads
 from .membrane import AnyMembrane
 from .natural import Natural
 from .schema.bounds import Bounds
+from .solving import Algebraic, Auto, Collocation, Ipopt, Newton, Shooting
 from .stations import InteriorSupport
-
-Numbers3 = tuple[float, float, float]
-Intervals = Annotated[int, Bounds(ge=1, most=limits.INTERVALS)]
-Iterations = Annotated[int, Bounds(ge=1, most=limits.ITERATIONS)]
-SolverTolerance = Annotated[float, Bounds(gt=0, le=1)]
-
-
-@dataclass(frozen=True)
-class LoadGuess:
-    """Guess by the force and moment at the start (lab frame), integrated along the ribbon."""
-
-    force: Numbers3
-    moment: Numbers3
-
-
-@dataclass(frozen=True)
-class StrainGuess:
-    """Guess by constant strains (u2, u3): an arc or helix from the start, no loads to be known."""
-
-    strains: tuple[float, float]
-
-
-@dataclass(frozen=True)
-class SolutionGuess:
-    """Guess by a saved solution: a result folder or its `solution.npz`."""
-
-    solution: str
-
-
-@dataclass(frozen=True)
-class ArcGuess:
-    """Guess by a circular arc bent about d2 that turns by an angle (radians) in all."""
-
-    arc: Value
-
-
-@dataclass(frozen=True)
-class Helix:
-    """Helix of some turns that rises by a share of its length (0: circles, 1: straight)."""
-
-    turns: Value
-    rise: Annotated[float, Bounds(ge=-1, le=1)]
-
-
-@dataclass(frozen=True)
-class HelixGuess:
-    """Guess by a helix from the start."""
-
-    helix: Helix
-
-
-@dataclass(frozen=True)
-class Band:
-    """Circle whose directors turn about the tangent by half twists; or the `piece` solved of it.
-
-    Without a piece: that of the scene's loop, or the whole.
-    """
-
-    half_twists: HalfTwists
-    piece: Literal["whole", "half", "fundamental"] | None = None
-
-
-@dataclass(frozen=True)
-class MoebiusGuess:
-    """Guess by a twisted circle."""
-
-    moebius: Band
-
-
-Guess = (
-    Literal["auto", "circle"]
-    | LoadGuess
-    | StrainGuess
-    | ArcGuess
-    | HelixGuess
-    | MoebiusGuess
-    | SolutionGuess
-)
-
-
-@dataclass(frozen=True)
-class Collocation:
-    """Collocation: polynomials of a degree on a number of intervals."""
-
-    type: Literal["collocation"] = "collocation"
-    scheme: Literal["gauss", "radau", "lobatto"] = "gauss"
-    degree: Annotated[int, Bounds(ge=1, le=10)] = 6
-    intervals: Intervals = 10
-
-
-@dataclass(frozen=True)
-class Shooting:
-    """Multiple shooting: every interval integrated by a number of Runge-Kutta steps.
-
-    `rk4` and `rk8` are explicit, `gauss` is implicit, of the given degree; one interval is single
-    shooting.
-    """
-
-    type: Literal["shooting"] = "shooting"
-    scheme: Literal["rk4", "rk8", "gauss"] = "rk8"
-    steps: Annotated[int, Bounds(ge=1, most=limits.STEPS)] = 1
-    degree: Annotated[int, Bounds(ge=1, le=10)] = 3
-    intervals: Intervals = 20
-
-
-@dataclass(frozen=True)
-class Algebraic:
-    """The differential-algebraic form (3.1), with or without the bounds |eta| <= 1 of (4.1)."""
-
-    type: Literal["algebraic"] = "algebraic"
-    bounds: bool = True
-
-
-@dataclass(frozen=True)
-class Auto:
-    """Newton where it is enough (square equations), IPOPT where it is not."""
-
-    type: Literal["auto"] = "auto"
-
-
-@dataclass(frozen=True)
-class Ipopt:
-    """IPOPT: globalised, bounded, able to minimise; `tolerance` is that of the nonlinear solver."""
-
-    type: Literal["ipopt"] = "ipopt"
-    tolerance: SolverTolerance = 1e-12
-    max_iterations: Iterations = 200
-
-
-@dataclass(frozen=True)
-class Newton:
-    """Newton's method with kept factors; `tolerance` is relative to the size of the unknowns."""
-
-    type: Literal["newton"] = "newton"
-    tolerance: SolverTolerance = 1e-13
-    max_iterations: Iterations = 50
 
 
 @dataclass(frozen=True)
 class Reference:
-    """Loads at the start (lab frame) known from elsewhere: the truth for `ribbonopt compare`."""
+    """Loads at the start known from elsewhere: the truth for `ribbonopt compare`.
+
+    Attributes
+    ----------
+    n0
+        Force n at the start, lab frame. Example: `[0, 43.4964080169, 42.0522517129]`
+    m0
+        Moment m at the start, lab frame. Example: `[0, 2.0054509958, -8.8692039616]`
+    """
 
     n0: Numbers3
     m0: Numbers3
@@ -170,9 +45,22 @@ class Reference:
 
 @dataclass(frozen=True)
 class RibbonSizes:
-    """The ribbon in SI units (m, Pa): lengths, forces and moments of the scene are SI too.
+    """The ribbon in SI units: lengths, forces and moments of the scene are SI too.
 
-    `density` (kg/m^3) is needed where there is `gravity`.
+    Attributes
+    ----------
+    length
+        Length L of the whole ribbon, in m. Example: `0.3`
+    width
+        Width w, in m. Example: `0.01`
+    thickness
+        Thickness h, in m. Example: `1e-4`
+    youngs_modulus
+        Young's modulus E, in Pa. Example: `4.5e9`
+    poisson_ratio
+        Poisson's ratio nu. Example: `0.38`
+    density
+        Mass per volume, in kg/m^3; needed where there is `gravity`. Example: `1400`
     """
 
     length: Annotated[float, Bounds(gt=0)]
@@ -191,14 +79,84 @@ class RibbonSizes:
 class Scene:
     """One ribbon: its law, its interval, its boundary conditions and how to solve it.
 
-    In a file with `ribbon` the interval is by default all of its length, or the piece of a loop.
-    `width` is that along s in units of the ribbon's own, to which Dw and `ribbon.width` belong.
-    `planar` says that the ribbon stays in the plane across d2 at its start: it is solved there, by
-    an angle in the place of a frame, and its stability is judged in space.
-    `symmetric` solves half of a strip whose clamps half a turn maps to each other; which director
-    is along its axis in the middle, where there are two.
-    `labels` are what numbers are called beside the axes of figures, by their columns, with formulas
-    between $.
+    Attributes
+    ----------
+    name
+        Name of the scene, and of the folder of its results; any language. Example: `moebius-half`
+    law
+        Constitutive law: what bending and twist the moments make. A name alone will do where no
+        numbers are needed. Example: `{type: sadowsky}` or `wunderlich`
+    boundary
+        What is held at both ends and what acts there, or that the ribbon is a closed loop.
+        Example: `{loop: {half_twists: 1}}`
+    guess
+        Where the solution is looked for; `auto` finds a start by itself, and takes over where
+        another guess leads nowhere. Example: `{moebius: {half_twists: 1}}`
+    starts
+        How many starts look for different equilibria; that of least energy comes first.
+        Example: `8`
+    seed
+        Seed of the random numbers of further starts. Example: `1`
+    formulation
+        Form of the equations: `inverted` is the ordinary differential equation (4.5), `algebraic`
+        has u2 and u3 as unknowns (3.1), `differentiated` has them as states, `energy` minimises
+        the strain energy. Example: `energy`
+    states
+        What describes a cross section: `reduced` is position and quaternion, `full` the 18 states
+        of the paper, `planar` an angle and two coordinates (see `planar`); `auto` is `reduced`.
+        Example: `full`
+    interval
+        Arclengths of the start and of the end; with `ribbon` by default all of its length, or the
+        piece of a loop. Example: `[0, 0.5]`
+    parameters
+        Names for numbers, of which formulas may be made. Example: `{shortening: 0.25}`
+    transcription
+        How the equations are made discrete.
+        Example: `{type: collocation, scheme: gauss, degree: 6, intervals: 10}`
+    tolerance
+        Relative error of the answer, until which the mesh is refined; without one it stays as it
+        is. Example: `1e-9`
+    switching
+        Where the ribbon is split because m2 changes its sign: `auto` finds out, `off` never splits,
+        or the arclengths themselves. Example: `[0.5]`
+    solver
+        What solves the discrete equations. Example: `{type: newton, max_iterations: 100}`
+    reference
+        Loads known from elsewhere.
+    ribbon
+        What ribbon it is; with it all numbers of the scene and of its results are SI.
+        Example: `{length: 0.3, width: 0.01, thickness: 1e-4, youngs_modulus: 4.5e9,
+        poisson_ratio: 0.38}`
+    record
+        Further numbers to be told, each a formula at an arclength (by default the end).
+        Example: `{deflection: "dot(r, ex) at 0.5"}`
+    continuation
+        What `ribbonopt continue` follows: one stage, or several in their order.
+        Example: `{parameter: law.epsilon, from: 0.1, to: 1e-4, scale: log}`
+    loads
+        What acts between the ends. Example: `{force: {z: -5}}`
+    gravity
+        Acceleration of gravity, lab frame, in m/s^2; needs the `density` of a `ribbon`.
+        Example: `[0, 0, -9.81]`
+    supports
+        What holds the ribbon between its ends. Example: `[{at: 0.3, position: {x: 0}}]`
+    width
+        Width along s in units of the ribbon's own, to which Dw and `ribbon.width` belong.
+        Example: `1 - 0.7*s`
+    natural
+        Curvature and twist of the free ribbon. Example: `{curvature: 2.5}`
+    membrane
+        How the ribbon gives in its own plane; `ribbon` takes both numbers from its sizes, without
+        it neither does. Example: `ribbon`
+    planar
+        Whether the ribbon stays in the plane across d2 at its start: it is solved there, by an
+        angle in the place of a frame, and its stability is judged in space.
+    symmetric
+        Whether half of a strip is solved whose clamps half a turn maps to each other; or which
+        director is along its axis in the middle, where there are two. Example: `d1`
+    labels
+        What numbers are called beside the axes of figures, by their columns; formulas stand between
+        $. Example: `{energy: $E$, middle: height}`
     """
 
     name: str

@@ -12,9 +12,19 @@ from .schema.bounds import Bounds
 
 @dataclass(frozen=True)
 class Natural:
-    """Curvatures of the free ribbon, 1 / length, numbers along it: along, twist and across.
+    """Curvatures of the free ribbon, 1 / length; numbers along it.
 
-    `poisson_ratio` couples those along and across; by default that of `ribbon`, or 0 without one.
+    Attributes
+    ----------
+    curvature
+        Natural bending along the ribbon, about d2. Example: `2.5` or `1 + s`
+    twist
+        Natural twist. Example: `0.5`
+    across
+        Natural curvature across the width, as of a tape spring. Example: `10`
+    poisson_ratio
+        Couples curvature along and across; by default that of `ribbon`, or 0 without one.
+        Example: `0.3`
     """
 
     curvature: Along = 0.0

@@ -19,13 +19,16 @@ from typing import Any
 from ribbonopt.classes import dataclass
 
 from .along import scaled
-from .ends import Boundary, End, LabVector, Triple
-from .laws import Law, OwnLaw, Sized, Stiff
+from .ends import Boundary, End
+from .frames import LabVector, Triple
+from .guesses import Guess, LoadGuess, StrainGuess
+from .laws import Law, OwnLaw, Stiff
 from .loads import AlongAxes, AlongVector, Loads
 from .membrane import in_units
-from .model import Guess, LoadGuess, Reference, RibbonSizes, Scene, StrainGuess
+from .model import Reference, RibbonSizes, Scene
 from .natural import Natural
 from .quantities import dimension
+from .sized import Sized
 from .stations import InteriorSupport, PointLoad
 
 UNIT_LENGTH, UNIT_FORCE = "units.length", "units.force"
@@ -173,9 +176,8 @@ def _gravity(scene: Scene, units: Units) -> Triple | LabVector | None:
     if scene.gravity is None or ribbon is None or ribbon.density is None:
         return scene.gravity
     mass = ribbon.density * ribbon.width * ribbon.thickness
-    weight: Triple | LabVector = _over(
-        scene.gravity, units.force / units.length / mass, scene.parameters
-    )
+    unit = units.force / units.length / mass
+    weight: Triple | LabVector = _over(scene.gravity, unit, scene.parameters)
     return weight
 
 
@@ -241,9 +243,8 @@ def _over(value: Any, unit: float, parameters: Mapping[str, float] | None = None
         held = {f.name: getattr(value, f.name) for f in fields(value)}
         return replace(value, **{k: _over(v, unit, parameters) for k, v in held.items()})  # type: ignore[type-var]
     if isinstance(value, str):
-        from .formulas.parsing import (
-            evaluate_value,  # scenes in plain numbers start without the grammar
-        )
+        # Scenes in plain numbers start without the grammar.
+        from .formulas.parsing import evaluate_value
 
         value = evaluate_value(value, parameters or {})
     return float(value) / unit

@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 from ribbonopt.scene import Boundary, ContinuationStage, End, Kirchhoff, Law, Scene, Variational
-from ribbonopt.scene.ends import Turn, Turns
+from ribbonopt.scene.frames import Turn, Turns
 from ribbonopt.solution.solution import Solution
 from ribbonopt.studies.continuation.continuation import Continuation
 from ribbonopt.studies.continuation.walk.points import FOLD, POINT, Point

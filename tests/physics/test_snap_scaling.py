@@ -10,7 +10,7 @@ from scipy.optimize import brentq
 from scipy.special import ellipe, ellipk
 
 from ribbonopt.scene import Boundary, ContinuationStage, End, Kirchhoff, LoadGuess, Scene
-from ribbonopt.scene.ends import Turn, Turns
+from ribbonopt.scene.frames import Turn, Turns
 from ribbonopt.studies.continuation.continuation import Continuation
 from ribbonopt.studies.continuation.walk.points import FOLD, POINT
 

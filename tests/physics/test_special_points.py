@@ -22,7 +22,7 @@ from ribbonopt.scene import (
     Scene,
     Variational,
 )
-from ribbonopt.scene.ends import AnyVector, Turn, Turns
+from ribbonopt.scene.frames import AnyVector, Turn, Turns
 from ribbonopt.studies.continuation.continuation import Continuation
 
 SWEEP = pytest.mark.sweep  # `ribbonopt verify` has these points too

@@ -22,7 +22,7 @@ from ribbonopt.pipeline.prepared import prepare, solve
 from ribbonopt.problem import Ribbon
 from ribbonopt.problem.energy import minimum
 from ribbonopt.scene import Scene, loads_scene
-from ribbonopt.scene.ends import AnyVector
+from ribbonopt.scene.frames import AnyVector
 from ribbonopt.solution.solution import Solution
 from ribbonopt.solvers import Status
 from ribbonopt.studies.buckling.buckling import buckling_loads

@@ -20,7 +20,7 @@ from ribbonopt.scene import (
     Scene,
     Variational,
 )
-from ribbonopt.scene.ends import Turn, Turns
+from ribbonopt.scene.frames import Turn, Turns
 from ribbonopt.solution.solution import Solution
 from ribbonopt.studies.continuation.continuation import Continuation
 from ribbonopt.studies.continuation.walk.points import POINT, Point

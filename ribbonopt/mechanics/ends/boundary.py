@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ribbonopt.scene import Boundary, End, Scene
-from ribbonopt.scene.laws import OfWidth
+from ribbonopt.scene.sized import OfWidth
 
 from .conditions import Condition, EndName
 from .frames import Parameters, components, frame_of, number

@@ -6,8 +6,8 @@ from collections.abc import Iterator
 
 from ribbonopt.scene.edges import edge_of
 from ribbonopt.scene.faults import Problem
-from ribbonopt.scene.laws import OfWidth
 from ribbonopt.scene.model import Scene
+from ribbonopt.scene.sized import OfWidth
 
 
 def check_edges(scene: Scene) -> Iterator[Problem]:

@@ -6,8 +6,9 @@ import math
 from collections.abc import Iterator, Mapping
 from itertools import combinations
 
-from ribbonopt.scene.ends import Directors, End, LabVector, Quaternion, Turn, Turns, Value
+from ribbonopt.scene.ends import End
 from ribbonopt.scene.faults import KeyPath, Problem
+from ribbonopt.scene.frames import Directors, LabVector, Quaternion, Turn, Turns, Value
 from ribbonopt.scene.wording import given, written
 
 TOLERANCE = 1e-6

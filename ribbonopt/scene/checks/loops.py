@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 from ribbonopt.scene.ends import Boundary, End, Loop
 from ribbonopt.scene.faults import KeyPath, Problem
-from ribbonopt.scene.model import Band, Guess, MoebiusGuess
+from ribbonopt.scene.guesses import Band, Guess, MoebiusGuess
 from ribbonopt.scene.wording import given, listed, written
 
 from .supports import check_whole_position

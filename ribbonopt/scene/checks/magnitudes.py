@@ -13,9 +13,10 @@ from typing import Any
 
 from ribbonopt.scene import limits
 from ribbonopt.scene.faults import KeyPath, Problem, dotted
-from ribbonopt.scene.laws import Sano, Stiff
+from ribbonopt.scene.laws import Stiff
 from ribbonopt.scene.model import Scene
 from ribbonopt.scene.schema.annotations import key_of
+from ribbonopt.scene.sized import Sano
 from ribbonopt.scene.units import Units, units_of
 
 from .kinds import KINDS, Kind

@@ -6,8 +6,9 @@ from collections.abc import Iterator
 from dataclasses import fields
 
 from ribbonopt.scene.faults import Problem
-from ribbonopt.scene.laws import Sadowsky, SingleSheet, Variational, Wunderlich
+from ribbonopt.scene.laws import Sadowsky, SingleSheet, Variational
 from ribbonopt.scene.model import Scene
+from ribbonopt.scene.sized import Wunderlich
 
 #: laws whose energy is that of a plate, which couples curvatures along and across
 PLATES = (Sadowsky, SingleSheet, Variational, Wunderlich)

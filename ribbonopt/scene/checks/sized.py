@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from ribbonopt.scene.faults import Problem
-from ribbonopt.scene.laws import OfWidth, Sano, Sized, missing_of
 from ribbonopt.scene.limits import NARROWEST
 from ribbonopt.scene.model import Scene
+from ribbonopt.scene.sized import OfWidth, Sano, Sized, missing_of
 from ribbonopt.scene.units import Units
 
 

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping
 
-from ribbonopt.scene.ends import AnyVector, End, Triple
+from ribbonopt.scene.ends import End
 from ribbonopt.scene.faults import KeyPath, Problem
+from ribbonopt.scene.frames import AnyVector, Triple
 from ribbonopt.scene.supports import ForceAlongLine, LoadAlongAxis, LoadVector, Part, Support
 from ribbonopt.scene.wording import given, listed, written
 

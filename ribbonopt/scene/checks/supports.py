@@ -10,8 +10,9 @@ import math
 from collections.abc import Iterator, Mapping
 from typing import Literal
 
-from ribbonopt.scene.ends import Boundary, End, LabVector, Triple
+from ribbonopt.scene.ends import Boundary, End
 from ribbonopt.scene.faults import KeyPath, Problem
+from ribbonopt.scene.frames import LabVector, Triple
 from ribbonopt.scene.supports import EXAMPLES, SUPPORTS, Support
 from ribbonopt.scene.wording import given, listed, written
 

@@ -14,10 +14,11 @@ from ribbonopt.classes import dataclass
 from ribbonopt.scene.along import is_along, numbers_along
 from ribbonopt.scene.ends import Boundary
 from ribbonopt.scene.faults import KeyPath, Problem, shown
-from ribbonopt.scene.laws import OfWidth, Sized
+from ribbonopt.scene.guesses import Guess, MoebiusGuess
 from ribbonopt.scene.loads import Loads
-from ribbonopt.scene.model import Guess, MoebiusGuess, RibbonSizes, Scene
+from ribbonopt.scene.model import RibbonSizes, Scene
 from ribbonopt.scene.schema.annotations import branches, hints, inside
+from ribbonopt.scene.sized import OfWidth, Sized
 from ribbonopt.scene.stations import InteriorSupport
 from ribbonopt.scene.wording import written
 from ribbonopt.text import name_fault

@@ -1,4 +1,8 @@
-"""The JSON schema of scene files, from the same annotations that validation reads."""
+"""The JSON schema of files, from the annotations that validation reads and from docstrings.
+
+An object is told by its class: `title` is its name, `description` its docstring. Where a key holds
+one, what the docstring of the holder says of the key comes first, a paragraph of its own.
+"""
 
 from __future__ import annotations
 
@@ -8,6 +12,7 @@ from typing import Annotated, Any, Literal, Union, get_args, get_origin
 
 from .annotations import branches, classes_of, hints, key_of, only_in_python, types_of
 from .bounds import Bounds
+from .described import Described, described, prose
 
 DIALECT = "https://json-schema.org/draft/2020-12/schema"
 
@@ -35,6 +40,8 @@ def _schema(annotation: Any) -> dict[str, Any]:
         return {"additionalProperties": _schema(arguments[1]), "type": "object"}
     if is_dataclass(annotation) and isinstance(annotation, type):
         return _object(annotation)
+    if annotation is Any:
+        return {}
     plain = {float: "number", int: "integer", bool: "boolean", str: "string", NoneType: "null"}
     return {"type": plain[annotation]}
 
@@ -83,7 +90,13 @@ def _object(cls: Any, *, type_required: bool = False) -> dict[str, Any]:
         if (member.default is MISSING and member.default_factory is MISSING)
         or (type_required and member.name == "type")
     ]
-    told: dict[str, Any] = {"description": (cls.__doc__ or "").partition("\n")[0]}
+    says = described(cls)
+    summary = Described(prose(cls).partition("\n")[0], ())  # of a `type`, which is but a name
+
+    def words_of(key: str) -> Described:
+        return says[key] if key in says or key != "type" else summary
+
+    told: dict[str, Any] = {"description": prose(cls)}
     if required:
         told["required"] = required
     return {
@@ -91,17 +104,24 @@ def _object(cls: Any, *, type_required: bool = False) -> dict[str, Any]:
         "title": cls.__name__,
         "type": "object",
         "properties": {
-            key: _member(hint, member, key in required) for key, hint, member in members
+            key: _member(hint, member, key in required, words_of(key))
+            for key, hint, member in members
         },
         "additionalProperties": False,
     }
 
 
-def _member(hint: Any, member: Field[Any], required: bool) -> dict[str, Any]:
+def _member(hint: Any, member: Field[Any], required: bool, said: Described) -> dict[str, Any]:
     schema, default = _schema(hint), member.default
     if "title" in schema:  # of a class, whose default says nothing
-        return schema
+        both = (said.text, schema["description"])
+        return {**schema, "description": "\n\n".join(both), **_examples(said)}
     told: dict[str, Any] = {**schema, "title": key_of(member.name).title().replace("_", " ")}
+    told |= {"description": said.text, **_examples(said)}
     if not (required or default in (MISSING, None) or is_dataclass(default)):
         told["default"] = list(default) if isinstance(default, tuple) else default
     return dict(sorted(told.items()))
+
+
+def _examples(said: Described) -> dict[str, Any]:
+    return {"examples": list(said.examples)} if said.examples else {}

@@ -17,7 +17,7 @@ from ribbonopt.mechanics.laws.catalogue import numbers_of
 from ribbonopt.scene import Law, Scene
 from ribbonopt.scene.edges import Edge, edge_of
 from ribbonopt.scene.faults import suggestion
-from ribbonopt.scene.laws import OfWidth, Sized
+from ribbonopt.scene.sized import OfWidth, Sized
 from ribbonopt.scene.stages import stages_of
 from ribbonopt.scene.wording import listed
 

@@ -35,7 +35,7 @@ from ribbonopt.scene import (
 )
 from ribbonopt.scene.supports import EXAMPLES, SUPPORTS
 
-README = Path(__file__).parents[3] / "README.md"
+PAGE = Path(__file__).parents[3] / "docs" / "scenes.md"
 POINT = (0.0, 0.0, 0.0)
 FIXED = End(position=POINT)
 FREE = End()
@@ -91,7 +91,7 @@ def test_names_are_those_of_the_declarations() -> None:
 
 @each_support
 def test_readme_and_editors_tell_of_every_support(support: SupportName) -> None:
-    assert f"| `{support}` |" in README.read_text(encoding="utf-8")
+    assert f"| `{support}` |" in PAGE.read_text(encoding="utf-8")
     keys = json_schema()["properties"]["boundary"]["properties"]["end"]["properties"]
     assert f"{support}: {SUPPORTS[support].says}" in keys["support"]["description"]
 
