@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 from typing import TYPE_CHECKING
 
+from .common import say_left_out
 from .terminal import complain, say_line
 from .values import size
 
@@ -19,7 +20,9 @@ def view(options: argparse.Namespace) -> int:
     from ribbonopt.viewer.looking import saved_view
 
     place = page_place(options.result, options.out)
-    path = write_page(saved_view(options.result, half_width), place)
+    shown = saved_view(options.result, half_width)
+    path = write_page(shown, place)
+    say_left_out(shown.left_out)
     say_line(str(path))
     if options.open:
         _open(path)

@@ -18,7 +18,7 @@ from ribbonopt.views.pieces import ROWS
 from ribbonopt.views.subject import subject_of
 
 from .diagram import diagram_of
-from .facts import about_of
+from .facts import about_of, number_of, vector_of
 from .view import Ribbon, View
 from .width import width_of
 
@@ -36,7 +36,9 @@ def view_of_branch(branch: Branch, half_width: float | None = None) -> View:
         If it has no points.
     """
     if not branch.rows:
-        raise ViewError(f"{branch.scene.name}: the branch has no points, so there is nothing to see")
+        raise ViewError(
+            f"{branch.scene.name}: the branch has no points, so there is nothing to see"
+        )
     chosen = chosen_of(branch.rows)
     rows = ROWS if len(chosen) <= MANY else FEW_ROWS
     subjects = [subject_of(branch[i], complete=True, rows=rows) for i in chosen]
@@ -59,7 +61,21 @@ def view_of_branch(branch: Branch, half_width: float | None = None) -> View:
     about = ", ".join(filter(None, [count, law, words]))
     diagram = diagram_of(figure_of(branch))
     name = branch.scene.name
-    return View("branch", name, about, ribbons, width, diagram=diagram, units=first.units)
+    few = left_out(len(branch), len(chosen), "points")
+    return View(
+        "branch",
+        *(name, about, ribbons, width),
+        diagram=diagram,
+        units=first.units,
+        left_out=few,
+    )
+
+
+def left_out(count: int, shown: int, what: str) -> tuple[str, ...]:
+    """Return what is to be said where a page has not the shapes of all points or ribbons."""
+    if shown == count:
+        return ()
+    return (f"the shapes of {count - shown} of {count} {what}: a page holds {MOST} at most",)
 
 
 def figure_of(branch: Branch) -> BranchFigure:
@@ -83,12 +99,13 @@ def chosen_of(rows: Sequence[Row], most: int = MOST) -> list[int]:
     if len(rows) <= most:
         return list(range(len(rows)))
     special = [i for i, row in enumerate(rows) if row["kind"] != POINT]
-    kept = {0, len(rows) - 1, *_evenly(special, most // 2)}
+    kept = {0, len(rows) - 1, *evenly(special, most // 2)}
     others = [i for i in range(len(rows)) if i not in kept]
-    return sorted({*kept, *_evenly(others, most - len(kept))})
+    return sorted({*kept, *evenly(others, most - len(kept))})
 
 
-def _evenly(places: Sequence[int], most: int) -> list[int]:
+def evenly(places: Sequence[int], most: int) -> list[int]:
+    """Return at most so many of some places, evenly among them, the first and the last too."""
     if len(places) <= most:
         return list(places)
     return [places[int(k)] for k in np.linspace(0, len(places) - 1, most).round()]
@@ -97,8 +114,10 @@ def _evenly(places: Sequence[int], most: int) -> list[int]:
 def caption_of(row: Row) -> str:
     """Return what a point is: its number, where it is, whether it is stable."""
     kind = "" if row["kind"] == POINT else f"{row['kind']}, "
-    where = f"{row['parameter'].rpartition('.')[2]} = {_number(row[row['parameter']])}"
-    return f"point {row['number']}: {kind}{where}, {stability_of(row)}"
+    where = f"{row['parameter'].rpartition('.')[2]} = {number_of(row[row['parameter']])}"
+    known = row["kind"] == POINT or row.get("negative") is not None
+    stability = f", {stability_of(row)}" if known else ""  # which changes at special points
+    return f"point {row['number']}: {kind}{where}{stability}"
 
 
 def stability_of(row: Row) -> str:
@@ -117,14 +136,10 @@ def numbers_of_row(row: Row) -> list[tuple[str, str]]:
     after = list(row)[list(row).index("u3") + 1 :] if "u3" in row else []
     own = [name for name in after if name not in names and is_number(row[name])]
     recorded = [name for name in own if name not in ("intervals", "iterations")]
-    found = [(name, _number(row.get(name))) for name in (*names, *recorded, "energy")]
+    found = [(name, number_of(row.get(name))) for name in (*names, *recorded, "energy")]
     for name, label in (("n0", "force n(0), lab frame"), ("m0", "moment m(0), lab frame")):
         parts = [row.get(f"{name}{axis}") for axis in "xyz"]
         if None not in parts:
-            found.append((label, f"({', '.join(map(_number, parts))})"))
+            found.append((label, vector_of(parts)))
     bar = row.get(LAST)
     return [*found, *([("relative error", f"{bar:.0e}")] if is_number(bar) else [])]
-
-
-def _number(value: object) -> str:
-    return f"{value:.6g}" if isinstance(value, int | float) else "not known"

@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 from typing import Any
 
-from ribbonopt.output.digits import digits, upwards
+from ribbonopt.output.digits import SMALL, digits, upwards
 
-SMALL = 1e-3  # largest component of what is written with powers of ten
+ROUNDED = 1e-12  # of the largest component: what is zero but for rounding
 
 
 def numbers_of(summary: Mapping[str, Any]) -> list[tuple[str, str]]:
@@ -38,6 +38,19 @@ def status_of(summary: Mapping[str, Any]) -> str:
     """Return in words how a solve ended."""
     word = str(summary.get("status", "")).replace("_", " ")
     return "verified" if summary.get("verified") else f"{word}: {summary.get('message', '')}"
+
+
+def number_of(value: object) -> str:
+    """Return a value of a row as it is read: numbers to six digits, words as they are."""
+    if value is None:
+        return "not known"
+    return f"{value:.6g}" if isinstance(value, int | float) else str(value)
+
+
+def vector_of(parts: Sequence[float]) -> str:
+    """Return a vector as it is read, components that are but rounding as 0."""
+    most = max(map(abs, parts))
+    return f"({', '.join(number_of(v if abs(v) > ROUNDED * most else 0) for v in parts)})"
 
 
 def _number(value: Any, bar: float | None, unit: str) -> str:

@@ -45,7 +45,11 @@ def assembled(kind: str, name: str, data: dict[str, Any]) -> str:
         "style": style,
         "script": deflated(script.encode("utf-8")),
         "loader": loader,
-        "data": as_script(data),
+        "about": marked_up(data.get("about", "")),
+        "still": data.get("still", ""),
+        "data": as_script(
+            {key: value for key, value in data.items() if key not in ("still", "about")}
+        ),
     }
     # In one pass: what a scene says may look like the name of a part.
     return re.sub(r"@(\w+)@", lambda found: parts.get(found[1], found[0]), text_of("page.html"))

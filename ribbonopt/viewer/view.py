@@ -15,13 +15,14 @@ from ribbonopt.arrays import Array
 from ribbonopt.classes import dataclass
 from ribbonopt.scene.units import Units
 from ribbonopt.text import printable
-from ribbonopt.views.camera import place_camera
+from ribbonopt.views.camera import Camera, place_camera
 from ribbonopt.views.shape import Shape, shape_from
 from ribbonopt.views.subject import Subject
 from ribbonopt.views.surface import sweep
 
 from .acting import arrows_of
 from .packing import packed
+from .still import still
 
 SI = {"length": "m", "strain": "1/m", "force": "N", "moment": "N m", "energy": "J/m"}
 PLACED = 4000  # points of centre lines from which the view is chosen
@@ -74,6 +75,10 @@ class View:
         To which all are drawn where their relative width is 1; each to one of its own if None.
     diagram, table : mapping or None
         Plain data of a branch's diagram, and of a batch's scatter and table.
+    units : Units
+        Of all of it.
+    left_out : tuple of str
+        What the page does not hold, and why.
     """
 
     kind: str
@@ -84,6 +89,7 @@ class View:
     diagram: Mapping[str, Any] | None = None
     table: Mapping[str, Any] | None = None
     units: Units = field(default_factory=Units)
+    left_out: tuple[str, ...] = ()
 
     @property
     def shapes(self) -> list[Shape]:
@@ -99,7 +105,7 @@ def contents(view: View) -> dict[str, Any]:
     """Return what the page reads, as plain data; texts as they are seen."""
     shapes = view.shapes
     centred = view.kind == "batch"  # shapes that do not follow from each other
-    frame, centres = _frame(view, shapes, centred)
+    camera, frame, centres = _frame(view, shapes, centred)
     told = [_told(*both) for both in zip(view.ribbons, shapes, strict=True)]
     for one, centre in zip(told, centres, strict=True):
         one.update({"centre": centre} if centred else {})
@@ -112,6 +118,7 @@ def contents(view: View) -> dict[str, Any]:
         "camera": frame,
         "shapes": told,
         "packed": packed(shapes) if shapes else "",
+        "still": still(shapes[0], camera) if shapes else "",
         "diagram": view.diagram,
         "table": view.table,
     }
@@ -139,8 +146,8 @@ def _told(ribbon: Ribbon, shape: Shape) -> dict[str, Any]:
 
 def _frame(
     view: View, shapes: Sequence[Shape], centred: bool
-) -> tuple[dict[str, Any], list[list[float]]]:
-    """Return how the view begins, one for all shapes, and the middle of each."""
+) -> tuple[Camera, dict[str, Any], list[list[float]]]:
+    """Return how the view begins, one for all shapes, as plain data too, and the middle of each."""
     lines = [_known(shape.r) for shape in shapes]
     every = max(1, sum(map(len, lines)) // PLACED)
     about = [line - line.mean(axis=0) if centred and len(line) else line for line in lines]
@@ -168,7 +175,7 @@ def _frame(
     }
     places = iter(middles)
     each = [next(places).tolist() if len(part) and centred else [0.0] * 3 for part in corners]
-    return frame, each
+    return camera, frame, each
 
 
 def _box(points: Array) -> Array:

@@ -10,11 +10,12 @@ from ribbonopt.solution.solution import Solution
 
 from .camera import Camera, place_camera
 from .facets import Drawing, draw_surface
+from .generatrices import ETA_BOUND, LEAP_SLOPE
 from .marks import marks_of, paint_marks
 from .pieces import Array
 from .style import FAINT, INK, blank, head
 from .subject import Subject, subject_of
-from .surface import ETA_BOUND, LEAP_SLOPE, Surface, sweep
+from .surface import Surface, sweep
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes

@@ -2,32 +2,20 @@
 
 With u1 = 0 and b = d2 + eta d3, b' = eta' d3: along a generatrix the normal is d1 everywhere, and
 the surface is regular while half_width |eta'| < 1 (section 2 of the paper); u1 leaves the normal as
-it is, with eta' + u1 (1 + eta^2) in the place of eta'. Where u2 changes sign
-and u3 does not vanish, eta leaps from one sign to the other, which no ribbon of finite width can
-follow: there |eta| is drawn at most LEAP_SLOPE |s - s*| / half_width, so that the generatrices fan
-out from about a point of one edge, as they do on a real Moebius ribbon.
+it is, with eta' + u1 (1 + eta^2) in the place of eta'. How eta is drawn: `generatrices`.
 """
 
 from __future__ import annotations
-
-from itertools import pairwise
 
 import numpy as np
 
 from ribbonopt.classes import dataclass
 from ribbonopt.errors import ModelError
 
+from .generatrices import ETA_BOUND, Generatrices
 from .pieces import Array, Piece
 
-ETA_BOUND = 1.0  # generatrices are drawn at most this oblique: the bound (4.1) of Sadowsky's ribbon
-WIDTH_SHARE = 1 / 20  # half-width by default, of the length drawn
-LEAST_SHARE = 1 / 200  # half-width by default at least, though generatrices cross
-REGULAR_SLOPE = 0.8  # half_width |eta'| by default at most this
-LEAP_SLOPE = 0.7  # half_width |eta'| where eta leaps
-LEAST_LEAP = 1e-3
-LEAP_SHARE = 1 / 5  # half-width by default at most, of the usual distance between leaps
 CLOSE = 1e-4  # of the length: ends nearer than this meet
-FINE = 1e-6  # of the length: rows closer than this do not count for eta'
 
 
 @dataclass(frozen=True)
@@ -131,56 +119,17 @@ def sweep(pieces: tuple[Piece, ...], half_width: float | None = None) -> Surface
     """
     if half_width is not None and not half_width > 0:
         raise ModelError(f"half_width is expected to be positive, found {half_width}")
-    regular = _regular_half_width(pieces)
-    leaps = [_leap(a, b) for a, b in pairwise(pieces)]
-    seam = _leap_at_seam(pieces)
-    leaps = [seam, *leaps, seam]
-    w = half_width
-    if w is None:
-        length = pieces[-1].s[-1] - pieces[0].s[0]
-        where = [pieces[0].s[0], *(piece.s[-1] for piece in pieces)]
-        apart = np.diff(np.array(where)[leaps])
-        usual = float(np.median(apart)) if len(apart) else np.inf
-        widest = _widest(pieces)
-        w = min(WIDTH_SHARE * length / widest, LEAP_SHARE * usual / widest, REGULAR_SLOPE * regular)
-        w = max(w, LEAST_SHARE * length / widest)  # eta may be steep where there is no strain
-    sheets = tuple(
-        Sheet(piece, _drawn_eta(piece, w, *ends), w)
-        for piece, ends in zip(pieces, pairwise(leaps), strict=True)
-    )
+    lines = Generatrices.of(pieces, _closing(pieces))
+    w = lines.usual_half_width() if half_width is None else half_width
+    ends = np.cumsum([len(piece.s) for piece in pieces])[:-1]
+    drawn = np.split(lines.drawn(w), ends)
+    sheets = tuple(Sheet(piece, eta, w) for piece, eta in zip(pieces, drawn, strict=True))
     bounded = any(bool((np.abs(p.eta) > ETA_BOUND + 1e-9).any()) for p in pieces)
-    return Surface(w, sheets, bounded, any(leaps), w > regular)
+    return Surface(w, sheets, bounded, len(lines.leaps) > 0, lines.overlap(w) > 1)
 
 
 def _widest(pieces: tuple[Piece, ...]) -> float:
     return max(float(piece.widths.max()) for piece in pieces)
-
-
-def _regular_half_width(pieces: tuple[Piece, ...]) -> float:
-    """Return the half-width up to which no generatrices cross, apart from leaps of eta."""
-    length = pieces[-1].s[-1] - pieces[0].s[0]
-    steepest = 0.0
-    for piece in pieces:
-        rows = np.diff(piece.s) > FINE * length
-        eta = _bounded(piece.eta)
-        slope = np.diff(eta)[rows] / np.diff(piece.s)[rows] + (piece.u1 * (1 + eta**2))[1:][rows]
-        slope = np.abs(slope) * piece.widths[1:][rows]
-        steepest = max(steepest, float(slope.max()))
-    return 1 / max(steepest, 1e-300)
-
-
-def _bounded(eta: Array) -> Array:
-    return np.clip(eta, -ETA_BOUND, ETA_BOUND)
-
-
-def _leap(a: Piece, b: Piece, sign: int = 1) -> bool:
-    return bool(np.abs(sign * _bounded(b.eta)[0] - _bounded(a.eta)[-1]) > LEAST_LEAP)
-
-
-def _leap_at_seam(pieces: tuple[Piece, ...]) -> bool:
-    """Whether eta leaps where a closed ribbon returns; it changes sign as the face turns over."""
-    sign = _closing(pieces)
-    return sign != 0 and _leap(pieces[-1], pieces[0], sign)
 
 
 def _closing(pieces: tuple[Piece, ...]) -> int:
@@ -191,12 +140,3 @@ def _closing(pieces: tuple[Piece, ...]) -> int:
     if gap > CLOSE * (last.s[-1] - first.s[0]) or abs(facing) < 0.999:
         return 0
     return 1 if facing > 0 else -1
-
-
-def _drawn_eta(piece: Piece, w: float, leaps_before: bool, leaps_after: bool) -> Array:
-    eta = _bounded(piece.eta)
-    for leaps, s in ((leaps_before, piece.s[0]), (leaps_after, piece.s[-1])):
-        if leaps:
-            bound = LEAP_SLOPE * np.abs(piece.s - s) / (w * piece.widths)
-            eta = np.clip(eta, -bound, bound)
-    return eta

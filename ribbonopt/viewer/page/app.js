@@ -2,7 +2,7 @@
 // The page as a whole: which shape is shown, what is said of it, what all parts mark together.
 const FIELDS = [["", "plain"], ["u2", "bending u₂"], ["u3", "twist u₃"], ["eta", "η = u₃/u₂"],
   ["energy", "energy per length"]];
-const PACE = 90; // milliseconds between shapes that are played
+const [WHOLE, FASTEST, SLOWEST] = [9000, 40, 300]; // milliseconds: of all shapes played, of each
 
 function makeApp() {
   const get = (id) => document.getElementById(id);
@@ -26,11 +26,12 @@ function makeApp() {
   }
 
   function tell(i) {
-    const { caption, note, numbers, warnings } = view.shapes[i];
+    const { caption, note, numbers, warnings, verified } = view.shapes[i];
     get("slider").value = i;
     get("slider").setAttribute("aria-valuetext", caption);
     get("count").textContent = `${i + 1} of ${view.shapes.length}`;
-    get("caption").textContent = [caption, note].filter(Boolean).join(": ");
+    get("caption").textContent = [caption, note].filter(Boolean).join("; ");
+    get("caption").className = verified ? "good" : "bad";
     const list = document.createElement("dl");
     for (const [name, value] of numbers) {
       for (const [tag, text] of [["dt", name], ["dd", value]]) {
@@ -57,7 +58,8 @@ function makeApp() {
 
   function play(on) {
     clearInterval(playing);
-    playing = on ? setInterval(() => show((shape + 1) % view.shapes.length), PACE) : null;
+    const pace = Math.min(Math.max(WHOLE / view.shapes.length, FASTEST), SLOWEST);
+    playing = on ? setInterval(() => show((shape + 1) % view.shapes.length), pace) : null;
     get("play").textContent = on ? "❚❚" : "▶";
     get("play").setAttribute("aria-label", on ? "pause" : "play");
   }
@@ -84,6 +86,12 @@ function makeApp() {
       show(+get("slider").value);
     };
     get("play").onclick = () => play(!playing);
+    const strides = { ArrowLeft: -1, ArrowRight: 1, PageUp: -10, PageDown: 10, Home: -1e9, End: 1e9 };
+    document.addEventListener("keydown", ({ key, target }) => {
+      if (target !== document.body || !strides[key] || view.shapes.length < 2) return;
+      play(false);
+      show(Math.min(Math.max(shape + strides[key], 0), view.shapes.length - 1));
+    });
   }
 
   // The diagram of a branch. Where few of many points have shapes, a click shows the nearest one.
@@ -99,14 +107,24 @@ function makeApp() {
     });
   }
 
+  // Scatter and table of a batch. A row without a shape says so.
+  function drawBatch() {
+    get("diagram").hidden = get("table").hidden = false;
+    get("ribbon").hidden = get("panels").hidden = !view.shapes.length;
+    return batch.build(get("diagram"), get("table"), view.table, (row) => {
+      const i = view.shapes.findIndex((one) => one.row === row);
+      if (i >= 0) return show(i);
+      get("caption").textContent = `row ${row + 1}: its shape is not on this page`;
+    });
+  }
+
   async function begin() {
     await shapes.read();
     controls();
     ribbon = makeRibbon(get("stage"), (row) => mark(row));
     panels = makePanels(get("panels"), mark);
-    const what = get("what");
-    what.textContent = view.about;
     if (view.diagram) overview = drawDiagram();
+    if (view.table) overview = { mark: drawBatch().choose };
     if (view.shapes.length) show(0);
     document.documentElement.dataset.ready = "";
   }

@@ -105,14 +105,19 @@ const shapes = (() => {
     return { x, y, row };
   }
 
-  // The least and largest of a column over all shapes, for one scale of colours.
+  function values(i, name) {
+    const k = COLUMNS.indexOf(name);
+    if (name === "eta") return column(i, COLUMNS.indexOf("angle")).map(Math.tan);
+    return k < 0 ? rows(i)[name] : column(i, k);
+  }
+
+  // The least and largest of a column over all shapes: one scale of colours, one axis for all.
   const ranges = {};
   function range(name) {
     if (!ranges[name]) {
       let [low, high] = [Infinity, -Infinity];
       for (let i = 0; i < view.shapes.length; i++) {
-        const values = name === "eta" ? column(i, 13).map(Math.tan) : column(i, COLUMNS.indexOf(name));
-        for (const value of values) {
+        for (const value of values(i, name)) {
           if (value < low) low = value;
           if (value > high) high = value;
         }

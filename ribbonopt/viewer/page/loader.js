@@ -13,6 +13,7 @@ function fail(error) {
 }
 
 (async () => {
+  for (const part of ["main", "#theme"]) document.querySelector(part).hidden = false;
   const script = document.createElement("script");
   script.textContent = await inflated(document.getElementById("script").textContent).text();
   document.head.append(script);

@@ -43,7 +43,7 @@ function makeMesh(rows, closing) {
   return {
     points,
     normals,
-    faces: new Uint16Array(faces),
+    faces: new Uint32Array(faces),
     pale: Float32Array.from({ length: ACROSS * count }, (_, i) => pale(Math.floor(i / ACROSS))),
     edges: new Float32Array(edges),
     centre: new Float32Array(centre),

@@ -55,7 +55,7 @@ function makeOverlay(svg) {
   function acting(camera, list) {
     for (const { at, way, kind, press } of list || []) {
       const from = camera.project(...at).slice(0, 2);
-      const length = (kind === "density" ? 34 : 64) / Math.max(1, 0);
+      const length = kind === "density" ? 34 : 64;
       const seen = [length * dot(way, camera.right), -length * dot(way, camera.up)];
       const tail = press ? [from[0] - seen[0], from[1] - seen[1]] : from;
       arrow(tail, seen, kind);

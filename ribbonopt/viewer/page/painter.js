@@ -67,7 +67,7 @@ function makePainter(canvas) {
       parts.push(...segments(camera, mesh.centre, { stroke, width: 0.9 }, lift));
       parts.push(...segments(camera, mesh.edges, { stroke, width: 0.9 }, lift));
       parts.sort((a, b) => a.height - b.height).forEach(paint);
-      const style = { stroke: css(look.mark), width: 2.2, opacity: 0.9 };
+      const style = { stroke: css(look.mark), width: 2.4, opacity: 0.9 };
       if (marked) segments(camera, marked, style, 0).forEach(paint);
       pen.globalAlpha = 1;
     },

@@ -30,6 +30,17 @@ function makePanels(place, onHover) {
 
   const named = (name) => name.replace("1", "₁").replace("2", "₂").replace("3", "₃");
 
+  // Over all shapes, so that they can be compared; what is but rounding lies in the middle.
+  function range(names) {
+    if (view.shapes.length < 2 || view.kind === "batch") return undefined;
+    const [low, high] = [Math.min, Math.max].map((least, k) =>
+      least(...names.map((name) => shapes.range(name)[k])),
+    );
+    const room = 0.05 * (high - low);
+    const flat = !(high - low > 1e-9 * Math.max(Math.abs(low), Math.abs(high), 1e-300));
+    return flat ? undefined : [low - room, high + room];
+  }
+
   function region(i) {
     const far = 50 * Math.max(largest(i, "u2"), largest(i, "u3"), 1e-12);
     return [1, -1].map((sign) => ({
@@ -50,12 +61,15 @@ function makePanels(place, onHover) {
     strains: (i) => {
       const most = Math.max(...["u1", "u2", "u3"].map((name) => largest(i, name)));
       const names = largest(i, "u1") > NOTHING * most ? ["u1", "u2", "u3"] : ["u2", "u3"];
-      return { series: series(i, names), yLabel: label("strains", units.strain) };
+      const yRange = range(names);
+      return { series: series(i, names), yRange, yLabel: label("strains", units.strain) };
     },
     plane: (i) => ({
       series: series(i, ["u3"], "u2").map((one) => ({ ...one, name: undefined, className: "u2" })),
       xLabel: label("bending u₂", units.strain),
       yLabel: label("twist u₃", units.strain),
+      xRange: range(["u2"]),
+      yRange: range(["u3"]),
       equal: true,
       pick: "xy",
       regions: view.allowed ? region(i) : [],
@@ -63,10 +77,12 @@ function makePanels(place, onHover) {
     }),
     forces: (i) => ({
       series: series(i, ["n1", "n2", "n3"]),
+      yRange: range(["n1", "n2", "n3"]),
       yLabel: label("force along the directors", units.force),
     }),
     moments: (i) => ({
       series: series(i, ["m1", "m2", "m3"]),
+      yRange: range(["m1", "m2", "m3"]),
       yLabel: label("moment along the directors", units.moment),
     }),
   };

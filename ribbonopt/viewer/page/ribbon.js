@@ -7,6 +7,7 @@ function makeRibbon(stage, onHover) {
   const overlay = makeOverlay(stage.querySelector("svg"));
   const camera = makeCamera(view.camera);
   const brush = makeWebgl(canvas) || makePainter(canvas);
+  const BEYOND = 0.12; // of the width
   const state = { shape: 0, field: "", row: null };
   let mesh;
   let scale = null;
@@ -33,8 +34,11 @@ function makeRibbon(stage, onHover) {
     overlay.draw(camera, view, state.shape);
   }
 
+  // The generatrix of a row, a little beyond the edges so that it is seen where rows are steep.
   function marked(row) {
-    return new Float32Array([...mesh.point(row, 0), ...mesh.point(row, 2), 0]);
+    const [a, b] = [mesh.point(row, 0), mesh.point(row, 2)];
+    const beyond = (p, q) => Array.from(p, (part, c) => part + BEYOND * (part - q[c]));
+    return new Float32Array([...beyond(a, b), ...beyond(b, a), 0]);
   }
 
   function load() {

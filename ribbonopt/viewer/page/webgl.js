@@ -115,7 +115,7 @@ function makeWebgl(canvas) {
       attribute(surface.made, { points: "point", normals: "normal", places: "place" }[name] || name, size);
     }
     fill("faces", null, gl.ELEMENT_ARRAY_BUFFER);
-    gl.drawElements(gl.TRIANGLES, mesh.faces.length, gl.UNSIGNED_SHORT, 0);
+    gl.drawElements(gl.TRIANGLES, mesh.faces.length, gl.UNSIGNED_INT, 0);
   }
 
   function drawLines(camera, name, count, style) {
@@ -162,7 +162,7 @@ function makeWebgl(canvas) {
       if (!marked) return;
       fill("marked", marked);
       gl.disable(gl.DEPTH_TEST);
-      const style = { width: 1.6, opacity: 0.35, colour: look.mark, push: 0 };
+      const style = { width: 2.4, opacity: 0.4, colour: look.mark, push: 0 };
       drawLines(camera, "marked", marked.length / 7, style);
       gl.enable(gl.DEPTH_TEST);
       drawLines(camera, "marked", marked.length / 7, { ...style, opacity: 1, push: 6e-3 });

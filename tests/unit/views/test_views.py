@@ -20,9 +20,10 @@ from ribbonopt.solution.named import Each
 from ribbonopt.solution.solution import Solution
 from ribbonopt.views import plot_plane, plot_ribbon, plot_strains, save_figures
 from ribbonopt.views.camera import place_camera
+from ribbonopt.views.generatrices import ETA_BOUND, LEAP_SLOPE
 from ribbonopt.views.pieces import sample_pieces
 from ribbonopt.views.subject import subject_of
-from ribbonopt.views.surface import ETA_BOUND, LEAP_SLOPE, sweep
+from ribbonopt.views.surface import sweep
 
 CONFIGS = Path(__file__).parents[3] / "configs"
 SCENES = ("moebius_half", "moebius_kirchhoff", "moebius_regularized", "elastica_clamped", "helix")

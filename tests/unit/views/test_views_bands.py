@@ -14,9 +14,10 @@ from ribbonopt.pipeline.prepared import solve
 from ribbonopt.scene import load_scene
 from ribbonopt.solution.solution import Solution
 from ribbonopt.views import plot_plane, plot_ribbon, plot_strains, save_figures
+from ribbonopt.views.generatrices import ETA_BOUND
 from ribbonopt.views.pieces import Piece
 from ribbonopt.views.subject import Subject, subject_of
-from ribbonopt.views.surface import ETA_BOUND, sweep
+from ribbonopt.views.surface import sweep
 
 CONFIGS = Path(__file__).parents[3] / "configs"
 SHARE = {"whole": 1, "half": 2}

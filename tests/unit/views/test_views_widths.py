@@ -9,10 +9,11 @@ import pytest
 from ribbonopt.solution.solution import Solution
 from ribbonopt.views.camera import Camera
 from ribbonopt.views.facets import draw_surface
+from ribbonopt.views.generatrices import WIDTH_SHARE
 from ribbonopt.views.pieces import Piece
 from ribbonopt.views.ribbon import draw_ribbon
 from ribbonopt.views.subject import subject_of
-from ribbonopt.views.surface import WIDTH_SHARE, sweep
+from ribbonopt.views.surface import sweep
 
 AXES = np.eye(3)
 
