@@ -101,7 +101,9 @@ const diagram = (() => {
     }
 
     function marks() {
+      const order = (row) => Object.keys(SIGNS).indexOf(data.mark[row]); // what matters most on top
       const rows = data.mark.map((_, row) => row).filter((row) => data.mark[row]);
+      rows.sort((a, b) => order(a) - order(b));
       return rows.map((row) => {
         const [mark, className] = SIGNS[data.mark[row]] || SIGNS["other special point"];
         return { x: column(0)[row], y: column(1)[row], mark, className, title: `${data.mark[row]}, point ${data.number[row]}` };
