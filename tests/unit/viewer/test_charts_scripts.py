@@ -1,4 +1,4 @@
-"""What draws charts in pages, run in a browser: checks that stand in JavaScript beside this file."""
+"""What draws charts in pages, run in a browser: the checks stand in JavaScript beside this."""
 
 import json
 import re
@@ -18,7 +18,8 @@ from ribbonopt.views.branch_rows import BranchFigure
 
 HERE = Path(__file__).parent
 CHECKS = ("charts_checks.js", "batch_checks.js")
-BROWSER = next(filter(None, map(shutil.which, ("chromium", "chromium-browser", "google-chrome"))), "")
+BROWSERS = ("chromium", "chromium-browser", "google-chrome")
+BROWSER = next(filter(None, map(shutil.which, BROWSERS)), "")
 HOSTILE = "</script><b>bold</b><img src=x onerror='window.acted = 1'>"
 RUN = """
 const found = {};
