@@ -32,7 +32,7 @@ def embedded(thing: Solution | Branch | Batch, height: int = HEIGHT) -> str:
     ViewError
         If there is nothing to be seen, such as a branch without points.
     """
-    from .page import framed, page_of
     from .looking import view_of
+    from .page import framed, page_of
 
     return framed(page_of(view_of(thing)), height)

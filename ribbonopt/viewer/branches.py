@@ -92,7 +92,7 @@ def figure_of(branch: Branch) -> BranchFigure:
 
 
 def chosen_of(rows: Sequence[Row], most: int = MOST) -> list[int]:
-    """Return which points are shown: all, or special points and some evenly between, `most` at most.
+    """Return which points are shown, `most` at most: all, or special ones and some evenly between.
 
     First and last are among them.
     """
@@ -131,15 +131,15 @@ def stability_of(row: Row) -> str:
 
 
 def numbers_of_row(row: Row) -> list[tuple[str, str]]:
-    """Return names and values of what a point records: parameters, formulas, the answer, its error."""
+    """Return names and values of what a point records: parameters, formulas, the answer, error."""
     names = [name for name in row if "." in name and is_number(row[name])]
     after = list(row)[list(row).index("u3") + 1 :] if "u3" in row else []
     own = [name for name in after if name not in names and is_number(row[name])]
     recorded = [name for name in own if name not in ("intervals", "iterations")]
     found = [(name, number_of(row.get(name))) for name in (*names, *recorded, "energy")]
     for name, label in (("n0", "force n(0), lab frame"), ("m0", "moment m(0), lab frame")):
-        parts = [row.get(f"{name}{axis}") for axis in "xyz"]
-        if None not in parts:
+        parts = [row[key] for axis in "xyz" if is_number(row.get(key := f"{name}{axis}"))]
+        if len(parts) == 3:
             found.append((label, vector_of(parts)))
     bar = row.get(LAST)
     return [*found, *([("relative error", f"{bar:.0e}")] if is_number(bar) else [])]

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ribbonopt.arrays import Array
 from ribbonopt.views.camera import Camera
@@ -19,7 +20,7 @@ def still(shape: Shape, camera: Camera) -> str:
     if len(places) < 2:
         return ""
     chosen = np.searchsorted(shape.s[places], np.linspace(shape.s[0], shape.s[-1], FACES + 1))
-    rows = np.unique(places[np.minimum(chosen, len(places) - 1)])
+    rows: NDArray[np.intp] = np.unique(places[np.minimum(chosen, len(places) - 1)])
     edges = [camera.project(shape.points(side)[rows]) for side in (-1.0, 1.0)]
     (left, deep), (right, deeper) = edges
     low = np.minimum(left.min(axis=0), right.min(axis=0))
@@ -39,7 +40,7 @@ def still(shape: Shape, camera: Camera) -> str:
     )
 
 
-def _lit(shape: Shape, camera: Camera, rows: Array) -> list[str]:
+def _lit(shape: Shape, camera: Camera, rows: NDArray[np.intp]) -> list[str]:
     """Return the colours of the faces after some rows, in the light of the figures."""
     normals = shape.d1[rows[:-1]]
     front = (normals @ camera.towards > 0) | (shape.closing < 0)
