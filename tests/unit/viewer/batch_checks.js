@@ -39,6 +39,20 @@ Object.assign(checks, {
     choose(document.querySelectorAll("select")[1], "estimated error");
     assert(document.querySelectorAll("input")[1].checked); // powers
   },
+  "stages of a diagram one by one"() {
+    branch(given.stages);
+    const stage = document.querySelectorAll("select")[2];
+    assert(stage.options.length === 3 && document.querySelector(".chart-foot").textContent === "law.q");
+    choose(stage, "1");
+    assert(document.querySelector(".chart-foot").textContent === "law.p" && curves().length === 3, curves().length);
+    choose(stage, "2");
+    assert(document.querySelector(".chart-foot").textContent === "law.q" && curves().length === 1, curves().length);
+  },
+  "diagrams and batches without rows"() {
+    branch(given.none).mark(0);
+    batch.build(place(), document.body, given.empty).choose(0);
+    assert(!document.querySelector("svg, table"));
+  },
   "a table is sorted, filtered and paged"() {
     place().append(document.createElement("div"));
     table.build(document.body.firstChild, given.batch);

@@ -53,6 +53,10 @@ def given() -> dict[str, object]:
         point(6, 3.0, 2.5, branch=1, kind="kink"),
         point(7, 4.0, 2.6, branch=1),
     ]
+    later = [
+        {**point(i, 4.0, 2.6 + i, branch=1, stage=1), "parameter": "law.q", "law.q": 0.1 * i}
+        for i in range(8, 20)
+    ]
     rows = [
         good(i, word=("left", "right")[i % 2], error=10.0 ** -(1 + i % 9))
         if i % 50
@@ -62,6 +66,9 @@ def given() -> dict[str, object]:
     hostile = [good(1, word=HOSTILE), bad(2, message=HOSTILE, word="w", status=HOSTILE)]
     return {
         "branch": diagram_of(BranchFigure(branch, (("value", "energy"),))),
+        "stages": diagram_of(BranchFigure([*branch, *later], (("value", "energy"),))),
+        "none": diagram_of(BranchFigure([], ())),
+        "empty": table_of([], ()),
         "batch": table_of(rows, ("a", "word")),
         "hostile": table_of(hostile, ("word",)),
     }
@@ -95,4 +102,4 @@ def test_scripts(name: str, found: dict[str, str]) -> None:
 
 
 def test_each_check_is_known() -> None:
-    assert len(NAMES) == len(set(NAMES)) == 21
+    assert len(NAMES) == len(set(NAMES)) == 23
