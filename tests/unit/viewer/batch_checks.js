@@ -73,7 +73,7 @@ Object.assign(checks, {
     place();
     table.build(document.body.firstChild, given.hostile);
     scatter.build(document.body.firstChild, given.hostile);
-    assert(!document.querySelector("td b, option b, .legend b"));
+    assert(!document.querySelector("td b, th b, option b, .legend b, .chart b"));
     assert(document.querySelector("tbody").textContent.includes("<b>bold</b>"));
     assert(!window.acted);
   },

@@ -23,6 +23,17 @@ function bezier(start, d, count = 20) {
   });
 }
 
+// Texts of a chart lie beside each other and within it.
+function apart(chart, ...said) {
+  const boxes = [...chart.element.querySelectorAll("svg text")].map((one) => one.getBoundingClientRect());
+  assert(boxes.length > 3, ...said);
+  boxes.forEach((a, i) => boxes.slice(0, i).forEach((b) => {
+    assert(a.left >= b.right || b.left >= a.right || a.top >= b.bottom - 2 || b.top >= a.bottom - 2, ...said, a, b);
+  }));
+  const own = chart.element.getBoundingClientRect();
+  for (const { left, right } of boxes) assert(left >= own.left - 1 && right <= own.right + 1, ...said, left, right);
+}
+
 const point = (chart, i, k = 0) => {
   chart.mark(i, k);
   const { x, y, width, height } = chart.element.querySelector(".marks circle").getBoundingClientRect();
@@ -104,15 +115,10 @@ const checks = {
     for (const width of [180, 390, 1400]) {
       for (const values of [[-123456.7, 0.5], [1e-12, 3e-12], [1000.0001, 1000.0003], [1, 2]]) {
         const chart = charts.plot(place(width), { xLabel: "x", yLabel: "y", series: [{ x: values, y: values }] });
-        const boxes = [...chart.element.querySelectorAll("svg text")].map((one) => one.getBoundingClientRect());
-        assert(boxes.length > 3, width, values);
-        boxes.forEach((a, i) => boxes.slice(0, i).forEach((b) => {
-          const apart = a.left >= b.right || b.left >= a.right || a.top >= b.bottom - 2 || b.top >= a.bottom - 2;
-          assert(apart, width, values, a, b);
-        }));
-        const own = chart.element.getBoundingClientRect();
-        for (const { left, right } of boxes) assert(left >= own.left - 1 && right <= own.right + 1, width, values, left, right);
+        apart(chart, width, values);
       }
+      const words = range(40).map((i) => `a word ${"of some length ".repeat(i % 4)}${i}`), one = range(40);
+      apart(charts.plot(place(width), { xLabel: "x", yLabel: "y", xWords: words, yWords: words, series: [{ x: one, y: one }] }), width);
     }
   },
   "a pointer finds the nearest point, and leaves"() {
@@ -134,9 +140,9 @@ const checks = {
   },
   "keys move the mark"() {
     const told = [], x = [0, 1, 2, 3];
-    const chart = charts.plot(place(), { xLabel: "s", yLabel: "u", series: [{ x, y: x }], onHover: (i) => told.push(i), onClick: (i) => told.push(-i) });
-    for (const key of ["ArrowRight", "ArrowRight", "End", "ArrowLeft", "Enter", "Home", "a"]) press(chart, key);
-    assert(JSON.stringify(told) === "[0,1,3,2,-2,0]", told);
+    const chart = charts.plot(place(), { xLabel: "s", yLabel: "u", series: [{ x, y: x }], onHover: (i) => told.push(i), onLeave: () => told.push("left"), onClick: (i) => told.push(-i) });
+    for (const key of ["ArrowRight", "ArrowRight", "End", "ArrowLeft", "Enter", "Escape", "End", "Home", "a"]) press(chart, key);
+    assert(JSON.stringify(told) === '[0,1,3,2,-2,"left",3,0]', told);
     assert(chart.element.querySelector("output").textContent.startsWith("s 0"));
   },
   "the same scale on both axes"() {
@@ -149,11 +155,12 @@ const checks = {
     const chart = charts.plot(place(), { xLabel: "a", yLabel: "b", cloud, tip: String });
     const canvas = chart.element.querySelector("canvas"), pen = canvas.getContext("2d"), frame = canvas.getBoundingClientRect();
     const scale = canvas.width / frame.width;
-    const red = (i) => {
+    const red = (i, right = 0) => {
       const { clientX, clientY } = point(chart, i, "cloud");
-      return pen.getImageData((clientX - frame.x) * scale, (clientY - frame.y) * scale, 1, 1).data[0] > 100;
+      return pen.getImageData((clientX - frame.x + right) * scale, (clientY - frame.y) * scale, 1, 1).data[3] > 100;
     };
     assert(red(0) && red(1) && red(2));
+    assert(red(0, 2.5) && red(1, 2.5) && !red(2, 2.5)); // dots, and a cross
     near(point(chart, 2, "cloud").clientX - point(chart, 1, "cloud").clientX, point(chart, 1, "cloud").clientX - point(chart, 0, "cloud").clientX, 0.1);
     chart.mark(3, "cloud");
     assert(!chart.element.querySelectorAll(".marks circle").length);

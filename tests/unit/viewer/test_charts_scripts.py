@@ -64,13 +64,14 @@ def given() -> dict[str, object]:
         for i in range(1, 251)
     ]
     hostile = [good(1, word=HOSTILE), bad(2, message=HOSTILE, word="w", status=HOSTILE)]
+    hostile[0]["<b>column</b>"] = 1.0
     return {
         "branch": diagram_of(BranchFigure(branch, (("value", "energy"),))),
         "stages": diagram_of(BranchFigure([*branch, *later], (("value", "energy"),))),
         "none": diagram_of(BranchFigure([], ())),
         "empty": table_of([], ()),
         "batch": table_of(rows, ("a", "word")),
-        "hostile": table_of(hostile, ("word",)),
+        "hostile": table_of(hostile, ("word", "<b>column</b>")),
     }
 
 
