@@ -74,7 +74,7 @@ function makeApp() {
     dark(media.matches);
     media.addEventListener("change", () => dark(media.matches));
     get("theme").onclick = () => dark(!document.documentElement.classList.contains("dark"));
-    const known = FIELDS.filter(([name]) => !name || shapes.range(name)[0] <= shapes.range(name)[1]);
+    const known = FIELDS.filter(([name]) => !name || view.ranges[name]);
     for (const [name, text] of known) get("field").add(new Option(text, name));
     get("field").onchange = paint;
     get("again").onclick = () => get("stage").querySelector("canvas").dispatchEvent(new Event("dblclick"));

@@ -32,9 +32,10 @@ function makePanels(place, onHover) {
 
   // Over all shapes, so that they can be compared; what is but rounding lies in the middle.
   function range(names) {
-    if (view.shapes.length < 2 || view.kind === "batch") return undefined;
+    const known = names.every((name) => view.ranges[name]);
+    if (view.shapes.length < 2 || view.kind === "batch" || !known) return undefined;
     const [low, high] = [Math.min, Math.max].map((least, k) =>
-      least(...names.map((name) => shapes.range(name)[k])),
+      least(...names.map((name) => view.ranges[name][k])),
     );
     const room = 0.05 * (high - low);
     const flat = !(high - low > 1e-9 * Math.max(Math.abs(low), Math.abs(high), 1e-300));
