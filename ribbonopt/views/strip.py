@@ -14,7 +14,6 @@ from ribbonopt.solution.solution import Solution
 from .camera import place_camera
 from .facets import SEAM, draw_surface
 from .ribbon import paint, scale_bar
-from .shape import common_half_width
 from .style import FAINT, INK, blank
 from .subject import subject_of
 from .surface import sweep
@@ -34,10 +33,8 @@ def plot_strip(ribbons: Sequence[Solution], captions: Sequence[str]) -> Figure:
         np.concatenate([line - line.mean(axis=0) for line in lines]),
         np.concatenate([p.d1 for subject in subjects for p in subject.pieces]),
     )
-    others = [subject for subject in subjects if subject.half_width is None]
-    usual = common_half_width(others) if others else None
-    surfaces = [sweep(s.pieces, usual if s.half_width is None else s.half_width) for s in subjects]
-    drawings = [draw_surface(surface, camera) for surface in surfaces]
+    usual = min(sweep(subject.pieces).half_width for subject in subjects)
+    drawings = [draw_surface(sweep(s.pieces, s.drawn or usual), camera) for s in subjects]
     corners = np.concatenate([drawing.corners.reshape(-1, 2) for drawing in drawings])
     (left, low), (right, high) = corners.min(axis=0), corners.max(axis=0)
     size = max(right - left, (high - low) / 2)
