@@ -4,6 +4,7 @@
 // const view = batch.build(element, element, data, onChoose?); view.choose(row)
 const batch = (() => {
   function build(above, below, data, onChoose) {
+    if (!data.rows.length) return { choose() {} };
     let chosen = null;
     const choose = (row) => {
       chosen = row;

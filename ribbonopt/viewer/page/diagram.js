@@ -21,6 +21,7 @@ const diagram = (() => {
   };
 
   function build(element, data, { onHover, onLeave, onClick } = {}) {
+    if (!data.names.length) return { mark() {} }; // a branch without points
     const form = charts.part("div", "choice", element), place = charts.part("div", "diagram", element);
     const legend = charts.part("div", "legend", element);
     const logs = [[], []];
@@ -30,7 +31,22 @@ const diagram = (() => {
       logs[k] = choice.powers(group, () => show());
       return field;
     });
-    const column = (k) => data.columns[fields[k].value];
+    const stages = [...new Set(data.stage)];
+    let stage = null; // the one shown, of several
+    if (stages.length > 1) {
+      const words = ["all", ...stages.map((one) => `${one + 1}: ${data.labels[data.moved[one]]}`)];
+      const field = choice.column(charts.part("span", "", form), "stage", words, 0, () => {
+        stage = stages[field.value - 1] ?? null;
+        if (stage !== null) fields[0].value = data.moved[stage];
+        suggest(0);
+        suggest(1);
+        show();
+      });
+    }
+    const column = (k) => {
+      const values = data.columns[fields[k].value];
+      return stage === null ? values : values.map((v, row) => (data.stage[row] === stage ? v : null));
+    };
     const known = data.negative.some((count) => count !== null);
 
     // Powers where the scene says so; not where a value is none.
@@ -53,7 +69,7 @@ const diagram = (() => {
     }
 
     function tip(row) {
-      const count = data.negative[row], several = new Set(data.stage).size > 1;
+      const count = data.negative[row], several = stages.length > 1;
       const lines = [`point ${data.number[row]}${data.kind[row] === "point" ? "" : `, ${data.kind[row]}`}`];
       for (const k of [0, 1]) lines.push(`${data.labels[fields[k].value]}: ${axes.say(column(k)[row], 6)}`);
       if (count) lines.push(`unstable, ${count} direction${count > 1 ? "s" : ""}`);
@@ -101,7 +117,9 @@ const diagram = (() => {
     }
 
     function marks() {
+      const order = (row) => Object.keys(SIGNS).indexOf(data.mark[row]); // what matters most on top
       const rows = data.mark.map((_, row) => row).filter((row) => data.mark[row]);
+      rows.sort((a, b) => order(a) - order(b));
       return rows.map((row) => {
         const [mark, className] = SIGNS[data.mark[row]] || SIGNS["other special point"];
         return { x: column(0)[row], y: column(1)[row], mark, className, title: `${data.mark[row]}, point ${data.number[row]}` };

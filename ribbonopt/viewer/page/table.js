@@ -5,6 +5,7 @@
 // view.choose(row)                          // shows its page and tells it apart
 const table = (() => {
   const PAGE = 100, LONGEST = 60;
+  const words = new Intl.Collator("en", { numeric: true });
   const ALL = "all", FAILED = "failed";
 
   const put = (tag, parent, text = "") => {
@@ -16,7 +17,7 @@ const table = (() => {
   // What is missing comes last, whichever way rows are sorted.
   function compare(a, b, down) {
     if (a === null || b === null) return (a === null) - (b === null);
-    const order = typeof a === "number" && typeof b === "number" ? a - b : String(a).localeCompare(String(b), "en", { numeric: true });
+    const order = typeof a === "number" && typeof b === "number" ? a - b : words.compare(a, b);
     return down ? -order : order;
   }
 
@@ -98,7 +99,9 @@ const table = (() => {
       chosen = row;
       const at = kept.indexOf(row);
       turn(at < 0 ? from : at);
-      body.querySelector(".chosen")?.scrollIntoView({ block: "nearest" });
+      // Within the table only: the page stays where it is, so that what was clicked is seen.
+      const line = body.querySelector(".chosen");
+      if (line) scroll.scrollTop = line.offsetTop - scroll.clientHeight / 2;
     }
 
     arrange();

@@ -101,6 +101,7 @@ def test_parameters_of_all_stages_are_columns_and_the_one_moved_most_comes_first
     data: Any = diagram_of(figure([*ROWS, *later]))
     assert data["names"][:2] == ["law.p", "law.q"]
     assert data["names"][data["x"]] == "law.q"
+    assert data["moved"] == {"0": 0, "1": 1}
     assert values(data, "law.q")[:9] == [None] * 9
     assert [piece["rows"][0] for piece in data["pieces"]][-1] == 9
 
