@@ -91,28 +91,29 @@ def in_plane(pieces: tuple[Piece, ...]) -> float:
     return largest[0] / max(*largest, np.finfo(float).tiny)
 
 
-def is_rod(solution: Solution) -> bool:
+def is_rods(law: ConstitutiveLaw) -> bool:
     """Whether a law that is no ribbon's leaves u1 free: it is drawn as a strip along d2.
 
     Generatrices of a ribbon stay what they are where it bends in its own plane too.
     """
-    return _of_rod(capabilities(solution.scene))
-
-
-def _of_rod(law: ConstitutiveLaw) -> bool:
     return 0 in law.components and not law.developable
 
 
-def sample_pieces(solution: Solution, rows: int = ROWS) -> tuple[Piece, ...]:
-    """Sample a solution along its interval, about `rows` rows in all."""
+def sample_pieces(
+    solution: Solution, law: ConstitutiveLaw | None = None, rows: int = ROWS
+) -> tuple[Piece, ...]:
+    """Sample a solution along its interval, about `rows` rows in all.
+
+    `law` is that of its scene, where it is known.
+    """
     start, end = map(float, solution.scene.interval)
-    length, law = end - start, capabilities(solution.scene)
+    length, law = end - start, law or capabilities(solution.scene)
     s = _grid(start, end, rows, INSET * length)
     values = _values(solution, s)
     # A straight ribbon has strains of rounding, and no generatrices but those across.
     strained = float(max(np.abs(values["u2"]).max(), np.abs(values["u3"]).max()))
     scale = max(strained, STRAIGHT / length)
-    crossed = () if _of_rod(law) else _crossings(solution, s, values, scale)
+    crossed = () if is_rods(law) else _crossings(solution, s, values, scale)
     cuts = sorted({start, *crossed, *_places(solution), end})
     if len(cuts) > 2:
         keep, more = _between(cuts, s, rows)
@@ -121,7 +122,7 @@ def sample_pieces(solution: Solution, rows: int = ROWS) -> tuple[Piece, ...]:
         order = np.argsort(s)
         s = s[order]
         values = {k: np.concatenate([v[keep], added[k]])[order] for k, v in values.items()}
-    eta = np.zeros(len(s)) if _of_rod(law) else _eta(values, scale)
+    eta = np.zeros(len(s)) if is_rods(law) else _eta(values, scale, strained > STRAIGHT / length)
     if not law.variational:
         values["energy"] = np.full(len(s), np.nan)  # m . u / 2 was found, which is no energy of it
     columns = {"s": s, "eta": eta, "width": widths(solution.scene, s), **values}
@@ -147,7 +148,7 @@ def _grid(a: float, b: float, rows: int, inset: float) -> Array:
 
 
 def _approach(inset: float, step: float) -> Array:
-    return np.geomspace(inset, step / 2, APPROACH)
+    return np.asarray(inset * (step / 2 / inset) ** np.linspace(0, 1, APPROACH))
 
 
 def _between(cuts: list[float], s: Array, rows: int) -> tuple[NDArray[np.bool_], Array]:
@@ -171,10 +172,11 @@ def _between(cuts: list[float], s: Array, rows: int) -> tuple[NDArray[np.bool_],
     return keep, np.concatenate(more)
 
 
-def _eta(values: dict[str, Array], scale: float) -> Array:
+def _eta(values: dict[str, Array], scale: float, bent: bool) -> Array:
     u2, u3 = values["u2"], values["u3"]
     none = (np.abs(u3) <= NO_TWIST * scale) | (np.abs(u2) <= NO_BEND * scale)
-    return np.where(none, 0.0, u3 / np.where(none, 1.0, u2))
+    beside = values[OWN_ETA] if bent and OWN_ETA in values else 0.0
+    return np.where(none, beside, u3 / np.where(none, 1.0, u2))
 
 
 def _crossings(

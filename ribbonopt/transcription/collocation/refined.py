@@ -15,9 +15,11 @@ part fast, are left to the substeps; so they are where delta is large.
 from __future__ import annotations
 
 from functools import cached_property
+from itertools import pairwise
 from typing import TYPE_CHECKING
 
 import numpy as np
+from numpy.typing import NDArray
 
 from ribbonopt.arrays import Array
 from ribbonopt.classes import dataclass
@@ -58,16 +60,18 @@ class Refined:
         if output.blocks.layout.nz or output.order == output.blocks.tableau.dense_order:
             return output.states(phase, sigma)
         element, t, h = output.blocks.layout.locate(output.p, phase, sigma)
-        x, rest = output.at_nodes[element], np.ones(len(t), dtype=bool)
+        x, left = output.at_nodes[element], np.arange(len(t))
         for level in self._levels:
-            row = level.row[element]
-            rows = np.flatnonzero(row >= 0)
+            row = level.row[element[left]]
+            inside = row >= 0
+            rows, row = left[inside], row[inside]
             integrals = level.tableau.integrals(t[rows])
-            x[rows] += h[rows, None] * (integrals[:, None] @ level.rates[row[rows]])[:, 0]
-            x[rows] += t[rows, None] ** (output.order + 1) * level.delta[row[rows]]
-            rest[rows] = False
-        if rest.any():
-            x[rest] = output.states(phase, sigma[rest])
+            x[rows] += h[rows, None] * (integrals[:, None] @ level.rates[row])[:, 0]
+            x[rows] += t[rows, None] ** (output.order + 1) * level.delta[row]
+            left = left[~inside]
+            if not len(left):
+                return x
+        x[left] = output.states(phase, sigma[left])
         return x
 
     @cached_property
@@ -76,45 +80,55 @@ class Refined:
         K, lay = self.output.blocks.tableau.degree, self.output.blocks.layout
         rest, found = np.arange(lay.element_count), []
         for degree in (max(2 * K - 1, 2), 4 * K):
-            rates, delta, fit = self._swept(rest, gauss_of_any(degree))
+            tableau = gauss_of_any(degree)
+            rates, delta, fit = self._swept(rest, tableau)
             row = np.full(lay.element_count, -1)
             row[rest[fit]] = np.arange(fit.sum())
-            found.append(Level(gauss_of_any(degree), row, rates[fit], delta[fit]))
+            found.append(Level(tableau, row, rates[fit], delta[fit]))
             rest = rest[~fit]
             if not len(rest):
                 break
         return tuple(found)
 
-    def _swept(self, elements: Index, tableau: Tableau) -> tuple[Array, Array, Array]:
-        """Derivatives, delta, and which of the elements these are good for."""
+    def _swept(self, elements: Index, tableau: Tableau) -> tuple[Array, Array, NDArray[np.bool_]]:
+        """Derivatives (N, M, nx), delta (N, nx), and which elements (N,) these are good for.
+
+        Elements that have come to rest, or will not, are swept no further.
+        """
         output, lay = self.output, self.output.blocks.layout
-        start, after = output.at_nodes[elements], output.at_nodes[elements + 1]
-        h = lay.widths(output.p)[elements, None, None]
-        positions = lay.starts(output.p)[elements, None] + h[:, :, 0] * tableau.nodes
+        start, h = output.at_nodes[elements], lay.widths(output.p)[elements]
+        places = lay.starts(output.p)[elements, None] + h[:, None] * tableau.nodes
         integrals = output.blocks.tableau.integrals(tableau.nodes)
-        x = start[:, None] + h * (integrals @ output.rates[elements])
+        x = start[:, None] + h[:, None, None] * (integrals @ output.rates[elements])
         size = float(np.abs(output.at_nodes).max())
-        changes = np.full(len(h), np.inf)
+        F, fit, moving = np.empty_like(x), np.zeros(len(h), dtype=bool), np.arange(len(h))
+        before = np.full(len(h), np.inf)
         for _ in range(SWEEPS):
-            F = self._derivatives(elements, x, positions)
-            improved = start[:, None] + h * (tableau.matrix @ F)
-            before, changes = changes, np.abs(improved - x).max(axis=(1, 2))
-            x, still = improved, changes <= REST * size
-            if (still | (changes >= before)).all():
-                break
-        delta = after - (start + h[:, 0] * (tableau.weights @ F))
-        last = h * (tableau.legendre @ F)[:, -2:] / (2 * tableau.degree)
-        decayed = np.abs(last).max(axis=(1, 2)) <= DECAYED * size
-        return F, delta, still & decayed & (np.abs(delta).max(axis=1) <= BESIDE * size)
+            found = self._derivatives(elements[moving], x, places[moving])
+            improved = start[moving, None] + h[moving, None, None] * (tableau.matrix @ found)
+            change = np.abs(improved - x).max(axis=(1, 2))
+            still = change <= REST * size
+            goes_on = ~still & (change < before)
+            x, before = improved, change
+            if not goes_on.all():
+                done = ~goes_on
+                F[moving[done]], fit[moving[done]] = found[done], still[done]
+                x, before, moving = x[goes_on], before[goes_on], moving[goes_on]
+                if not len(moving):
+                    break
+        delta = output.at_nodes[elements + 1] - start - h[:, None] * (tableau.weights @ F)
+        last = h[:, None, None] * (tableau.legendre[-2:] @ F) / (2 * tableau.degree)
+        fit &= np.abs(last).max(axis=(1, 2)) <= DECAYED * size
+        return F, delta, fit & (np.abs(delta).max(axis=1) <= BESIDE * size)
 
     def _derivatives(self, elements: Index, x: Array, positions: Array) -> Array:
         """Derivatives (N, M, nx) at states (N, M, nx) and relative positions (N, M) in elements."""
-        output, F = self.output, np.empty_like(x)
-        for phase, its in enumerate(output.blocks.layout.phase_slices):
-            rows = slice(*np.searchsorted(elements, (its.start, its.stop)))
-            if rows.start < rows.stop:
-                places = output.places(phase, positions[rows].ravel())
-                flat = x[rows].reshape(-1, x.shape[2])
-                found, _ = output.equations(phase).derivatives(flat, places)
-                F[rows] = found.reshape(F[rows].shape)
+        output, slices = self.output, self.output.blocks.layout.phase_slices
+        F = np.empty_like(x)
+        cuts = np.searchsorted(elements, [its.start for its in slices] + [slices[-1].stop])
+        for phase, (a, b) in enumerate(pairwise(cuts.tolist())):
+            if a < b:
+                places = output.places(phase, positions[a:b].ravel())
+                flat = x[a:b].reshape(-1, x.shape[2])
+                F[a:b] = output.equations(phase).derivatives(flat, places)[0].reshape(F[a:b].shape)
         return F
