@@ -14,21 +14,20 @@ from .carried import Carried
 
 
 class Format(NamedTuple):
-    """A format: what it is in words, what writes it, and whether branches are series of it."""
+    """What writes a format, and whether the points of a branch are a series of it."""
 
-    words: str
     write: Callable[[Carried], Mapping[str, bytes]]
     series: bool = False
 
 
 #: by the endings of their main files
 FORMATS: Mapping[str, Format] = {
-    "vtp": Format("surface, and line with directors, for ParaView", vtp.write, series=True),
-    "glb": Format("coloured surface for Blender, browsers and slides", glb.write),
-    "ply": Format("surface with all fields", ply.write),
-    "obj": Format("surface as text", obj.write),
-    "stl": Format("surface as bare triangles", stl.write),
-    "csv": Format("rows along s, and loads, as tables", tables.write),
-    "npz": Format("all arrays, for numpy", arrays.write_npz),
-    "json": Format("everything as text", arrays.write_json),
+    "vtp": Format(vtp.write, series=True),
+    "glb": Format(glb.write),
+    "ply": Format(ply.write),
+    "obj": Format(obj.write),
+    "stl": Format(stl.write),
+    "csv": Format(tables.write),
+    "npz": Format(arrays.write_npz),
+    "json": Format(arrays.write_json),
 }
