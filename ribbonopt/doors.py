@@ -10,15 +10,11 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from ribbonopt.errors import ViewError
-
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Mapping, Sequence
 
     from matplotlib.figure import Figure
     from pandas import DataFrame
-
-    from ribbonopt.plain import Rows
 
 
 def door(room: str, name: str) -> Callable[..., Any]:
@@ -31,18 +27,6 @@ def told_in_short(solution: object) -> str:
     """Return what a solution is, in one line."""
     words: str = door("output.words", "in_short")(solution)
     return words
-
-
-def embedded(thing: object) -> str | None:
-    """Return the viewer of a solution, a branch or a batch as HTML, for a notebook.
-
-    None where there is nothing to be seen, so that a notebook shows words.
-    """
-    try:
-        page: str = door("viewer", "embedded")(thing)
-    except ViewError:
-        return None
-    return page
 
 
 def solution_drawn(solution: object, kind: str, style: object | None) -> Figure:
@@ -58,7 +42,7 @@ def frame_along(solution: object, s: object | None) -> DataFrame:
     return table
 
 
-def frame_of(rows: Rows, names: list[str]) -> DataFrame:
+def frame_of(rows: Sequence[Mapping[str, Any]], names: list[str]) -> DataFrame:
     """Return a table of rows with these columns."""
     table: DataFrame = door("output.frames", "frame_of")(rows, names)
     return table

@@ -4,17 +4,25 @@ from __future__ import annotations
 
 import argparse
 import gc
+import time
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import closing
 from datetime import timedelta
 from typing import TYPE_CHECKING, Any
 
 from ribbonopt.errors import SceneError
 from ribbonopt.scene.limits import JOBS
-from ribbonopt.text import one_line
 
-from .common import INTERRUPTED, NOT_CONVERGED, default_folder, drawn, listing, pairs_of
+from .batch_report import report, took
+from .common import (
+    INTERRUPTED,
+    NOT_CONVERGED,
+    default_folder,
+    drawn,
+    pairs_of,
+    refuse_idle_verbose,
+)
 from .progress import ProgressLine
 from .terminal import complain, say, say_json
 from .values import count
@@ -23,6 +31,9 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from ribbonopt.studies.batch.files import BatchFolder
+    from ribbonopt.views.paper_style import Style
+
+    from .drawing import Wanted
 
 HUGE = 100_000  # ribbons, beyond which a study may be a mistake
 MANY = 5_000  # ribbons, beyond which it takes a while until the first one is begun
@@ -30,7 +41,8 @@ MANY = 5_000  # ribbons, beyond which it takes a while until the first one is be
 
 def batch(options: argparse.Namespace) -> int:
     """Solve all ribbons of a study."""
-    pairs = pairs_of(options.plot)
+    refuse_idle_verbose(options)
+    pairs, begun = pairs_of(options.plot), time.perf_counter()
     from ribbonopt.studies.batch.batch import run_batch
     from ribbonopt.studies.batch.files import BatchFolder
     from ribbonopt.studies.batch.sweep import load_study
@@ -72,26 +84,33 @@ def batch(options: argparse.Namespace) -> int:
                     if line.due or folder.done == study.count:
                         line.show(_progress(folder, line.rate(folder.done - before)))
             folder.finish()
-            named = study.name, study.count, study.keys
-            status = drawn(lambda: _draw(*named, list(folder.rows), folder.folder, pairs))
+            named, place = (study.name, study.count, study.keys), folder.folder
+            status = drawn(lambda: _draw(*named, list(folder.rows), place, pairs, study.called))
     except KeyboardInterrupt:
         complain(
             f"interrupted; {len(folder.rows)} of {study.count} rows kept in {folder.folder}, "
             "--resume goes on from there"
         )
         return INTERRUPTED
-    return _tell(options, folder) or status
+    return _tell(options, folder, time.perf_counter() - begun) or status
 
 
-def draw(result: Path, out: Path, pairs: list[tuple[str, str]]) -> list[Path]:
+def draw(result: Path, out: Path, pairs: list[tuple[str, str]], asked: Wanted) -> list[Path]:
     """Write report and figures of a batch folder again and return where."""
     from ribbonopt.studies.batch.files import load_batch
 
     study, rows = load_batch(result)
     from ribbonopt.studies.batch.special import with_columns
 
-    _known(pairs, list(dict.fromkeys(name for row in rows for name in with_columns(row))))
-    return _draw(study["name"], study["ribbons"], study["inputs"], rows, out, pairs)
+    columns = list(dict.fromkeys(name for row in rows for name in with_columns(row)))
+    _known(pairs, columns)
+    from .drawing import refuse_column
+
+    refuse_column(asked.style.color, columns)
+    asked.refuse("figures of a batch show no ribbons", "camera", "half_width")
+    asked.refuse(f"{result} is a batch, and no branch", "inset", "animate")
+    named, labels = (study["name"], study["ribbons"], study["inputs"]), study.get("labels", {})
+    return _draw(*named, rows, out, pairs, labels, asked.style)
 
 
 def _known(pairs: list[tuple[str, str]], columns: Sequence[str]) -> None:
@@ -114,6 +133,8 @@ def _draw(
     rows: list[dict[str, Any]],
     out: Path,
     pairs: list[tuple[str, str]] | None,
+    labels: Mapping[str, str],
+    style: Style | None = None,
 ) -> list[Path]:
     """Write the report, and the figures where they are wanted, and return where."""
     from ribbonopt.studies.batch.special import with_columns
@@ -124,11 +145,12 @@ def _draw(
     if pairs is None:
         return [report]
     from ribbonopt.views.batch import save_batch_figures  # matplotlib
+    from ribbonopt.views.paper_style import PLAIN
 
-    return [report, *save_batch_figures(rows, inputs, out, pairs)]
+    return [report, *save_batch_figures(rows, inputs, out, pairs, labels, style or PLAIN)]
 
 
-def _tell(options: argparse.Namespace, folder: BatchFolder) -> int:
+def _tell(options: argparse.Namespace, folder: BatchFolder, seconds: float) -> int:
     failed = [row for row in folder.rows if not row["verified"]]
     statuses = Counter(row["status"] for row in folder.rows)
     if options.json:
@@ -143,14 +165,9 @@ def _tell(options: argparse.Namespace, folder: BatchFolder) -> int:
             }
         )
     elif not options.quiet:
-        study = ", ".join(f"{number} {status}" for status, number in statuses.most_common())
-        seconds = sum(row.get("seconds", 0.0) for row in folder.rows)
-        say(
-            f"{folder.study.name}: {len(folder.rows)} ribbons: {study}\n"
-            f"{_noted(folder)}"
-            f"  {seconds:.1f} s of solving\n"
-            f"  written: {one_line(listing(folder.folder))}"
-        )
+        say(report(folder))
+        if options.verbose:
+            say(took(folder, seconds))
     if not failed:
         return 0
     first = min(failed, key=lambda row: int(row["number"]))
@@ -159,16 +176,6 @@ def _tell(options: argparse.Namespace, folder: BatchFolder) -> int:
         f"first is number {first['number']}: {first['status']}: {first['message']}"
     )
     return NOT_CONVERGED
-
-
-def _noted(folder: BatchFolder) -> str:
-    """Return a line on the ribbons that were not solved from where they were begun, if any."""
-    noted = [row for row in folder.rows if row.get("note")]
-    if not noted:
-        return ""
-    first = min(noted, key=lambda row: int(row["number"]))
-    count = f"{len(noted)} ribbon{'s' * (len(noted) > 1)}"
-    return f"  note: {count} fell back (column note); number {first['number']}: {first['note']}\n"
 
 
 def _progress(folder: BatchFolder, rate: float) -> str:

@@ -197,6 +197,8 @@ class Scene:
     an angle in the place of a frame, and its stability is judged in space.
     `symmetric` solves half of a strip whose clamps half a turn maps to each other; which director
     is along its axis in the middle, where there are two.
+    `labels` are what numbers are called beside the axes of figures, by their columns, with formulas
+    between $.
     """
 
     name: str
@@ -227,6 +229,7 @@ class Scene:
     membrane: AnyMembrane | None = None
     planar: bool = False
     symmetric: bool | Literal["d1", "d2", "-d1", "-d2"] = False
+    labels: dict[str, str] = field(default_factory=dict)
 
     def __repr__(self) -> str:
         """Say what it is in one line; `dump_scene` says all of it."""

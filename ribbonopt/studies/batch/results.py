@@ -13,11 +13,12 @@ from collections.abc import Iterable, Iterator, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ribbonopt.doors import door, embedded, frame_of
+from ribbonopt.doors import door, frame_of
 from ribbonopt.errors import OutputError
 from ribbonopt.output.results import load_solution
 from ribbonopt.plain import SPECIALS, Row
 from ribbonopt.reading import is_file
+from ribbonopt.solution.at_home import in_notebook
 from ribbonopt.solution.solution import Solution
 from ribbonopt.studies.columns import column_of, names_of
 from ribbonopt.studies.continuation.branch import Branch
@@ -153,7 +154,7 @@ class Batch:
         return f"<Batch {name}: {len(self)}{some} ribbons{told}; inputs {inputs}>"
 
     def _repr_html_(self) -> str | None:
-        return embedded(self)
+        return in_notebook(self)
 
     @property
     def _told(self) -> list[Row]:

@@ -15,6 +15,7 @@ from dataclasses import replace
 from ribbonopt.errors import ModelError
 from ribbonopt.mechanics.ends.smallest import settled
 from ribbonopt.pipeline.prepared import Prepared, prepare
+from ribbonopt.pipeline.skipped import skipped
 from ribbonopt.problem.wellposed.reach import refuse_far_goals
 from ribbonopt.scene import Scene
 from ribbonopt.scene.continuation import ContinuationStage
@@ -99,16 +100,30 @@ class Continuation:
         return followed(len(self.stages), self._stage, self.register, history)
 
     @property
+    def skipped(self) -> tuple[str, ...]:
+        """What its solves do not need and is therefore not made, each with its reason."""
+        return skipped(self.prepared.posed(), self.prepared.problem)
+
+    @property
     def endings(self) -> dict[Key, Ending]:
         """How each stage, and each branch switched to, has ended so far, by (stage, branch)."""
         return self.register.endings
 
     @property
     def ending(self) -> Ending:
-        """How the whole has ended: as the first stage that did not reach its goal, or the last."""
-        ways = [len(ends_of(stage)) for stage in self.stages]
-        mains = [e for (stage, branch), e in self.endings.items() if branch < ways[stage]]
-        return next((ending for ending in mains if not ending.reached), mains[-1])
+        """How the whole has ended: as the first stage that did not reach its goal, or the last.
+
+        Before that, as one that has not: it is not reached, and says how far it is.
+        """
+        ways = [max(1, len(ends_of(stage))) for stage in self.stages]
+        mains = {key: e for key, e in self.endings.items() if key[1] < ways[key[0]]}
+        short = next((ending for ending in mains.values() if not ending.reached), None)
+        last = mains.get((len(ways) - 1, ways[-1] - 1))
+        if ending := short or last:
+            return ending
+        done = sum((stage, count - 1) in mains for stage, count in enumerate(ways))
+        where = f"{done} of {len(ways)} stages have ended" if done else "no stage has ended"
+        return Ending(False, f"not followed to the end yet: {where}")
 
     def __repr__(self) -> str:
         """Say what is followed, and how far, in one line."""
