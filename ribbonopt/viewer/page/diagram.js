@@ -9,6 +9,7 @@ const diagram = (() => {
   const DASHES = { [STABLE]: "", [UNSTABLE]: "dashed", [UNKNOWN]: "dotted" };
   const BRANCHES = 8; // colours
   const HIDDEN = 0.5; // share of its points that lie under another curve: a curve is drawn wider
+  const LOOKED_AT = 20; // of its points
   const SIGNS = {
     "first point": ["dot", "faint"],
     "last point": ["cross", "faint"],
@@ -107,9 +108,10 @@ const diagram = (() => {
     // A curve that one drawn later hides, as mirror images do, is seen on both sides of it.
     function widen(drawn) {
       drawn.forEach(({ group, points }, i) => {
+        const some = points.filter((_, k) => k % Math.ceil(points.length / LOOKED_AT) === 0);
         const under = ({ whole }) => {
-          const count = points.filter(([x, y]) => whole.isPointInStroke(new DOMPoint(x, y))).length;
-          return points.length > 1 && count > HIDDEN * points.length;
+          const count = some.filter(([x, y]) => whole.isPointInStroke(new DOMPoint(x, y))).length;
+          return points.length > 1 && count > HIDDEN * some.length;
         };
         if (drawn.slice(i + 1).some(under)) group.classList.add("behind");
       });
