@@ -192,10 +192,13 @@ BAD = {
     "nothing saved": (["none"], "no solution of this batch was saved"),
     "flat": (["one", "--half-width", "0"], "--half-width: found '0'"),
     "no width": (["one", "--half-width", "nan"], "--half-width"),
+    "wider than numbers": (["one", "--half-width", "1e40"], "--half-width: found '1e40'"),
     "few rows": (["one", "--rows", "3"], "--rows: found 3"),
     "no strips": (["one", "--across", "0"], "--across: found '0'"),
     "no field": (["one", "--color", "u4"], "--color: found 'u4'"),
     "a vector": (["one", "--color", "n"], "--color: found 'n'"),
+    "many points": (["one", "--rows", "50000", "--across", "99"], "--rows: found 50,000 rows"),
+    "two formats in a file": (["one", "--out", "a.stl", "--format", "stl,obj"], "the file a.stl"),
     "into a file": (["one", "--out", "one/summary.json/x"], "summary.json"),
     "no path": (["one", "--out", ""], "--out: found ''"),
 }
