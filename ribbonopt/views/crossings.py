@@ -60,10 +60,11 @@ def _interpolated(places: Array, values: Array, first: NDArray[np.intp]) -> Arra
     Places as a polynomial of the values, by Neville's scheme; where that is none, a place near.
     """
     columns = np.clip(first, LOCAL, places.shape[1] - LOCAL)[:, None] + np.arange(-LOCAL, LOCAL)
-    x, y = (np.take_along_axis(some, columns, axis=1) for some in (places, values))
+    rows = np.arange(len(first))[:, None]
+    x, y = places[rows, columns], values[rows, columns]
     found = x.copy()
     with np.errstate(divide="ignore", invalid="ignore", over="ignore"):
         for k in range(1, 2 * LOCAL):
             low, high = y[:, :-k], y[:, k:]
             found = (high * found[:, :-1] - low * found[:, 1:]) / (high - low)
-    return np.where(np.isfinite(found[:, 0]), found[:, 0], x[:, LOCAL])
+    return np.asarray(np.where(np.isfinite(found[:, 0]), found[:, 0], x[:, LOCAL]))

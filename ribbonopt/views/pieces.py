@@ -3,8 +3,8 @@
 There eta = u3/u2 leaps from one sign to the other, whether u2 jumps (Sadowsky's law at m2 = 0) or
 passes through 0 (the other laws). They are split as well where something acts at a single place.
 Rows are even along the whole; they approach the ends of each piece from inside, so that a jump at
-an end shows its own side only, and they crowd there, where regularised laws change quickly. With natural strains u2 may leap from
-and to any value: pieces are the phases, where there are any.
+an end shows its own side only, and they crowd there, where regularised laws change quickly. With
+natural strains u2 may leap from and to any value: pieces are the phases, where there are any.
 """
 
 from __future__ import annotations
@@ -91,28 +91,29 @@ def in_plane(pieces: tuple[Piece, ...]) -> float:
     return largest[0] / max(*largest, np.finfo(float).tiny)
 
 
-def is_rod(solution: Solution) -> bool:
+def is_rods(law: ConstitutiveLaw) -> bool:
     """Whether a law that is no ribbon's leaves u1 free: it is drawn as a strip along d2.
 
     Generatrices of a ribbon stay what they are where it bends in its own plane too.
     """
-    return _of_rod(capabilities(solution.scene))
-
-
-def _of_rod(law: ConstitutiveLaw) -> bool:
     return 0 in law.components and not law.developable
 
 
-def sample_pieces(solution: Solution, rows: int = ROWS) -> tuple[Piece, ...]:
-    """Sample a solution along its interval, about `rows` rows in all."""
+def sample_pieces(
+    solution: Solution, law: ConstitutiveLaw | None = None, rows: int = ROWS
+) -> tuple[Piece, ...]:
+    """Sample a solution along its interval, about `rows` rows in all.
+
+    `law` is that of its scene, where it is known.
+    """
     start, end = map(float, solution.scene.interval)
-    length, law = end - start, capabilities(solution.scene)
+    length, law = end - start, law or capabilities(solution.scene)
     s = _grid(start, end, rows, INSET * length)
     values = _values(solution, s)
     # A straight ribbon has strains of rounding, and no generatrices but those across.
     strained = float(max(np.abs(values["u2"]).max(), np.abs(values["u3"]).max()))
     scale = max(strained, STRAIGHT / length)
-    crossed = () if _of_rod(law) else _crossings(solution, s, values, scale)
+    crossed = () if is_rods(law) else _crossings(solution, s, values, scale)
     cuts = sorted({start, *crossed, *_places(solution), end})
     if len(cuts) > 2:
         keep, more = _between(cuts, s, rows)
@@ -121,16 +122,30 @@ def sample_pieces(solution: Solution, rows: int = ROWS) -> tuple[Piece, ...]:
         order = np.argsort(s)
         s = s[order]
         values = {k: np.concatenate([v[keep], added[k]])[order] for k, v in values.items()}
-    eta = np.zeros(len(s)) if _of_rod(law) else _eta(values, scale)
+    eta = np.zeros(len(s)) if is_rods(law) else _eta(values, scale, strained > STRAIGHT / length)
     if not law.variational:
         values["energy"] = np.full(len(s), np.nan)  # m . u / 2 was found, which is no energy of it
     columns = {"s": s, "eta": eta, "width": widths(solution.scene, s), **values}
-    columns.pop(OWN_ETA, None)
-    ends = np.searchsorted(s, cuts)
-    return tuple(
-        Piece(**{name: column[a:b] for name, column in columns.items()})
-        for a, b in pairwise(ends.tolist())
-        if b > a
+    ends = np.searchsorted(s, cuts).tolist()
+    return tuple(_piece(columns, slice(a, b)) for a, b in pairwise(ends) if b > a)
+
+
+def _piece(columns: dict[str, Array], rows: slice) -> Piece:
+    part = {name: column[rows] for name, column in columns.items()}
+    return Piece(
+        s=part["s"],
+        u1=part["u1"],
+        u2=part["u2"],
+        u3=part["u3"],
+        eta=part["eta"],
+        r=part["r"],
+        d1=part["d1"],
+        d2=part["d2"],
+        d3=part["d3"],
+        width=part["width"],
+        n=part["n"],
+        m=part["m"],
+        energy=part["energy"],
     )
 
 
@@ -147,7 +162,7 @@ def _grid(a: float, b: float, rows: int, inset: float) -> Array:
 
 
 def _approach(inset: float, step: float) -> Array:
-    return np.geomspace(inset, step / 2, APPROACH)
+    return np.asarray(inset * (step / 2 / inset) ** np.linspace(0, 1, APPROACH))
 
 
 def _between(cuts: list[float], s: Array, rows: int) -> tuple[NDArray[np.bool_], Array]:
@@ -171,10 +186,11 @@ def _between(cuts: list[float], s: Array, rows: int) -> tuple[NDArray[np.bool_],
     return keep, np.concatenate(more)
 
 
-def _eta(values: dict[str, Array], scale: float) -> Array:
+def _eta(values: dict[str, Array], scale: float, bent: bool) -> Array:
     u2, u3 = values["u2"], values["u3"]
     none = (np.abs(u3) <= NO_TWIST * scale) | (np.abs(u2) <= NO_BEND * scale)
-    return np.where(none, 0.0, u3 / np.where(none, 1.0, u2))
+    beside = values[OWN_ETA] if bent and OWN_ETA in values else 0.0
+    return np.where(none, beside, u3 / np.where(none, 1.0, u2))
 
 
 def _crossings(
@@ -197,7 +213,7 @@ def _crossings(
 
     start, end = solution.scene.interval
     before, after = rows[at], rows[at + 1]
-    found = crossings(told, (s[before], s[after]), up[before], INSET * (end - start) / 4)
+    found = crossings(told, (s[before], s[after]), up[before], INSET * (end - start) / 2)
     return tuple(found.tolist())
 
 
