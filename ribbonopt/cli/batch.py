@@ -6,7 +6,7 @@ import argparse
 import gc
 import time
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from contextlib import closing
 from datetime import timedelta
 from typing import TYPE_CHECKING, Any
@@ -31,6 +31,9 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from ribbonopt.studies.batch.files import BatchFolder
+    from ribbonopt.views.paper_style import Style
+
+    from .drawing import Wanted
 
 HUGE = 100_000  # ribbons, beyond which a study may be a mistake
 MANY = 5_000  # ribbons, beyond which it takes a while until the first one is begun
@@ -81,8 +84,8 @@ def batch(options: argparse.Namespace) -> int:
                     if line.due or folder.done == study.count:
                         line.show(_progress(folder, line.rate(folder.done - before)))
             folder.finish()
-            named = study.name, study.count, study.keys
-            status = drawn(lambda: _draw(*named, list(folder.rows), folder.folder, pairs))
+            named, place = (study.name, study.count, study.keys), folder.folder
+            status = drawn(lambda: _draw(*named, list(folder.rows), place, pairs, study.called))
     except KeyboardInterrupt:
         complain(
             f"interrupted; {len(folder.rows)} of {study.count} rows kept in {folder.folder}, "
@@ -92,15 +95,22 @@ def batch(options: argparse.Namespace) -> int:
     return _tell(options, folder, time.perf_counter() - begun) or status
 
 
-def draw(result: Path, out: Path, pairs: list[tuple[str, str]]) -> list[Path]:
+def draw(result: Path, out: Path, pairs: list[tuple[str, str]], asked: Wanted) -> list[Path]:
     """Write report and figures of a batch folder again and return where."""
     from ribbonopt.studies.batch.files import load_batch
 
     study, rows = load_batch(result)
     from ribbonopt.studies.batch.special import with_columns
 
-    _known(pairs, list(dict.fromkeys(name for row in rows for name in with_columns(row))))
-    return _draw(study["name"], study["ribbons"], study["inputs"], rows, out, pairs)
+    columns = list(dict.fromkeys(name for row in rows for name in with_columns(row)))
+    _known(pairs, columns)
+    from .drawing import refuse_column
+
+    refuse_column(asked.style.color, columns)
+    asked.refuse("figures of a batch show no ribbons", "camera", "half_width")
+    asked.refuse(f"{result} is a batch, and no branch", "inset", "animate")
+    named, labels = (study["name"], study["ribbons"], study["inputs"]), study.get("labels", {})
+    return _draw(*named, rows, out, pairs, labels, asked.style)
 
 
 def _known(pairs: list[tuple[str, str]], columns: Sequence[str]) -> None:
@@ -123,6 +133,8 @@ def _draw(
     rows: list[dict[str, Any]],
     out: Path,
     pairs: list[tuple[str, str]] | None,
+    labels: Mapping[str, str],
+    style: Style | None = None,
 ) -> list[Path]:
     """Write the report, and the figures where they are wanted, and return where."""
     from ribbonopt.studies.batch.special import with_columns
@@ -133,8 +145,9 @@ def _draw(
     if pairs is None:
         return [report]
     from ribbonopt.views.batch import save_batch_figures  # matplotlib
+    from ribbonopt.views.paper_style import PLAIN
 
-    return [report, *save_batch_figures(rows, inputs, out, pairs)]
+    return [report, *save_batch_figures(rows, inputs, out, pairs, labels, style or PLAIN)]
 
 
 def _tell(options: argparse.Namespace, folder: BatchFolder, seconds: float) -> int:

@@ -7,10 +7,11 @@ import gc
 import time
 from collections.abc import Generator
 from contextlib import closing
-from typing import TYPE_CHECKING, Any
+from typing import TYPE_CHECKING
 
 from ribbonopt.errors import SceneError
 
+from .branch_drawing import draw_branch
 from .branch_report import report, took
 from .common import (
     INTERRUPTED,
@@ -20,7 +21,6 @@ from .common import (
     load,
     pairs_of,
     refuse_idle_verbose,
-    say_left_out,
 )
 from .progress import ProgressLine
 from .terminal import complain, say, say_json
@@ -28,12 +28,13 @@ from .terminal import complain, say, say_json
 if TYPE_CHECKING:
     from pathlib import Path
 
-    from ribbonopt.plain import Rows
     from ribbonopt.solution.solution import Solution
     from ribbonopt.studies.continuation.continuation import Continuation
     from ribbonopt.studies.continuation.files import BranchFolder
     from ribbonopt.studies.continuation.recorded import Recorder
     from ribbonopt.studies.continuation.walk.points import Point
+
+    from .drawing import Wanted
 
 BAR = 12
 
@@ -60,7 +61,7 @@ def follow(options: argparse.Namespace) -> int:
                     pass
             if pairs is not None:
                 place = folder.folder
-                status = drawn(lambda: _draw(continuation, folder.lines, pairs, place, place))
+                status = drawn(lambda: draw_branch(continuation, folder.lines, pairs, place, place))
     except KeyboardInterrupt:
         complain(
             f"interrupted; {len(folder.rows)} points kept in {folder.folder}, "
@@ -70,7 +71,7 @@ def follow(options: argparse.Namespace) -> int:
     return _tell(options, folder, continuation, time.perf_counter() - begun) or status
 
 
-def draw(result: Path, out: Path, pairs: list[tuple[str, str]]) -> list[Path]:
+def draw(result: Path, out: Path, pairs: list[tuple[str, str]], asked: Wanted) -> list[Path]:
     """Draw the figures of a branch folder again and return where."""
     from ribbonopt.studies.continuation.continuation import Continuation
     from ribbonopt.studies.continuation.files import load_branch
@@ -78,7 +79,7 @@ def draw(result: Path, out: Path, pairs: list[tuple[str, str]]) -> list[Path]:
 
     scene, lines = load_branch(result)
     pairs = _columns(pairs, Recorder(scene))  # before anything is built
-    return _draw(Continuation(scene), lines, pairs, out, result)
+    return draw_branch(Continuation(scene), lines, pairs, out, result, asked)
 
 
 def _columns(pairs: list[tuple[str, str]], recorder: Recorder) -> list[tuple[str, str]]:
@@ -87,44 +88,6 @@ def _columns(pairs: list[tuple[str, str]], recorder: Recorder) -> list[tuple[str
         if fault := recorder.fault_of((x, y)):
             raise SceneError(f"--plot {x}:{y}: {fault}")
     return [(recorder.column(x), recorder.column(y)) for x, y in pairs]
-
-
-def _draw(
-    continuation: Continuation,
-    lines: list[dict[str, Any]],
-    pairs: list[tuple[str, str]],
-    out: Path,
-    source: Path,
-) -> list[Path]:
-    from ribbonopt.studies.continuation.files import FILE, rows_of
-    from ribbonopt.studies.continuation.stored import restored
-    from ribbonopt.studies.continuation.walk.steps import JUMPED
-    from ribbonopt.views.branch import save_branch_figures
-    from ribbonopt.views.branch_rows import BranchFigure
-
-    rows, scene = rows_of(lines), continuation.scene
-    figure = BranchFigure(
-        rows,
-        tuple(pairs or _usual(rows, continuation.recorder)),
-        title=scene.name,
-        log=[stage.parameter for stage in continuation.stages if stage.scale == "log"],
-        jumps=[row["number"] for row in rows if JUMPED in row.get("note", "")],
-        si=scene.ribbon is not None,
-    )
-    numbers = [row["number"] for row in figure.pictured]
-    solutions = dict(restored(continuation, lines, numbers, source / FILE))
-    drawn = save_branch_figures(figure, solutions, out)
-    say_left_out(drawn.left_out)
-    return drawn.paths
-
-
-def _usual(rows: Rows, recorder: Recorder) -> list[tuple[str, str]]:
-    """Return what is worth seeing: what the scene records, and of all rows what changes."""
-    from ribbonopt.views.columns import varied
-
-    x = recorder.parameters[0] if len(recorder.parameters) == 1 else "value"
-    others = [name for name in ("u2", "energy", "H0", "u3") if varied(rows, name)]
-    return [(x, name) for name in [*recorder.formulas, *others] or ["energy"]][:4]
 
 
 def _tell(

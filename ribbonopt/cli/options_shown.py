@@ -12,6 +12,39 @@ def plot(verb: argparse.ArgumentParser) -> None:
     verb.add_argument("result", metavar="RESULT", help="folder written by solve, continue or batch")
     columns(verb, "columns of a branch or a batch to draw, such as u2:energy")
     verb.add_argument("--out", metavar="DIR", help="folder for the pictures (default: RESULT)")
+    _look(verb)
+    _ribbons(verb)
+
+
+def _look(verb: argparse.ArgumentParser) -> None:
+    """Options that say how figures look on paper."""
+    look = verb.add_argument_group("how figures look")
+    look.add_argument("--style", metavar="FILE", help="YAML of what follows; options go before it")
+    look.add_argument("--format", metavar="LIST", help="png, svg, pdf, or several: pdf,png")
+    look.add_argument("--width", metavar="IN", help="inches; 3.35 is a single column")
+    look.add_argument("--height", metavar="IN", help="inches (default: follows the width)")
+    look.add_argument("--dpi", metavar="N", help="pixels per inch (default: 150)")
+    look.add_argument("--font", metavar="NAME", help="sans, serif or a family of this machine")
+    look.add_argument("--font-size", metavar="PT", help="of axes (default: follows the width)")
+    look.add_argument("--line-scale", metavar="X", help="1: as in a figure of its own size")
+    look.add_argument("--letters", action="store_true", help="letter the panels (a), (b), ...")
+    look.add_argument("--no-titles", action="store_true", help="no names, units and captions")
+
+
+def _ribbons(verb: argparse.ArgumentParser) -> None:
+    """Options that say how ribbons are seen, and where."""
+    seen = verb.add_argument_group("how ribbons are seen")
+    seen.add_argument(
+        "--camera", metavar="A,E", help="azimuth,elevation in degrees, or an axis: --camera=-x"
+    )
+    seen.add_argument("--color", metavar="FIELD", help="u2, u3, eta or energy; of a batch a column")
+    seen.add_argument("--half-width", metavar="W", help="to which ribbons are drawn")
+    seen.add_argument(
+        "--inset", metavar="LIST", help="of a branch: points whose ribbons stand in its diagram"
+    )
+    seen.add_argument(
+        "--animate", choices=("gif", "mp4"), help="of a branch: branch.gif or .mp4 along it"
+    )
 
 
 def export(verb: argparse.ArgumentParser) -> None:

@@ -16,6 +16,7 @@ if TYPE_CHECKING:
     from pathlib import Path
 
     from ribbonopt.solution.solution import Solution
+    from ribbonopt.views.paper_style import Style
 
 
 def plot(options: argparse.Namespace) -> int:
@@ -24,18 +25,23 @@ def plot(options: argparse.Namespace) -> int:
     from ribbonopt.output.results import load_solution
     from ribbonopt.output.staging import recovered
 
+    from .drawing import wanted
+
     result, pairs = recovered(options.result), pairs_of(options.plot) or []
+    asked = wanted(options)
+    if not is_file(result / "rows.jsonl"):
+        asked.refuse_field()
     if is_file(result / "branch.jsonl"):
         from .branch import draw as draw_branch
 
         def draw(folder: Path) -> list[Path]:
-            return draw_branch(result, folder, pairs)
+            return draw_branch(result, folder, pairs, asked)
 
     elif is_file(result / "rows.jsonl"):
         from .batch import draw as draw_batch
 
         def draw(folder: Path) -> list[Path]:
-            return draw_batch(result, folder, pairs)
+            return draw_batch(result, folder, pairs, asked)
 
     elif pairs:
         raise SceneError(
@@ -44,13 +50,14 @@ def plot(options: argparse.Namespace) -> int:
     elif not os.path.isdir(result):
         beside = f"{result}-branch"
         near = f"; did you mean {beside}?" if os.path.isdir(beside) else ""
-        wanted = "expected one written by ribbonopt solve, continue or batch"
-        raise SceneError(f"{result}: no such folder; {wanted}{near}")
+        known = "expected one written by ribbonopt solve, continue or batch"
+        raise SceneError(f"{result}: no such folder; {known}{near}")
     else:
+        asked.refuse(f"{result} is no branch, along which ribbons are drawn", "inset", "animate")
         solution = load_solution(result)
 
         def draw(folder: Path) -> list[Path]:
-            return draw_solution(solution, folder)
+            return draw_solution(solution, folder, asked.style)
 
     with pictures_in(options.out or result) as folder:
         paths = draw(folder)
@@ -59,10 +66,11 @@ def plot(options: argparse.Namespace) -> int:
     return 0
 
 
-def draw_solution(solution: Solution, folder: Path) -> list[Path]:
+def draw_solution(solution: Solution, folder: Path, style: Style | None = None) -> list[Path]:
     """Draw the pictures of a solution; say what was left out."""
     from ribbonopt.views.files import draw_figures
+    from ribbonopt.views.paper_style import PLAIN
 
-    paths, left_out = draw_figures(solution, folder)
+    paths, left_out = draw_figures(solution, folder, style=style or PLAIN)
     say_left_out(left_out)
     return paths

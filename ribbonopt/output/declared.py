@@ -20,9 +20,16 @@ FILE = Kind("names of files", most=10 * MEGA)
 NONE: frozenset[str] = frozenset()
 
 #: what `ribbonopt.views` writes beside a solution, a branch and a batch
-PICTURES = ("strains.png", "plane.png", "ribbon.png")
-BRANCH_PICTURES = ("branch.png", "ribbons.png")
-BATCH_PICTURES = ("report.html", "outcomes.png", "scatter.png", "special.png")
+FORMATS = ("png", "svg", "pdf")
+PICTURES = tuple(f"{name}.{f}" for name in ("strains", "plane", "ribbon") for f in FORMATS)
+BRANCH_PICTURES = (
+    *(f"{name}.{f}" for name in ("branch", "ribbons") for f in FORMATS),
+    *("branch.gif", "branch.mp4"),
+)
+BATCH_PICTURES = (
+    "report.html",
+    *(f"{name}.{f}" for name in ("outcomes", "scatter", "special") for f in FORMATS),
+)
 
 #: what `ribbonopt.viewer` writes beside any of them
 PAGE = "view.html"

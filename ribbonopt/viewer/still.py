@@ -10,7 +10,7 @@ from ribbonopt.views.camera import Camera
 from ribbonopt.views.facets import BACK, FRONT, LIGHTER
 from ribbonopt.views.shape import Shape
 
-FACES, SIZE = 48, 400  # at most; pixels of the longer side
+FACES, SIZE = 40, 400  # at most; pixels of the longer side
 
 
 def still(shape: Shape, camera: Camera) -> str:

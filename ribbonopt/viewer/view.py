@@ -22,6 +22,7 @@ from ribbonopt.views.surface import sweep
 
 from .acting import arrows_of
 from .packing import packed
+from .ranges import ranges_of
 from .still import still
 
 SI = {"length": "m", "strain": "1/m", "force": "N", "moment": "N m", "energy": "J/m"}
@@ -117,6 +118,7 @@ def contents(view: View) -> dict[str, Any]:
         "allowed": all(ribbon.subject.across == 0 for ribbon in view.ribbons),
         "camera": frame,
         "shapes": told,
+        "ranges": ranges_of(shapes),
         "packed": packed(shapes) if shapes else "",
         "still": still(shapes[0], camera) if shapes else "",
         "diagram": view.diagram,

@@ -4,7 +4,10 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+import numpy as np
+
 from ribbonopt.errors import ModelError
+from ribbonopt.views.generatrices import WIDTH_SHARE
 from ribbonopt.views.shape import common_half_width
 from ribbonopt.views.subject import Subject
 
@@ -29,8 +32,14 @@ def width_of(subjects: Sequence[Subject], half_width: float | None) -> tuple[flo
     if not subjects:
         return None, ""
     own = half_width is None and all(subject.half_width is not None for subject in subjects)
-    width = common_half_width(subjects) if half_width is None else half_width
+    width = _found(subjects) if half_width is None else half_width
     unit = " m" if subjects[0].units.si else ""
     if own and len({subject.half_width for subject in subjects}) > 1:
         return None, "drawn to its own width"
     return width, f"drawn to the half-width {width:.3g}{unit}" + (", its own" if own else "")
+
+
+def _found(subjects: Sequence[Subject]) -> float:
+    """Return one half-width for all; of ribbons without numbers, as of a failed solve, any."""
+    known = [s for s in subjects if all(np.isfinite(piece.r).all() for piece in s.pieces)]
+    return common_half_width(known) if known else WIDTH_SHARE * subjects[0].length

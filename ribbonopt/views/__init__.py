@@ -1,4 +1,4 @@
-"""Pictures of a solution: its strains, its path in the (u2, u3) plane, the ribbon in space.
+"""Pictures: strains, their path in the (u2, u3) plane, ribbons in space, branches, batches.
 
 Importing this room loads none of its modules, and matplotlib is imported when a figure is drawn.
 """
@@ -9,18 +9,38 @@ from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from .files import Pictures, save_figures
+    from .animation import save_animation
+    from .branch import plot_branch
+    from .files import Pictures, plot_solution, save_figures
+    from .paper_style import Style
     from .plane import plot_plane
     from .ribbon import plot_ribbon
+    from .scatter import plot_batch
     from .strains import plot_strains
 
-__all__ = ["Pictures", "plot_plane", "plot_ribbon", "plot_strains", "save_figures"]
+__all__ = [
+    "Pictures",
+    "Style",
+    "plot_batch",
+    "plot_branch",
+    "plot_plane",
+    "plot_ribbon",
+    "plot_solution",
+    "plot_strains",
+    "save_animation",
+    "save_figures",
+]
 
 _HOMES = {
     "Pictures": "files",
+    "Style": "paper_style",
+    "plot_batch": "scatter",
+    "plot_branch": "branch",
     "plot_plane": "plane",
     "plot_ribbon": "ribbon",
+    "plot_solution": "files",
     "plot_strains": "strains",
+    "save_animation": "animation",
     "save_figures": "files",
 }
 

@@ -10,66 +10,93 @@ import math
 from collections.abc import Collection, Mapping, Sequence
 from functools import partial
 from pathlib import Path
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
 
 from ribbonopt.plain import Row, Rows
 from ribbonopt.solution.solution import Solution
-from ribbonopt.text import drawn
 
-from .branch_axes import COUNTS, dress, label, unit_of
+from .branch_axes import COUNTS, dress
 from .branch_numbers import write_numbers
 from .branch_rows import KINK, POINT, BranchFigure, Piece, Plane
-from .branch_style import DOT, STYLES, UNKNOWN, mark_of, marks_of, state_of
+from .branch_style import COLOURS, DOT, STYLES, UNKNOWN, marks_of, state_of
+from .branch_words import caption_of, plain_of, write_legend
 from .columns import ColumnPair
 from .curves import Array, curves_through
+from .insets import draw_insets
+from .paper_style import PAGE, PLAIN, Style, sized, thinner
 from .strip import plot_strip
-from .style import BENDING, FAINT, INK, SI, SPECIAL, TWIST, Drawn, blank, draw_all, tidy, title
+from .style import FAINT, INK, SI, SPECIAL, Drawn, blank, draw_all, tidy, title
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
     from matplotlib.gridspec import SubplotSpec
 
-#: one for each branch
-COLOURS = (BENDING, TWIST, "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#7b3fa0", "#8a6d00")
-ENTRY = 2.2  # inches for one of the legend
 BEHIND, ASIDE = 0.01, 2.2  # of the axes: a curve this near to another is drawn as much wider
 
 
 def plot_branch(
-    rows: Rows, x: str, y: str, *, log: bool | Collection[str] = (), title: str = ""
+    rows: Rows,
+    x: str,
+    y: str,
+    *,
+    log: bool | Collection[str] = (),
+    title: str = "",
+    labels: Mapping[str, str] | None = None,
+    si: bool = False,
+    style: Style = PLAIN,
 ) -> Figure:
     """Plot quantity y against x, where "value" is the parameter; rows without either are left out.
 
     Parameters that differ by stage get axes each. `log` says whether they are logarithmic, or which
-    columns are; with values that are not positive they are not.
+    columns are; with values that are not positive they are not. `labels` are what columns are
+    called beside the axes, with formulas between $; `si` says whether numbers are in SI units.
     """
     names = {row["parameter"] for row in rows}
-    return draw_branch(
-        BranchFigure(rows, ((x, y),), title, names if log is True else log or ()), ()
+    figure = BranchFigure(
+        rows,
+        ((x, y),),
+        title,
+        names if log is True else log or (),
+        si=si,
+        labels={**(labels or {}), **style.labels},
     )
+    with style.applied():
+        return draw_branch(figure, (), style)
 
 
 def save_branch_figures(
-    figure: BranchFigure, ribbons: Mapping[int, Solution], folder: str | Path
+    figure: BranchFigure,
+    ribbons: Mapping[int, Solution],
+    folder: str | Path,
+    style: Style = PLAIN,
+    inside: Sequence[int] = (),
 ) -> Drawn:
     """Write branch.png, a panel for each of the first four pairs, and ribbons.png if any.
 
     That is left out, and it is said why, where a ribbon has no surface. `ribbons` are the solutions
-    of points by their numbers.
+    of points by their numbers; those of `inside` are drawn in the first panel.
     """
     shown = [row for row in figure.pictured if row["number"] in ribbons]
-    drawings = {"branch.png": partial(draw_branch, figure, [row["number"] for row in shown])}
+    inner = {number: ribbons[number] for number in inside}
+    numbers = [row["number"] for row in shown]
+    drawings = {"branch.png": partial(draw_branch, figure, numbers, style, inner)}
     if shown:
         solutions = [ribbons[row["number"]] for row in shown]
-        captions = [_caption(row, figure) for row in shown]
-        drawings["ribbons.png"] = partial(plot_strip, solutions, captions)
-    return draw_all(drawings, Path(folder))
+        captions = [caption_of(row, figure) for row in shown]
+        drawings["ribbons.png"] = partial(plot_strip, solutions, captions, style)
+    return draw_all(drawings, Path(folder), style)
 
 
-def draw_branch(subject: BranchFigure, numbered: Sequence[int]) -> Figure:
+def draw_branch(
+    subject: BranchFigure,
+    numbered: Sequence[int],
+    style: Style = PLAIN,
+    inside: Mapping[int, Solution] = MappingProxyType({}),
+) -> Figure:
     """Draw a panel for each of the first four pairs, and one legend under them.
 
     Parameters
@@ -78,22 +105,30 @@ def draw_branch(subject: BranchFigure, numbered: Sequence[int]) -> Figure:
         What to draw.
     numbered
         Numbers of points whose ribbons are pictured elsewhere.
+    style
+        Size, type, and how ribbons look.
+    inside
+        Ribbons that are pictured in the first panel, by the numbers of their points; if there are
+        any, others have no numbers.
     """
-    pairs = subject.pairs[:4]
+    pairs, numbered = subject.pairs[:4], [*inside] or numbered
     most = max(len(subject.axes_of(pair)) for pair in pairs)
-    columns = 1 if most > 1 or len(pairs) == 1 else 2
+    columns = 1 if most > 1 or len(pairs) == 1 or style.narrow else 2
     count = math.ceil(len(pairs) / columns)
-    width = min(1.5 + 4.0 * most, 14.0) if most > 1 else (7.2 if columns == 1 else 11.0)
-    figure = blank(width, 5.4 if count == 1 else 3.8 * count + 0.6)
+    width = min(1.5 + 4.0 * most, 14.0) if most > 1 else (PAGE if columns == 1 else 11.0)
+    figure = blank(width, 5.4 if count == 1 else 3.8 * count + 0.6, style)
     grid = figure.add_gridspec(count, columns)
     for i, pair in enumerate(pairs):
-        _panel(figure, grid[divmod(i, columns)], subject, pair, numbered)
+        written = () if inside and i == 0 else numbered  # there are the ribbons themselves
+        _panel(figure, grid[divmod(i, columns)], subject, pair, numbered, written)
     title(figure.axes[0], subject.title)
-    if subject.title:
+    if subject.title and style.titles:
         across = len(subject.axes_of(pairs[0])) if columns == 1 else min(columns, len(pairs))
         last = figure.axes[across - 1]
-        last.set_title(SI if subject.si else SPECIAL, loc="right", fontsize=9)
-    _legend(figure, subject, bool(numbered))
+        last.set_title(SI if subject.si else SPECIAL, loc="right", fontsize=sized(9))
+    write_legend(figure, subject, "" if inside or not numbered else f"ribbons.{style.format[0]}")
+    if inside:
+        draw_insets(figure.axes[0], subject, inside, style)
     return figure
 
 
@@ -103,6 +138,7 @@ def _panel(
     subject: BranchFigure,
     pair: ColumnPair,
     numbered: Sequence[int],
+    written: Sequence[int],
 ) -> None:
     """Draw one pair of quantities, on axes of each parameter if these differ."""
     planes, first = subject.axes_of(pair), None
@@ -112,7 +148,7 @@ def _panel(
         axes = figure.add_subplot(inner[i], sharey=beside)
         first = first or axes
         if plane.rows:
-            _draw(axes, plane, numbered)
+            _draw(axes, plane, numbered, written)
         else:
             words: dict[str, Any] = {"ha": "center", "color": FAINT, "transform": axes.transAxes}
             axes.text(0.5, 0.5, "nothing recorded", **words)
@@ -124,9 +160,9 @@ def _panel(
         axes.tick_params(labelleft=beside is None)
 
 
-def _draw(axes: Axes, plane: Plane, numbered: Sequence[int]) -> None:
-    """Draw curves, marks and numbers of a plane that has points."""
-    plain = _plain(plane.figure)
+def _draw(axes: Axes, plane: Plane, numbered: Sequence[int], written: Sequence[int]) -> None:
+    """Draw curves, marks, dots and numbers of a plane that has points."""
+    plain = plain_of(plane.figure)
     curves = [_curves(plane, piece) for piece in plane.pieces]
     for i, (piece, found) in enumerate(zip(plane.pieces, curves, strict=True)):
         colour = COLOURS[piece.rows[-1]["branch"] % len(COLOURS)]
@@ -134,14 +170,14 @@ def _draw(axes: Axes, plane: Plane, numbered: Sequence[int]) -> None:
         for state, curve in _stretches(piece.rows, found):
             style = STYLES[state] | plain | (DOT if curve.shape[1] == 1 else {})
             style["lw"] *= wider
-            axes.plot(*curve, color=colour, label=state, **style)
+            axes.plot(*curve, color=colour, label=state, **thinner(style))
     for name, chosen in marks_of(plane).items():
         if chosen:
-            axes.plot(*plane.points(chosen), label=name, **STYLES[name])
+            axes.plot(*plane.points(chosen), label=name, **thinner(STYLES[name]))
     regular = [row for row in plane.rows if row["number"] in numbered and row["kind"] == POINT]
     if regular:
-        axes.plot(*plane.points(regular), ls="", color=INK, label="_", **DOT)
-    write_numbers(axes, plane, numbered, [curve for found in curves for curve in found])
+        axes.plot(*plane.points(regular), ls="", color=INK, label="_", **thinner(DOT))
+    write_numbers(axes, plane, written, [curve for found in curves for curve in found])
 
 
 def _curves(plane: Plane, piece: Piece) -> list[Array]:
@@ -183,42 +219,3 @@ def _behind(plane: Plane, curves: Sequence[Array], later: Sequence[Sequence[Arra
         if np.mean(gaps < BEHIND) > 0.5:
             return True
     return False
-
-
-def _plain(subject: BranchFigure) -> dict[str, Any]:
-    """Return how curves are drawn where stability is known nowhere; nothing where it is."""
-    known = any(state_of(row) != UNKNOWN for row in subject.rows)
-    return {} if known else {"ls": "-", "lw": 1.6}
-
-
-def _caption(row: Row, subject: BranchFigure) -> str:
-    """Return what stands under a ribbon: number, kind, parameter, branch."""
-    kind = "" if row["kind"] == POINT else f"  {drawn(row['kind'])}"
-    branch = f"\nbranch {row['branch']}" if row["branch"] else ""
-    unit = unit_of(row["parameter"], subject.si)
-    value = f"{row[row['parameter']]:.4g}{f' {unit}' if unit else ''}"
-    return f"{row['number']}{kind}\n{label(row['parameter'], False)} = {value}{branch}"
-
-
-def _legend(figure: Figure, subject: BranchFigure, numbers: bool) -> None:
-    """Entries for branches if there are several, and for the lines and marks that are drawn."""
-    from matplotlib.lines import Line2D
-
-    planes = [plane for pair in subject.pairs for plane in subject.axes_of(pair)]
-    drawn = {row["number"]: row for plane in planes for row in plane.rows}.values()
-    names = {line.get_label() for axes in figure.axes for line in axes.lines}
-    branches = sorted({row["branch"] for row in drawn})
-    entries: dict[str, dict[str, Any]] = {}
-    for branch in branches if len(branches) > 1 else []:
-        entries[f"branch {branch}"] = {"color": COLOURS[branch % len(COLOURS)], "lw": 3}
-    for name in (name for name in STYLES if name in names):
-        count = sum(row["kind"] != POINT and mark_of(row) == name for row in drawn)
-        plain = _plain(subject) if name == UNKNOWN else {}
-        entries[name + (f" ({count})" if count else "")] = {"color": INK} | STYLES[name] | plain
-    handles = [Line2D([], [], label=text, **style) for text, style in entries.items()]
-    if numbers:
-        handles.append(Line2D([], [], label="numbers: points in ribbons.png", color=INK, **DOT))
-        handles[-1].set_linestyle("")
-    wide = max(1, int(figure.get_figwidth() / ENTRY))
-    n = math.ceil(len(handles) / math.ceil(len(handles) / wide)) if handles else 1
-    figure.legend(handles=handles, loc="outside lower center", ncols=n, frameon=False, fontsize=9)

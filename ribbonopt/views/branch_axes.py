@@ -2,13 +2,15 @@
 
 from __future__ import annotations
 
+from collections.abc import Mapping
+from types import MappingProxyType
 from typing import TYPE_CHECKING
 
 from ribbonopt.scene.quantities import START_VECTORS
-from ribbonopt.text import drawn
 
 from .branch_rows import VALUE, Plane
 from .columns import LEAST, NOISE
+from .symbols import symbol
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -42,17 +44,18 @@ def unit_of(column: str, si: bool) -> str:
     return next((PARTS[part] for part in parts if part in PARTS), "")
 
 
-def label(column: str, si: bool) -> str:
-    """Return the words for a column, with its unit."""
+def label(column: str, si: bool, labels: Mapping[str, str] = MappingProxyType({})) -> str:
+    """Return the words for a column, with its unit; `labels` are those that a scene gives."""
     unit = unit_of(column, si)
-    return LABELS.get(column, drawn(column)) + (f" ({unit})" if unit else "")
+    words = symbol(column, labels) if column in labels else LABELS.get(column)
+    return (words or symbol(column, labels)) + (f" ({unit})" if unit else "")
 
 
 def dress(axes: Axes, plane: Plane) -> None:
     """Label and scale both axes."""
     for k in range(2):
         axis, name = (axes.xaxis, axes.yaxis)[k], plane.name(k)
-        axis.set_label_text(label(name, plane.figure.si) + _stages(plane, k))
+        axis.set_label_text(label(name, plane.figure.si, plane.figure.labels) + _stages(plane, k))
         if name in COUNTS:
             from matplotlib.ticker import MaxNLocator
 

@@ -10,6 +10,7 @@ import numpy as np
 
 from .branch_rows import Plane
 from .curves import Array
+from .paper_style import sized, stroke
 from .style import INK
 
 if TYPE_CHECKING:
@@ -57,9 +58,9 @@ def write_numbers(
             textcoords="offset points",
             ha="left" if x > 0 else "right",
             va="bottom" if y > 0 else "top",
-            fontsize=8,
+            fontsize=sized(8),
             color=INK,
-            path_effects=[withStroke(linewidth=2.5, foreground="white")],
+            path_effects=[withStroke(linewidth=stroke(2.5), foreground="white")],
             zorder=7,
         )
 

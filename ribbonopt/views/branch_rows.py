@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Collection
+from collections.abc import Collection, Mapping
+from dataclasses import field
 from functools import cached_property
 from typing import NamedTuple
 
@@ -42,6 +43,8 @@ class BranchFigure:
         Numbers of points that the point before does not lead to.
     si
         Whether numbers are in SI units.
+    labels
+        What columns are called beside axes, where the scene says it.
     """
 
     rows: Rows
@@ -50,6 +53,7 @@ class BranchFigure:
     log: Collection[str] = ()
     jumps: Collection[int] = ()
     si: bool = False
+    labels: Mapping[str, str] = field(default_factory=dict)
 
     @property
     def parameters(self) -> list[str]:

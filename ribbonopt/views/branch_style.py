@@ -10,7 +10,10 @@ import numpy as np
 from ribbonopt.plain import Row, Rows
 
 from .branch_rows import FOLD, KINK, POINT, Plane
-from .style import FAINT, INK, TWIST
+from .style import BENDING, FAINT, INK, TWIST
+
+#: one for each branch
+COLOURS = (BENDING, TWIST, "#009e73", "#cc79a7", "#56b4e9", "#e69f00", "#7b3fa0", "#8a6d00")
 
 STABLE, UNSTABLE, UNKNOWN = "stable", "unstable", "stability unknown"
 BRANCH, BUCKLING, OTHER = "branch point", "buckling point", "other special point"

@@ -9,6 +9,8 @@ from __future__ import annotations
 import numpy as np
 
 from ribbonopt.classes import dataclass
+from ribbonopt.errors import ModelError
+from ribbonopt.scene.faults import shown
 
 from .pieces import Array
 
@@ -20,6 +22,7 @@ AMBIENT = 0.5
 GLOSS = 0.16
 ONE_WAY = 0.5  # mean of unit vectors of forces that go about one way
 UPRIGHT = 4.0  # how much rather forces are seen upright
+AXES = {"x": (0.0, 0.0), "y": (90.0, 0.0), "z": (-90.0, 90.0)}  # azimuth and elevation (degrees)
 FACING = 0.5  # a face this frontal (cosine) needs not be more so
 
 
@@ -46,6 +49,42 @@ class Camera:
         half = light + np.array([0.0, 0.0, 1.0])
         gloss = GLOSS * np.maximum(seen @ (half / np.linalg.norm(half)), 0) ** 24
         return diffuse, gloss
+
+
+def camera_said(text: str) -> Camera:
+    """Return the camera at "azimuth,elevation" (degrees), or that looks from an axis, such as "-x".
+
+    Azimuth is counted from x towards y, elevation from there towards z, which is up.
+
+    Raises
+    ------
+    ModelError
+        If it is no such text.
+    """
+    name, numbers = text.strip(), text.split(",")
+    if name.removeprefix("-") in AXES:
+        azimuth, elevation = AXES[name[-1]]
+        if name.startswith("-"):
+            azimuth, elevation = (azimuth, -90) if elevation else (azimuth + 180, 0)
+    else:
+        try:
+            azimuth, elevation = map(float, numbers)
+        except ValueError:
+            azimuth, elevation = np.nan, np.nan
+        if not (abs(azimuth) <= 360 and abs(elevation) <= 90):
+            raise ModelError(
+                f"camera: found {shown(text)}, expected azimuth,elevation in degrees (at most 360 "
+                "and 90), such as 30,20, or an axis: x, y, z, -x, -y, -z"
+            )
+    a, e = np.deg2rad([azimuth, elevation])
+    towards = np.array([np.cos(e) * np.cos(a), np.cos(e) * np.sin(a), np.sin(e)])
+    right = np.array([-np.sin(a), np.cos(a), 0.0])
+    return Camera(right, np.cross(towards, right), towards)
+
+
+def camera_for(said: str, line: Array, normals: Array, ways: Array | None = None) -> Camera:
+    """Return the camera that is asked for, else as `place_camera`."""
+    return camera_said(said) if said else place_camera(line, normals, ways)
 
 
 def place_camera(line: Array, normals: Array, ways: Array | None = None) -> Camera:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
+from dataclasses import replace
 from typing import Any
 
 import numpy as np
@@ -12,6 +13,7 @@ from ribbonopt.classes import dataclass
 from .camera import Camera
 from .pieces import ROWS, Array
 from .surface import Sheet, Surface
+from .tint import DARKEST, Tint
 
 STRIPS = 8  # faces across the ribbon
 GENERATRICES = 48  # over the length drawn
@@ -34,14 +36,21 @@ class Drawing:
     edges: Array
     line_widths: Array
 
+    def thinned(self, share: float) -> Drawing:
+        """Return it with lines of a share of their width, but seams stay closed."""
+        return replace(self, line_widths=np.maximum(share * self.line_widths, SEAM))
+
 
 _Part = tuple[Array, Array, Array, Array, Array]  # a Drawing with heights (k,) after its corners
 
 
-def draw_surface(surface: Surface, camera: Camera, places: Sequence[float] = ()) -> Drawing:
+def draw_surface(
+    surface: Surface, camera: Camera, places: Sequence[float] = (), tint: Tint | None = None
+) -> Drawing:
     """Project, light and sort the faces, generatrices, edges and centre line of a ribbon.
 
-    The generatrices at `places`, arclengths, are drawn strongly.
+    The generatrices at `places`, arclengths, are drawn strongly. With `tint` both sides have the
+    colours of a field, what follows by symmetry too.
     """
     back = FRONT if surface.one_sided else BACK
     length = surface.sheets[-1].piece.s[-1] - surface.sheets[0].piece.s[0]
@@ -51,7 +60,10 @@ def draw_surface(surface: Surface, camera: Camera, places: Sequence[float] = ())
     lift = 0.5 * float(np.hypot(length / ROWS + sheared, across))
     parts = []
     for sheet in surface.sheets:
-        parts.append(_lit(camera, *_faces(sheet), back, sheet.piece.mirrored))
+        if tint is None:
+            parts.append(_lit(camera, *_faces(sheet), back, sheet.piece.mirrored))
+        else:
+            parts.append(_tinted(camera, *_faces(sheet), tint.colours(sheet.piece)))
         parts += [_segments(camera, lift, points, width) for points, width in _lines(sheet, length)]
     for s in places:
         sheet, row = surface.at(s)
@@ -63,7 +75,8 @@ def draw_surface(surface: Surface, camera: Camera, places: Sequence[float] = ())
         np.concatenate(column) for column in zip(*parts, strict=True)
     )
     order = np.argsort(heights, kind="stable")
-    haze = HAZE * (heights.max() - heights) / max(float(np.ptp(heights)), 1e-300)
+    far = HAZE if tint is None else 0.0
+    haze = far * (heights.max() - heights) / max(float(np.ptp(heights)), 1e-300)
     for colours in (faces, edges):
         colours[:, :3] += haze[:, None] * (1 - colours[:, :3])
     return Drawing(corners[order], faces[order], edges[order], line_widths[order])
@@ -86,6 +99,16 @@ def _lit(camera: Camera, corners: Array, normals: Array, back: Array, mirrored: 
     if mirrored:
         colour = colour + LIGHTER * (1 - colour)
     colour = np.minimum(colour * diffuse[:, None] + gloss[:, None], 1)
+    rgba = np.column_stack([colour, np.ones(len(colour))])
+    plane, heights = camera.project(corners)
+    return plane, heights.mean(axis=1), rgba, rgba.copy(), np.full(len(rgba), SEAM)
+
+
+def _tinted(camera: Camera, corners: Array, normals: Array, colours: Array) -> _Part:
+    """Faces in colours (rows, 3) that light changes little, so that a bar tells what they mean."""
+    diffuse, _ = camera.brightness(normals)
+    light = DARKEST + (1 - DARKEST) * diffuse
+    colour = np.repeat(colours, STRIPS, axis=0) * light[:, None]
     rgba = np.column_stack([colour, np.ones(len(colour))])
     plane, heights = camera.project(corners)
     return plane, heights.mean(axis=1), rgba, rgba.copy(), np.full(len(rgba), SEAM)

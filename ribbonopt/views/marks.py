@@ -14,8 +14,9 @@ from ribbonopt.classes import dataclass
 
 from .acting import Acting, Site
 from .camera import Camera
+from .paper_style import stroke
 from .pieces import Array
-from .style import DPI, INK, TWIST
+from .style import INK, TWIST
 from .surface import Surface
 
 if TYPE_CHECKING:
@@ -92,18 +93,18 @@ def paint_marks(axes: Axes, marks: Marks) -> None:
         arrow = FancyArrowPatch(
             path=Path(ring),
             arrowstyle="-|>",
-            mutation_scale=11,
+            mutation_scale=stroke(11),
             shrinkA=0,
             shrinkB=0,
             color=TWIST,
-            lw=1.4,
+            lw=stroke(1.4),
             zorder=0.6,
         )
         axes.add_patch(arrow)
     for corners, colour in marks.polygons:
-        axes.add_patch(Polygon(corners, fc=colour, ec=INK, lw=0.8, zorder=0.5))
+        axes.add_patch(Polygon(corners, fc=colour, ec=INK, lw=stroke(0.8), zorder=0.5))
     for points, style in marks.lines:
-        axes.plot(*points.T, color=INK, lw=0.9, ls=style, zorder=0.4)
+        axes.plot(*points.T, color=INK, lw=stroke(0.9), ls=style, zorder=0.4)
     for arrows, width, alpha in ((marks.rows, 0.9, 0.45), (marks.arrows, 2.0, 1.0)):
         if len(arrows):
             (x, y), (u, v) = arrows.transpose(1, 2, 0)
@@ -112,8 +113,8 @@ def paint_marks(axes: Axes, marks: Marks) -> None:
                 angles="xy",
                 scale_units="xy",
                 scale=1,
-                units="dots",
-                width=width * DPI / 72,
+                units="inches",
+                width=stroke(width) / 72,
                 minlength=0,
                 headwidth=4.5,
                 headlength=5.5,

@@ -6,6 +6,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
+from .paper_style import stroke
 from .style import ALLOWED, FAINT, FORBIDDEN, INK
 
 if TYPE_CHECKING:
@@ -25,10 +26,10 @@ def shade_natural(axes: Axes, far: float, across: float) -> None:
         u2 = -across / 2 + side * vertex
         x, y = [side * edge, *u2, side * edge], [-far, *u3, far]
         axes.fill(x, y, color=ALLOWED, lw=0, zorder=0.5, label=label if side > 0 else None)
-        axes.plot(u2, u3, color=FAINT, lw=0.6, zorder=1)
+        axes.plot(u2, u3, color=FAINT, lw=stroke(0.6), zorder=1)
     turn = np.linspace(0, 2 * np.pi, POINTS)
     disc = across / 2 * (1 + np.cos(turn)), across / 2 * np.sin(turn)
     axes.fill(*disc, color=FORBIDDEN, lw=0, zorder=0.6)
-    axes.plot(*disc, color=FAINT, lw=0.6, zorder=1)
-    axes.axhline(0, color=INK, lw=0.5, zorder=1)
-    axes.axvline(0, color=INK, lw=0.5, zorder=1)
+    axes.plot(*disc, color=FAINT, lw=stroke(0.6), zorder=1)
+    axes.axhline(0, color=INK, lw=stroke(0.5), zorder=1)
+    axes.axvline(0, color=INK, lw=stroke(0.5), zorder=1)

@@ -14,21 +14,34 @@ from matplotlib.figure import Figure
 from matplotlib.font_manager import FontProperties, findfont, fontManager, get_font
 from matplotlib.text import Text
 
+from .paper_style import PLAIN, Style
+
 NO_SCRIPTS = ("cm", "STIXNonUnicode", "STIXSize", "Last Resort", ".LastResort")  # begins of names
+#: what makes files of two runs the same
+UNDATED: dict[str, dict[str, Any]] = {"pdf": {"CreationDate": None}, "svg": {"Date": None}}
 
 
 class Page(Figure):
-    """A figure that takes letters from other fonts where its own has none."""
+    """A figure that takes letters from other fonts where its own has none.
+
+    It is drawn and written with the settings of its own style.
+    """
+
+    style: Style = PLAIN
 
     def draw(self, renderer: RendererBase) -> None:
         """Draw; what no font of this machine has stays an empty box."""
-        with _quiet():
+        with self.style.applied(), _quiet():
             _complete(self)
             super().draw(renderer)
 
     def savefig(self, fname: Any, **keywords: Any) -> None:
-        """Write a file, as `Figure.savefig` does."""
-        with _quiet():
+        """Write a file, as `Figure.savefig` does, with text as text and without its date."""
+        name = str(keywords.get("format") or fname)
+        undated = next((date for end, date in UNDATED.items() if name.endswith(end)), None)
+        if undated:
+            keywords["metadata"] = undated | (keywords.get("metadata") or {})
+        with self.style.applied(), _quiet():
             super().savefig(fname, **keywords)
 
 

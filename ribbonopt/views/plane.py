@@ -9,6 +9,7 @@ import numpy as np
 
 from ribbonopt.solution.solution import Solution
 
+from .paper_style import PLAIN, USUAL, Style, sized, stroke
 from .pieces import Piece
 from .style import ALLOWED, BENDING, DASHES, FAINT, FORBIDDEN, INK, blank, head, tidy
 from .subject import Subject, subject_of
@@ -18,10 +19,11 @@ if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
 
+WIDTH, TITLE = 6.6, 0.3  # inches
 STRAIGHT = 1e-9  # largest strain, times L, of a ribbon that counts as straight
 
 
-def plot_plane(solution: Solution, complete: bool = True) -> Figure:
+def plot_plane(solution: Solution, complete: bool = True, style: Style = PLAIN) -> Figure:
     """Plot u3 against u2, allowed and forbidden regions shaded, start and end marked.
 
     Parameters
@@ -30,11 +32,14 @@ def plot_plane(solution: Solution, complete: bool = True) -> Figure:
         What to draw.
     complete
         Add, dashed, the rest of a band of which this solution is a piece by symmetry.
+    style
+        Size and type.
     """
-    return draw_plane(subject_of(solution, complete))
+    with style.applied():
+        return draw_plane(subject_of(solution, complete), style)
 
 
-def draw_plane(subject: Subject) -> Figure:
+def draw_plane(subject: Subject, style: Style = PLAIN) -> Figure:
     """Plot the path in the plane; a jump between pieces is dotted.
 
     Raises
@@ -46,7 +51,10 @@ def draw_plane(subject: Subject) -> Figure:
     pieces = subject.pieces
     (left, right), (low, high) = _limits(pieces, subject.units.strain)
     shape = (high - low) / (right - left)
-    figure = blank(6.6, (2.05 if subject.mirrored else 1.8) + 5.6 * shape)
+    width, columns = style.width or WIDTH, 1 if style.narrow else 2
+    words = (1.3 if columns == 2 else 1.0) + 0.25 * (4 + bool(subject.mirrored)) / columns
+    words -= 0 if style.titles else TITLE
+    figure = blank(width, words * style.type_size / USUAL + 5.6 / WIDTH * width * shape, style)
     axes = figure.add_subplot()
     far = 2 * max(-left, right, -low, high)
     if subject.across:
@@ -57,12 +65,12 @@ def draw_plane(subject: Subject) -> Figure:
         _shade(axes, far)
     for piece in pieces:
         line = DASHES if piece.mirrored else "-"
-        axes.plot(piece.u2, piece.u3, color=BENDING, lw=1.8, ls=line, zorder=3)
+        axes.plot(piece.u2, piece.u3, color=BENDING, lw=stroke(1.8), ls=line, zorder=3)
     tolerance = 0.01 * (right - left)
     for a, b in pairwise(pieces):
         jump = [[a.u2[-1], b.u2[0]], [a.u3[-1], b.u3[0]]]
         if abs(jump[0][1] - jump[0][0]) > tolerance:
-            axes.plot(*jump, color=FAINT, lw=1.3, ls=":", zorder=2)
+            axes.plot(*jump, color=FAINT, lw=stroke(1.3), ls=":", zorder=2)
     (start, end), metres = subject.interval, " m" if subject.units.si else ""
     for piece, row, marker, size, fill, label in (
         (subject.solved[0], 0, "o", 6, BENDING, f"start, $s = {start:.4g}${metres}"),
@@ -72,21 +80,23 @@ def draw_plane(subject: Subject) -> Figure:
             piece.u2[row],
             piece.u3[row],
             marker,
-            ms=size,
+            ms=stroke(size),
             mfc=fill,
             mec=BENDING,
-            mew=1.6,
+            mew=stroke(1.6),
             zorder=4,
             ls="none",
             label=label,
         )
     if subject.mirrored:
-        axes.plot([], [], color=BENDING, lw=1.8, ls=DASHES, label=subject.rest)
+        axes.plot([], [], color=BENDING, lw=stroke(1.8), ls=DASHES, label=subject.rest)
     axes.set(xlim=(left, right), ylim=(low, high), aspect="equal")
     axes.set_xlabel(subject.label(r"bending strain $u_2$", "1/m"))
     axes.set_ylabel(subject.label(r"twisting strain $u_3$", "1/m"))
     head(axes, subject.name, subject.units)
-    figure.legend(loc="outside lower center", ncols=2, frameon=False, fontsize=9)
+    look = {"ncols": columns, "frameon": False, "fontsize": sized(9)}
+    look |= {"labelspacing": 0.3} if style.narrow else {}
+    figure.legend(loc="outside lower center", **look)
     tidy(axes)
     return figure
 
@@ -100,9 +110,9 @@ def _shade(axes: Axes, far: float) -> None:
             ((y, x), FORBIDDEN, r"$|\eta| > 1$, forbidden to Sadowsky's ribbon"),
         ):
             axes.fill(*corners, color=colour, lw=0, zorder=0, label=label if sign > 0 else None)
-        axes.plot([-far, far], [-sign * far, sign * far], color=FAINT, lw=0.6, zorder=1)
-    axes.axhline(0, color=INK, lw=0.5, zorder=1)
-    axes.axvline(0, color=INK, lw=0.5, zorder=1)
+        axes.plot([-far, far], [-sign * far, sign * far], color=FAINT, lw=stroke(0.6), zorder=1)
+    axes.axhline(0, color=INK, lw=stroke(0.5), zorder=1)
+    axes.axvline(0, color=INK, lw=stroke(0.5), zorder=1)
 
 
 def _limits(

@@ -8,14 +8,17 @@ import numpy as np
 
 from ribbonopt.solution.solution import Solution
 
-from .camera import Camera, place_camera
+from .camera import Camera, camera_for
 from .facets import Drawing, draw_surface
 from .generatrices import ETA_BOUND, LEAP_SLOPE
+from .lettering import wrapped
 from .marks import marks_of, paint_marks
+from .paper_style import PLAIN, USUAL, Style, sized, stroke
 from .pieces import Array
 from .style import FAINT, INK, blank, head
 from .subject import Subject, subject_of
 from .surface import Surface, sweep
+from .tint import tint_of
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -23,10 +26,16 @@ if TYPE_CHECKING:
 
 WIDTH, HEIGHT = 7.2, 6.4  # inches, at most
 NARROWEST = 0.75  # width of a picture over its height: room for its title
+WORDS, BAR = 0.7, 0.85  # inches: of title and caption, and of a bar of colours
+MARGINS = 0.3  # inches that are no caption's
+UNSHORTENED = {"shrinkA": 0, "shrinkB": 0}  # arrows
 
 
 def plot_ribbon(
-    solution: Solution, half_width: float | None = None, complete: bool = True
+    solution: Solution,
+    half_width: float | None = None,
+    complete: bool = True,
+    style: Style = PLAIN,
 ) -> Figure:
     """Draw the ribbon: points r + v (d2 + eta d3), |v| <= half_width.
 
@@ -40,17 +49,23 @@ def plot_ribbon(
         that where the width along the ribbon is 1.
     complete
         Add, in a lighter tone, the rest of a band of which this solution is a piece by symmetry.
+    style
+        Size, type, camera and colours; its half-width where no other is given.
     """
-    return draw_ribbon(subject_of(solution, complete), half_width)
+    with style.applied():
+        return draw_ribbon(subject_of(solution, complete), half_width, style)
 
 
-def draw_ribbon(subject: Subject, half_width: float | None = None) -> Figure:
+def draw_ribbon(subject: Subject, half_width: float | None = None, style: Style = PLAIN) -> Figure:
     """Draw a ribbon; a rod with u1 as a strip along d2, which is straight across."""
     pieces = subject.pieces
+    half_width = style.half_width if half_width is None else half_width
     surface = sweep(pieces, subject.drawn if half_width is None else half_width)
     line = np.concatenate([p.r for p in pieces])
-    camera = place_camera(line, np.concatenate([p.d1 for p in pieces]), subject.acting.ways)
-    drawing = draw_surface(surface, camera, list(subject.acting.places))
+    normals = np.concatenate([p.d1 for p in pieces])
+    camera = camera_for(style.camera, line, normals, subject.acting.ways)
+    tint = tint_of(style.color, [subject])
+    drawing = draw_surface(surface, camera, list(subject.acting.places), tint)
     (left, low), (right, high) = drawing.corners.min(axis=(0, 1)), drawing.corners.max(axis=(0, 1))
     size = max(right - left, (high - low) * WIDTH / HEIGHT)
     marks = marks_of(subject.acting, surface, camera, size)
@@ -60,9 +75,12 @@ def draw_ribbon(subject: Subject, half_width: float | None = None) -> Figure:
     low, high = low - foot, high + 0.03 * size
     beside = max(0.03 * size, (NARROWEST * (high - low) - (right - left)) / 2)
     box = (left - beside, right + beside, low, high)
-    page = WIDTH / (box[1] - box[0])
-    height = min(HEIGHT, page * (box[3] - box[2]))
-    figure = blank(WIDTH, max(height, 0.2 * WIDTH) + 0.7)
+    width, type_size = style.width or WIDTH, style.type_size / USUAL
+    bar = BAR * type_size if tint else 0.0
+    page = (width - bar) / (box[1] - box[0])
+    height = min(HEIGHT * width / WIDTH, page * (box[3] - box[2]))
+    words = WORDS * type_size if style.titles else 0.0
+    figure = blank(width, max(height, 0.2 * width) + words, style)
     axes = figure.add_subplot()
     paint(axes, drawing)
     paint_marks(axes, marks)
@@ -71,7 +89,12 @@ def draw_ribbon(subject: Subject, half_width: float | None = None) -> Figure:
     head(axes, subject.name, subject.units)
     scale_bar(axes, box, size, " m" if subject.units.si else "")
     _triad(axes, camera, box, size)
-    figure.supxlabel(_caption(subject, surface), fontsize=8.5, color=INK)
+    if tint:
+        tint.bar([axes])
+    if style.titles:
+        caption = _caption(subject, surface, lit=tint is None).splitlines()
+        text = "\n".join(wrapped(line, width - MARGINS, sized(8.5)) for line in caption)
+        figure.supxlabel(text, fontsize=sized(8.5), color=INK)
     return figure
 
 
@@ -84,7 +107,7 @@ def paint(axes: Axes, drawing: Drawing) -> None:
             list(drawing.corners),
             facecolors=drawing.faces,
             edgecolors=drawing.edges,
-            linewidths=drawing.line_widths,
+            linewidths=stroke(1) * drawing.line_widths,
             capstyle="round",
             joinstyle="round",
         ),
@@ -97,9 +120,9 @@ def scale_bar(axes: Axes, box: tuple[float, float, float, float], size: float, u
     exponent = np.floor(np.log10(0.25 * size))
     length = max(k * 10**exponent for k in (1, 2, 5) if k * 10**exponent <= 0.25 * size)
     x, y = box[0] + 0.03 * size, box[2] + 0.03 * size
-    axes.plot([x, x + length], [y, y], color=INK, lw=2, solid_capstyle="butt")
+    axes.plot([x, x + length], [y, y], color=INK, lw=stroke(2), solid_capstyle="butt")
     label = f"{length:g}{unit}"
-    axes.text(x + length / 2, y + 0.012 * size, label, ha="center", va="bottom", fontsize=9)
+    axes.text(x + length / 2, y + 0.012 * size, label, ha="center", va="bottom", fontsize=sized(9))
 
 
 def _triad(axes: Axes, camera: Camera, box: tuple[float, float, float, float], size: float) -> None:
@@ -115,7 +138,7 @@ def _triad(axes: Axes, camera: Camera, box: tuple[float, float, float, float], s
             "",
             xy=(origin + tip).tolist(),
             xytext=origin.tolist(),
-            arrowprops={"arrowstyle": "-|>", "color": FAINT, "lw": 1, "shrinkA": 0, "shrinkB": 0},
+            arrowprops={"arrowstyle": "-|>", "color": FAINT, "lw": stroke(1)} | UNSHORTENED,
         )
         place = origin + tip * (1 + 0.25 / max(float(np.linalg.norm(tips[i])), 0.25))
         for other in places:
@@ -130,13 +153,13 @@ def _triad(axes: Axes, camera: Camera, box: tuple[float, float, float, float], s
             "xyz"[i],
             ha="center",
             va="center",
-            fontsize=9,
+            fontsize=sized(9),
             color=FAINT,
             fontstyle="italic",
         )
 
 
-def _caption(subject: Subject, surface: Surface) -> str:
+def _caption(subject: Subject, surface: Surface, lit: bool) -> str:
     unit = " m" if subject.units.si else ""
     width = f"{surface.half_width:.3g}{unit}" + (" w(s)" if surface.tapers else "")
     if surface.half_width == subject.half_width:
@@ -145,7 +168,7 @@ def _caption(subject: Subject, surface: Surface) -> str:
     lines = [f"drawn to the half-width {width} along {across}"]
     notes = []
     if subject.mirrored:
-        notes.append(f"{subject.rest} (light)")
+        notes.append(subject.rest + " (light)" * lit)
     if surface.bounded:
         notes.append(rf"$|\eta|$ drawn at most {ETA_BOUND:g}")
     if surface.crossing:

@@ -9,16 +9,18 @@ from __future__ import annotations
 
 from collections.abc import Iterator, Mapping, Sequence
 from itertools import product
+from types import MappingProxyType
 from typing import TYPE_CHECKING, Any
 
 from ribbonopt.classes import dataclass
 from ribbonopt.plain import SPECIALS, Row, Rows, is_number
 from ribbonopt.text import drawn
 
-from .branch import COLOURS
-from .branch_style import STYLES, mark_of
+from .branch_style import COLOURS, STYLES, mark_of
 from .columns import is_logarithmic, is_numeric, numbers, words
+from .paper_style import PLAIN, Style, sized, spaced, stroke, thinner
 from .style import FAINT, INK, blank, tidy
+from .symbols import symbol
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
@@ -39,7 +41,12 @@ class _Axes:
     across: str
 
 
-def plot_special(rows: Rows, inputs: Sequence[str]) -> Figure:
+def plot_special(
+    rows: Rows,
+    inputs: Sequence[str],
+    labels: Mapping[str, str] = MappingProxyType({}),
+    style: Style = PLAIN,
+) -> Figure:
     """Draw the values at special points against the first number that was swept.
 
     A branch for which that number is not given has a level line.
@@ -49,22 +56,22 @@ def plot_special(rows: Rows, inputs: Sequence[str]) -> Figure:
     kinds = [_kinds(rows, name) for name in (axes.down, axes.across)]
     colours = dict(zip(_kinds(rows, axes.colour), _repeated(COLOURS), strict=False))
     count, across = (len(each) for each in kinds)
-    figure = blank(WIDTH * across + 1.0, HEIGHT * count + 0.6)
+    figure = blank(WIDTH * across + 1.0, HEIGHT * count + 0.6, style)
     panels = figure.subplots(count, across, squeeze=False, sharex=True, sharey="row")
     for panel, (down, beside) in zip(panels.flat, product(*kinds), strict=True):
         mine = [r for r in rows if (_kind(r, axes.down), _kind(r, axes.across)) == (down, beside)]
         for kind, colour in colours.items():
             _draw(panel, [r for r in mine if _kind(r, axes.colour) == kind], axes.x, colour)
         names = [drawn(word) for word in (down, _titled(axes.across, beside)) if word]
-        panel.set_title(", ".join(names), fontsize=9, color=INK, loc="left")
+        panel.set_title(", ".join(names), fontsize=sized(9), color=INK, loc="left")
         panel.grid(True, color=FAINT, alpha=0.2)
         tidy(panel)
     if is_logarithmic(numbers(rows, axes.x)):
         panels[0, 0].set_xscale("log")
     for panel in panels[-1]:
-        panel.set_xlabel(drawn(axes.x))
+        panel.set_xlabel(symbol(axes.x, labels))
     for panel in panels[:, 0]:
-        panel.set_ylabel(drawn(", ".join(_parameters(rows))))
+        panel.set_ylabel(", ".join(symbol(name, labels) for name in _parameters(rows)))
     _legend(figure, rows, colours)
     return figure
 
@@ -86,12 +93,12 @@ def _draw(axes: Axes, rows: Rows, x: str, colour: str) -> None:
         places = [place for row in rows if (place := _place(row, x, i))]
         known = sorted((at, value, kind) for at, value, kind in places if at is not None)
         if known:
-            axes.plot([p[0] for p in known], [p[1] for p in known], color=colour, lw=1.4)
+            axes.plot([p[0] for p in known], [p[1] for p in known], color=colour, lw=stroke(1.4))
         for where, value, kind in known:
-            axes.plot(where, value, **STYLES[kind] | {"mec": colour, "ms": 6})
+            axes.plot(where, value, **thinner(STYLES[kind] | {"mec": colour, "ms": 6}))
         for at, value, _ in places:
             if at is None:
-                axes.axhline(value, color=colour, lw=1.2, ls=(0, (5, 2)))
+                axes.axhline(value, color=colour, lw=stroke(1.2), ls=(0, (5, 2)))
 
 
 def _place(row: Row, x: str, i: int) -> Place | None:
@@ -111,10 +118,10 @@ def _legend(figure: Figure, rows: Rows, colours: Mapping[str, str]) -> None:
     lines = {drawn(kind): {"color": colour, "lw": 2} for kind, colour in colours.items() if kind}
     marks = dict.fromkeys(mark_of(point) for row in rows for point in row[SPECIALS])
     entries: dict[str, dict[str, Any]] = lines | {mark: STYLES[mark] for mark in marks}
-    handles = [Line2D([], [], label=text, **style) for text, style in entries.items()]
-    count = max(1, int(figure.get_figwidth() / 1.6))
+    handles = [Line2D([], [], label=text, **thinner(style)) for text, style in entries.items()]
+    count = max(1, int(figure.get_figwidth() / spaced(1.6)))
     figure.legend(
-        handles=handles, loc="outside lower center", ncols=count, frameon=False, fontsize=9
+        handles=handles, loc="outside lower center", ncols=count, frameon=False, fontsize=sized(9)
     )
 
 

@@ -9,6 +9,7 @@ import numpy as np
 
 from ribbonopt.solution.solution import Solution
 
+from .paper_style import NARROW, PAGE, PLAIN, Style, sized, spaced, stroke
 from .pieces import Array, Piece, in_plane
 from .style import (
     ALLOWED,
@@ -40,7 +41,7 @@ LINES: Mapping[str, tuple[str, str]] = {
 }
 
 
-def plot_strains(solution: Solution, complete: bool = True) -> Figure:
+def plot_strains(solution: Solution, complete: bool = True, style: Style = PLAIN) -> Figure:
     """Plot u2, u3 and eta against s; u1, u2 and u3 where u1 is free.
 
     Parameters
@@ -49,13 +50,16 @@ def plot_strains(solution: Solution, complete: bool = True) -> Figure:
         What to draw.
     complete
         Add, dashed, the rest of a band of which this solution is a piece by symmetry.
+    style
+        Size and type.
     """
-    return draw_strains(subject_of(solution, complete))
+    with style.applied():
+        return draw_strains(subject_of(solution, complete), style)
 
 
-def draw_strains(subject: Subject) -> Figure:
+def draw_strains(subject: Subject, style: Style = PLAIN) -> Figure:
     """Plot strains; lines break where a piece ends."""
-    figure = blank(7.2, 5.0)
+    figure = blank(PAGE, 5.0, style)
     if subject.rod:
         axes = figure.add_subplot()
         _plot(axes, subject, ("u1", "u2", "u3"))
@@ -78,35 +82,41 @@ def draw_strains(subject: Subject) -> Figure:
 def _plot(axes: Axes, subject: Subject, quantities: tuple[str, ...]) -> None:
     for quantity in quantities:
         colour, label = LINES[quantity]
-        axes.plot(*_joined(subject.solved, quantity), color=colour, lw=1.8, label=label)
+        axes.plot(*_joined(subject.solved, quantity), color=colour, lw=stroke(1.8), label=label)
         if subject.mirrored:
-            axes.plot(*_joined(subject.mirrored, quantity), color=colour, lw=1.5, ls=DASHES)
+            axes.plot(*_joined(subject.mirrored, quantity), color=colour, lw=stroke(1.5), ls=DASHES)
 
 
 def _mark(axes: Axes, places: Mapping[float, str]) -> None:
     """Mark where something acts at a single place."""
     for s in places:
-        axes.axvline(s, color=FAINT, lw=0.7, zorder=0)
+        axes.axvline(s, color=FAINT, lw=stroke(0.7), zorder=0)
 
 
 def _name(axes: Axes, places: Mapping[float, str], length: float, below: bool) -> None:
     """Write the names of single places, as the scene has them, below or in axes, in free rows."""
+    row_height, crowding = sized(9), PAGE / _width(axes) * sized(7.5) / 7.5
     taken: list[float] = []  # where the last name of each row is
     for s, name in places.items():
-        room = LETTER * length * len(name)
+        room = LETTER * length * len(name) * crowding
         row = next((i for i, last in enumerate(taken) if s - last > room), len(taken))
         taken[row : row + 1] = [s]
         axes.annotate(
             name,
             (s, 0),
-            (0, -4 - 9 * row if below else 3 + 9 * row),
+            (0, -4 - row_height * row if below else 3 + row_height * row),
             xycoords=axes.get_xaxis_transform(),
             textcoords="offset points",
             ha="center",
             va="top" if below else "bottom",
-            fontsize=7.5,
+            fontsize=sized(7.5),
             color=FAINT,
         )
+
+
+def _width(axes: Axes) -> float:
+    """Return the width of the page (inches)."""
+    return float(axes.figure.bbox.width / axes.figure.dpi)
 
 
 def _shade(axes: Axes) -> None:
@@ -122,7 +132,7 @@ def _limit(axes: Axes, subject: Subject) -> None:
     """Show eta up to some size: natural strains allow any."""
     largest = max(float(np.abs(piece.eta).max()) for piece in subject.pieces)
     shown = min(max(1.1 * largest, ETA_SHOWN), ETA_MOST)
-    axes.axhline(0, color=INK, lw=0.6, zorder=0)
+    axes.axhline(0, color=INK, lw=stroke(0.6), zorder=0)
     axes.set_ylim(-shown, shown)
 
 
@@ -132,13 +142,16 @@ def _label(top: Axes, bottom: Axes, subject: Subject, strains: str) -> None:
     for axes in dict.fromkeys((top, bottom)):
         _mark(axes, places)
     _name(top, places, subject.length, below=top is not bottom)
-    top.axhline(0, color=INK, lw=0.6, zorder=0)
+    top.axhline(0, color=INK, lw=stroke(0.6), zorder=0)
     if subject.mirrored:
-        top.plot([], [], color=INK, lw=1.5, ls=DASHES, label=subject.rest)
-    head(top, subject.name, subject.units, pad=26)
+        top.plot([], [], color=INK, lw=stroke(1.5), ls=DASHES, label=subject.rest)
+    count = len(top.get_legend_handles_labels()[0])
+    columns = 4 if _width(top) >= NARROW else 2
+    rows = -(-count // columns)
+    head(top, subject.name, subject.units, pad=spaced(10 + 16 * rows))
     top.set_ylabel(subject.label(strains, "1/m"))
-    look = {"frameon": False, "fontsize": 9, "columnspacing": 1.4}
-    top.legend(loc="lower left", bbox_to_anchor=(0, 1.0, 1, 0), ncols=4, **look)
+    look = {"frameon": False, "fontsize": sized(9), "columnspacing": 1.4}
+    top.legend(loc="lower left", bbox_to_anchor=(0, 1.0, 1, 0), ncols=columns, **look)
     bottom.set_xlabel(subject.label(r"arclength $s$", "m"))
     bottom.set_xlim(subject.interval[0], subject.end)
     for axes in (top, bottom):

@@ -4,18 +4,23 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping
 from pathlib import Path
-from typing import TYPE_CHECKING, NamedTuple
+from typing import TYPE_CHECKING, Any, NamedTuple
 
-from ribbonopt.errors import PictureError, ViewError
+from ribbonopt.errors import ModelError, PictureError, ViewError
 from ribbonopt.output.staging import replaced
 from ribbonopt.scene.units import Units
 from ribbonopt.text import drawn
+
+from .lettering import letter
+from .paper_style import PLAIN, USUAL, Style, sized
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
     from matplotlib.figure import Figure
 
-DPI = 150
+    from .page import Page
+
+ROOM = 0.1  # inches around what is drawn
 BENDING = "#1f5fa8"
 TWIST = "#c2410c"
 IN_PLANE = "#0b7a53"
@@ -29,15 +34,21 @@ TITLE = 44  # letters of a title
 DASHES = (0, (4, 2))  # what follows by symmetry
 
 
-def blank(width: float, height: float) -> Figure:
-    """Return an empty figure (inches) that renders without a display and without global state."""
+def blank(width: float, height: float, style: Style = PLAIN) -> Page:
+    """Return an empty figure that renders without a display and without global state.
+
+    It has the size of its style, or else this one (inches).
+    """
     from matplotlib.backends.backend_agg import FigureCanvasAgg
     from matplotlib.layout_engine import ConstrainedLayoutEngine
 
     from .page import Page
 
-    layout = ConstrainedLayoutEngine(w_pad=0.1, h_pad=0.1)
-    figure = Page(figsize=(width, height), dpi=DPI, facecolor="white", layout=layout)
+    size = style.page(width, height)
+    pad = ROOM * style.type_size / USUAL
+    layout = ConstrainedLayoutEngine(w_pad=pad, h_pad=pad)
+    figure = Page(figsize=size, dpi=style.dpi, facecolor="white", layout=layout)
+    figure.style = style
     FigureCanvasAgg(figure)
     return figure
 
@@ -49,8 +60,12 @@ class Drawn(NamedTuple):
     left_out: list[str]
 
 
-def draw_all(drawings: Mapping[str, Callable[[], Figure]], folder: Path) -> Drawn:
+def draw_all(
+    drawings: Mapping[str, Callable[[], Figure]], folder: Path, style: Style = PLAIN
+) -> Drawn:
     """Draw and write pictures by the names of their files; leave out those that there are none of.
+
+    A name ends in .png; each picture is written in all formats of the style.
 
     Raises
     ------
@@ -61,12 +76,21 @@ def draw_all(drawings: Mapping[str, Callable[[], Figure]], folder: Path) -> Draw
     left_out: list[str] = []
     failed: dict[str, Exception] = {}
     for name, draw in drawings.items():
+        files = [(folder / name).with_suffix(f".{end}") for end in style.format]
         try:
-            _save(draw(), folder / name)
-            paths.append(folder / name)
+            with style.applied():
+                figure = draw()
+                if style.letters:
+                    letter(figure)
+            for path in files:
+                _save(figure, path)
+                paths.append(path)
         except ViewError as error:
-            (folder / name).unlink(missing_ok=True)  # that of an older result
+            for path in files:
+                path.unlink(missing_ok=True)  # that of an older result
             left_out.append(f"{name}: {error}")
+        except ModelError:  # of the style, and so of all pictures
+            raise
         except OSError as error:
             failed[f"{folder / name}: cannot be written ({error.strerror or error})"] = error
         except Exception as error:  # whatever it is: the next picture may be drawn
@@ -84,17 +108,25 @@ def _save(figure: Figure, path: Path) -> None:
 def head(axes: Axes, name: str, units: Units, pad: float = 6) -> None:
     """Title: the scene's name, and the units."""
     title(axes, name, pad)
-    axes.set_title(SI if units.si else SPECIAL, loc="right", fontsize=9, pad=pad)
+    if style_of(axes).titles:
+        axes.set_title(SI if units.si else SPECIAL, loc="right", fontsize=sized(9), pad=pad)
 
 
 def title(axes: Axes, name: str, pad: float = 6) -> None:
-    """Write the name of a scene or a study over axes, as it is."""
-    words = drawn(name, TITLE)
-    axes.set_title(words, loc="left", fontsize=12, fontweight="bold", pad=pad)
+    """Write the name of a scene or a study over axes, as it is; where the style has titles."""
+    words = drawn(name, TITLE) if style_of(axes).titles else ""
+    axes.set_title(words, loc="left", fontsize=sized(12), fontweight="bold", pad=pad)
+
+
+def style_of(axes: Axes) -> Style:
+    """Return the style of the page that axes are on."""
+    part: Any = axes.figure
+    page = part.figure  # the whole of which it may be a part, in any version of matplotlib
+    return getattr(page, "style", PLAIN)
 
 
 def tidy(axes: Axes) -> None:
     """Light frame and ticks."""
     axes.spines[["top", "right"]].set_visible(False)
     axes.spines[["left", "bottom"]].set_color(FAINT)
-    axes.tick_params(colors=INK, labelsize=9)
+    axes.tick_params(colors=INK, labelsize=sized(9))

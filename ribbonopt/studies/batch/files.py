@@ -133,6 +133,8 @@ class BatchFolder:
             "inputs": self.study.keys,
             "digest": self.study.digest,
         }
+        if labels := self.study.called:
+            record["labels"] = labels
         if (self.folder / STUDY).is_file() and (self.folder / STUDY).stat().st_size:
             self._go_on(str(record["digest"]), resume)
         elif (self.folder / ROWS).is_file() and (self.folder / ROWS).stat().st_size:

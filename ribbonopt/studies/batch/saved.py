@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import os
+from dataclasses import field
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -37,6 +38,7 @@ class SavedStudy:
     ribbons: Count
     inputs: tuple[str, ...]
     digest: str
+    labels: dict[str, str] = field(default_factory=dict)
 
 
 @dataclass(frozen=True)

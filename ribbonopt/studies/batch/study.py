@@ -82,6 +82,14 @@ class Sweep:
             return ()
         return (*scene.record, *((EQUILIBRIA,) if scene.starts > 1 else ()))
 
+    @property
+    def labels(self) -> dict[str, str]:
+        """What the scene calls columns beside axes; nothing of a bad scene."""
+        try:
+            return self._scene({}).labels
+        except SceneError:
+            return {}
+
     def _fault(self, inputs: Inputs) -> str:
         try:
             scene = self._scene(inputs)
@@ -128,12 +136,21 @@ class Study:
         Which full solutions are kept: all, failed or none.
     time_limit : float
         Seconds that a ribbon may take.
+    labels : mapping
+        What columns are called beside the axes of figures.
     """
 
     name: str
     sweeps: tuple[Sweep, ...]
     save: Literal["all", "failed", "none"] = "failed"
     time_limit: float = 300.0
+    labels: Mapping[str, str] = field(default_factory=dict)
+
+    @property
+    def called(self) -> dict[str, str]:
+        """What columns are called beside axes: as the study says, else as its first scene does."""
+        scenes = self.sweeps[0].labels if self.sweeps else {}
+        return {**scenes, **self.labels}
 
     @property
     def count(self) -> int:

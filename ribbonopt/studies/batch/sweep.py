@@ -14,6 +14,7 @@ A study file names a scene (or several) and what is swept over it:
     continue: true                       # follow the `continuation` of each; false: solve it alone
     save: failed                         # full solutions: all | failed | none
     time_limit: 60                       # seconds for a ribbon
+    labels: {parameters.a: $a$}          # what columns are called beside the axes of figures
 """
 
 from __future__ import annotations
@@ -40,7 +41,8 @@ from .cells import as_yaml
 from .inputs import NOTHING, Inputs, fault, rows_of, text_of
 from .study import Source, Study, Sweep
 
-KEYS = ("name", "scene", "set", "sweep", "continue", "save", "time_limit")
+KEYS = ("name", "scene", "set", "sweep", "continue", "save", "time_limit", "labels")
+SETTINGS = ("save", "time_limit", "labels")
 SAVE = ("all", "failed", "none")
 
 
@@ -72,7 +74,7 @@ def load_study(paths: Sequence[str | Path], overrides: Sequence[str] = ()) -> St
                 sweeps += _study(file, text, found.data, found.places, common)
             except InvalidSceneError as error:
                 raise SceneError(report(str(file), error.problems, found.places)) from None
-            settings |= {k: found.data[k] for k in ("save", "time_limit") if k in found.data}
+            settings |= {k: found.data[k] for k in SETTINGS if k in found.data}
             settings.setdefault("name", found.data.get("name", _named_after(file)))
         else:
             sweeps.append(Sweep(Source(str(file), text), common))
@@ -139,6 +141,9 @@ def _study(
         raise fault(("time_limit",), "expected a number of seconds > 0", limit)
     if limit > SECONDS:
         raise fault(("time_limit",), f"expected at most {SECONDS:,.0f} seconds", limit)
+    labels = data.get("labels", {})
+    if not (isinstance(labels, dict) and all(isinstance(v, str) for v in labels.values())):
+        raise fault(("labels",), "expected columns and what they are called", labels)
     given = {} if data.get("set") is None else data["set"]
     if not isinstance(given, dict):
         raise fault(("set",), "expected keys of the scene and their values", given)

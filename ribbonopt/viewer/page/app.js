@@ -74,7 +74,7 @@ function makeApp() {
     dark(media.matches);
     media.addEventListener("change", () => dark(media.matches));
     get("theme").onclick = () => dark(!document.documentElement.classList.contains("dark"));
-    const known = FIELDS.filter(([name]) => !name || shapes.range(name)[0] <= shapes.range(name)[1]);
+    const known = FIELDS.filter(([name]) => !name || view.ranges[name]);
     for (const [name, text] of known) get("field").add(new Option(text, name));
     get("field").onchange = paint;
     get("again").onclick = () => get("stage").querySelector("canvas").dispatchEvent(new Event("dblclick"));
@@ -111,15 +111,20 @@ function makeApp() {
   function drawBatch() {
     get("diagram").hidden = get("table").hidden = false;
     get("ribbon").hidden = get("panels").hidden = !view.shapes.length;
+    document.body.classList.toggle("bare", !view.shapes.length);
     return batch.build(get("diagram"), get("table"), view.table, (row) => {
       const i = view.shapes.findIndex((one) => one.row === row);
-      if (i >= 0) return show(i);
+      if (i >= 0) {
+        show(i);
+        tell(i);
+        return get("stage").scrollIntoView({ block: "nearest" });
+      }
       get("caption").textContent = `row ${row + 1}: its shape is not on this page`;
     });
   }
 
   async function begin() {
-    await shapes.read();
+    if (view.shapes.length) await shapes.read();
     controls();
     ribbon = makeRibbon(get("stage"), (row) => mark(row));
     panels = makePanels(get("panels"), mark);

@@ -7,6 +7,7 @@
 //   shapes: [{caption, note, numbers: [[name, value]], warnings: [text], verified: true | false,
 //             count (rows), solved (rows that do not follow by symmetry), starts: [first rows of
 //             pieces], closing: 0 | 1 | -1, rod: true | false}],
+//   ranges: {name: [least, largest]} over all shapes, of what is drawn along them,
 //   packed: base64 of all rows (packing.py),
 //   diagram: what diagram.py gives, of a branch; table: what rows.py gives, of a batch
 // }
@@ -105,27 +106,5 @@ const shapes = (() => {
     return { x, y, row };
   }
 
-  function values(i, name) {
-    const k = COLUMNS.indexOf(name);
-    if (name === "eta") return column(i, COLUMNS.indexOf("angle")).map(Math.tan);
-    return k < 0 ? rows(i)[name] : column(i, k);
-  }
-
-  // The least and largest of a column over all shapes: one scale of colours, one axis for all.
-  const ranges = {};
-  function range(name) {
-    if (!ranges[name]) {
-      let [low, high] = [Infinity, -Infinity];
-      for (let i = 0; i < view.shapes.length; i++) {
-        for (const value of values(i, name)) {
-          if (value < low) low = value;
-          if (value > high) high = value;
-        }
-      }
-      ranges[name] = [low, high];
-    }
-    return ranges[name];
-  }
-
-  return { read, rows, along, range };
+  return { read, rows, along };
 })();

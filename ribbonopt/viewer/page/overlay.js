@@ -30,12 +30,16 @@ function makeOverlay(svg) {
   function triad(camera) {
     const origin = [camera.width - 46, camera.height - 44];
     const axes = [0, 1, 2].map((k) => [camera.right[k], -camera.up[k], camera.towards[k]]);
+    const taken = [];
     axes.forEach(([x, y], k) => {
       const size = Math.hypot(x, y);
       arrow(origin, [30 * x, 30 * y], "axis");
       if (size < 0.15) return;
       const far = 30 + 9 / size;
-      svgNode("text", { x: origin[0] + far * x, y: origin[1] + far * y + 4, class: "axis" }, layer, "xyz"[k]);
+      let [left, top] = [origin[0] + far * x, origin[1] + far * y + 4];
+      while (taken.some(([a, b]) => Math.hypot(a - left, b - top) < 12)) top -= 12;
+      taken.push([left, top]);
+      svgNode("text", { x: left, y: top, class: "axis" }, layer, "xyz"[k]);
     });
   }
 

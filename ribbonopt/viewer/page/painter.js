@@ -59,7 +59,7 @@ function makePainter(canvas) {
         const corners = [at(j, 0), at(j, 2), at(j + 1, 2), at(j + 1, 0)];
         const height = corners.reduce((sum, corner) => sum + corner[2], 0) / 4;
         const fill = css(lit(camera, look, j));
-        parts.push({ corners, height, fill, stroke: fill, width: 0.6 });
+        parts.push({ corners, height, fill, stroke: fill, width: 1 });
       }
       const stroke = css(look.lines);
       const lift = 0.02 * mesh.size;

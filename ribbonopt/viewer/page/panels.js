@@ -30,11 +30,20 @@ function makePanels(place, onHover) {
 
   const named = (name) => name.replace("1", "₁").replace("2", "₂").replace("3", "₃");
 
+  // Of the plane: with the origin, from which regions spread.
+  function around(i, name) {
+    const values = shapes.rows(i)[name].filter((value) => !Number.isNaN(value));
+    const [low, high] = range([name]) || [Math.min(...values), Math.max(...values)];
+    const room = 0.06 * Math.max(high - low, high, -low);
+    return values.length ? [Math.min(low, 0) - room, Math.max(high, 0) + room] : undefined;
+  }
+
   // Over all shapes, so that they can be compared; what is but rounding lies in the middle.
   function range(names) {
-    if (view.shapes.length < 2 || view.kind === "batch") return undefined;
+    const known = names.every((name) => view.ranges[name]);
+    if (view.shapes.length < 2 || view.kind === "batch" || !known) return undefined;
     const [low, high] = [Math.min, Math.max].map((least, k) =>
-      least(...names.map((name) => shapes.range(name)[k])),
+      least(...names.map((name) => view.ranges[name][k])),
     );
     const room = 0.05 * (high - low);
     const flat = !(high - low > 1e-9 * Math.max(Math.abs(low), Math.abs(high), 1e-300));
@@ -68,8 +77,8 @@ function makePanels(place, onHover) {
       series: series(i, ["u3"], "u2").map((one) => ({ ...one, name: undefined, className: "u2" })),
       xLabel: label("bending u₂", units.strain),
       yLabel: label("twist u₃", units.strain),
-      xRange: range(["u2"]),
-      yRange: range(["u3"]),
+      xRange: around(i, "u2"),
+      yRange: around(i, "u3"),
       equal: true,
       pick: "xy",
       regions: view.allowed ? region(i) : [],

@@ -53,7 +53,7 @@ function makeRibbon(stage, onHover) {
 
   function dye() {
     const values = state.field && shapes.rows(state.shape)[state.field];
-    scale = values ? colours.scale(shapes.range(state.field)) : null;
+    scale = values ? colours.scale(view.ranges[state.field]) : null;
     const place = (_, i) => (values ? scale.place(values[Math.floor(i / ACROSS)]) : 0);
     brush.paint(Float32Array.from({ length: ACROSS * mesh.count }, place));
     draw();
