@@ -3,13 +3,14 @@
 import json
 import shutil
 import xml.etree.ElementTree as ET
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 from branches import COLUMN
-from conftest import Run
 from half_studies import SCENE
 
 import ribbonopt
@@ -19,6 +20,7 @@ from ribbonopt.exports.formats import FORMATS
 from ribbonopt.exports.series import times_of
 from ribbonopt.output.saved import read_summary
 
+Run = Callable[..., Any]
 STAGES = """\
 continuation:
   - {parameter: parameters.P, from: 30, to: 36, largest: 3}
