@@ -59,11 +59,11 @@ class Refined:
         start, h = output.at_nodes[:-1], lay.widths(output.p)[:, None]
         size = float(np.abs(output.at_nodes).max())
         F, still = _swept(output, tableau.degree, REST * size)
-        delta = output.at_nodes[1:] - start - h * np.tensordot(tableau.weights, F, 1)
-        last = h * np.tensordot(tableau.legendre[-2:], F, 1) / (2 * tableau.degree)
+        delta = output.at_nodes[1:] - start - h * _times(tableau.weights[None], F)[0]
+        last = h * _times(tableau.legendre[-2:], F) / (2 * tableau.degree)
         decayed = np.abs(last).max(axis=(0, 2)) <= DECAYED * size
         integrals, power = _in_chebyshev(tableau.degree, output.order + 1)
-        found = h * np.tensordot(integrals, F, 1) + power[:, None, None] * delta
+        found = h * _times(integrals, F) + power[:, None, None] * delta
         found[0] += start
         fit = still & decayed & (np.abs(delta).max(axis=1) <= BESIDE * size)
         return cls(np.ascontiguousarray(found.swapaxes(0, 1)), fit)
@@ -84,6 +84,12 @@ def states_at_many(output: DenseOutput, phase: int, sigma: Array) -> Array:
     if rest.any():
         x[rest] = output.states(phase, sigma[rest])
     return x
+
+
+def _times(matrix: Array, values: Array) -> Array:
+    """Return a matrix (m, M) times values (M, N, nx): (m, N, nx)."""
+    found = matrix @ values.reshape(len(values), -1)
+    return np.asarray(found.reshape(len(matrix), *values.shape[1:]))
 
 
 def _chebyshev(t: Array, count: int) -> Array:
@@ -112,12 +118,12 @@ def _swept(output: DenseOutput, degree: int, rest: float) -> tuple[Array, NDArra
     start, h = output.at_nodes[:-1], lay.widths(output.p)
     places = lay.starts(output.p) + tableau.nodes[:, None] * h
     integrals = output.blocks.tableau.integrals(tableau.nodes)
-    x = start + h[:, None] * np.tensordot(integrals, output.rates.swapaxes(0, 1), 1)
+    x = start + h[:, None] * _times(integrals, output.rates.swapaxes(0, 1))
     F, fit, moving = np.empty_like(x), np.zeros(len(h), dtype=bool), np.arange(len(h))
     before = np.full(len(h), np.inf)
     for _ in range(SWEEPS):
         found = _derivatives(output, moving, x, places[:, moving])
-        improved = start[moving] + h[moving, None] * np.tensordot(tableau.matrix, found, 1)
+        improved = start[moving] + h[moving, None] * _times(tableau.matrix, found)
         change = np.abs(improved - x).max(axis=(0, 2))
         still = change <= rest
         goes_on = ~still & (change < before)
@@ -132,11 +138,18 @@ def _swept(output: DenseOutput, degree: int, rest: float) -> tuple[Array, NDArra
 
 def _derivatives(output: DenseOutput, elements: Index, x: Array, positions: Array) -> Array:
     """Return derivatives (M, N, nx) at states and relative positions (M, N) in elements (N,)."""
-    F, slices = np.empty_like(x), output.blocks.layout.phase_slices
+
+    def of(phase: int, x: Array, positions: Array) -> Array:
+        places = output.places(phase, positions.ravel())
+        found, _ = output.equations(phase).derivatives(x.reshape(-1, x.shape[2]), places)
+        return found.reshape(x.shape)
+
+    slices = output.blocks.layout.phase_slices
+    if len(slices) == 1:
+        return of(0, x, positions)
+    F = np.empty_like(x)
     cuts = np.searchsorted(elements, [its.start for its in slices] + [slices[-1].stop])
     for phase, (a, b) in enumerate(pairwise(cuts.tolist())):
         if a < b:
-            flat, places = x[:, a:b].reshape(-1, x.shape[2]), positions[:, a:b].ravel()
-            found, _ = output.equations(phase).derivatives(flat, output.places(phase, places))
-            F[:, a:b] = found.reshape(len(x), b - a, -1)
+            F[:, a:b] = of(phase, x[:, a:b], positions[:, a:b])
     return F
