@@ -16,6 +16,7 @@ from . import limits
 from .along import Along
 from .continuation import ContinuationStage
 from .ends import Boundary, HalfTwists, LabVector, Loop, Triple, Value
+from .in_short import in_short
 from .laws import Law
 from .loads import Loads
 from .membrane import AnyMembrane
@@ -231,8 +232,4 @@ class Scene:
     symmetric: bool | Literal["d1", "d2", "-d1", "-d2"] = False
     labels: dict[str, str] = field(default_factory=dict)
 
-    def __repr__(self) -> str:
-        """Say what it is in one line; `dump_scene` says all of it."""
-        from .in_short import in_short  # scenes are read more often than shown
-
-        return in_short(self)
+    __repr__ = in_short  # `dump_scene` says all of it
