@@ -20,7 +20,7 @@ from ribbonopt.views.shape import Shape, shape_from
 from ribbonopt.views.subject import Subject
 from ribbonopt.views.surface import sweep
 
-from .acting import arrows_of
+from .acting import arrows_of, longest
 from .packing import packed
 from .ranges import ranges_of
 from .still import still
@@ -130,11 +130,12 @@ def contents(view: View) -> dict[str, Any]:
 
 def _told(ribbon: Ribbon, shape: Shape) -> dict[str, Any]:
     mirrored = np.flatnonzero(shape.mirrored)
+    arrows = longest(ribbon.subject.acting, shape.units.si)
     return {
         "caption": ribbon.caption,
         "note": ribbon.note,
         "verified": ribbon.verified,
-        "numbers": [list(pair) for pair in ribbon.numbers],
+        "numbers": [list(pair) for pair in (*ribbon.numbers, *arrows)],
         "warnings": list(ribbon.warnings),
         "row": ribbon.row,
         "count": len(shape.s),
