@@ -3,12 +3,14 @@
 import shutil
 import subprocess
 from functools import cache
+from itertools import pairwise
 from pathlib import Path
 
 import numpy as np
 import pytest
 from matplotlib.axes import Axes
 from matplotlib.image import imread
+from matplotlib.text import Annotation
 from PIL import Image
 from test_views_branch import row
 
@@ -62,9 +64,13 @@ def test_each_inset_is_joined_to_its_point(style: Style) -> None:
     insets = [child for child in axes.child_axes if isinstance(child, Axes)]
     assert [i.texts[0].get_text().strip() for i in insets] == ["0", "3", "8"]
     assert len({inset.get_xlim() for inset in insets}) == 1  # one scale
-    leads = [line for line in axes.lines if line.get_label() == "_lead"]
+    leads = [text for text in axes.texts if isinstance(text, Annotation)]
     to_data = axes.transAxes + axes.transData.inverted()
-    begins = [to_data.transform(np.array(line.get_data()).T[0]) for line in leads]
+    begins = [to_data.transform(lead.xy) for lead in leads]
+    for lead, inset in zip(leads, insets, strict=True):  # which ends on the ribbon
+        drawn = np.concatenate([p.vertices for p in inset.collections[0].get_paths()])
+        assert np.abs(drawn - lead.xyann).sum(axis=1).min() < 1e-12
+        assert lead.anncoords is inset.transData
     np.testing.assert_allclose(begins, [(0, 0), (12, 9), (32, 64)], atol=1e-9)
     assert not any("numbers" in t.get_text() for t in figure.legends[0].get_texts())
 
@@ -92,7 +98,7 @@ def test_a_gif_has_a_frame_for_each_ribbon(tmp_path: Path) -> None:
         for i in range(3):
             image.seek(i)
             frames.append(np.asarray(image.convert("RGB"), float))
-    assert all(np.abs(a - b).max() > 50 for a, b in zip(frames, frames[1:], strict=False))
+    assert all(np.abs(a - b).max() > 50 for a, b in pairwise(frames))
     assert sorted(p.name for p in tmp_path.iterdir()) == ["a.gif"]
 
 
