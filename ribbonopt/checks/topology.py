@@ -102,8 +102,9 @@ def closure(solution: Solution) -> ClosedBand | None:
     if loop is not None:
         band = declared(solution, loop)
         return band if is_closed(band, TOLERANCE) else None
-    ends = at_ends(solution)
-    for sign in (1.0, -1.0):
+    ends, (start, last) = at_ends(solution), solution.scene.interval
+    returns = np.linalg.norm(ends["r"][1] - ends["r"][0]) <= TOLERANCE * (last - start)
+    for sign in (1.0, -1.0) if returns else ():
         whole = _whole(solution, ends, sign)
         if is_closed(whole, TOLERANCE):
             return whole

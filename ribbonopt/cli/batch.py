@@ -75,12 +75,8 @@ def batch(options: argparse.Namespace) -> int:
                     if line.due or folder.done == study.count:
                         line.show(_progress(folder, line.rate(folder.done - before)))
             folder.finish()
-            named, place, labels = (
-                (study.name, study.count, study.keys),
-                folder.folder,
-                study.called,
-            )
-            status = drawn(lambda: _draw(*named, list(folder.rows), place, pairs, labels))
+            named, place = (study.name, study.count, study.keys), folder.folder
+            status = drawn(lambda: _draw(*named, list(folder.rows), place, pairs, study.called))
     except KeyboardInterrupt:
         complain(
             f"interrupted; {len(folder.rows)} of {study.count} rows kept in {folder.folder}, "

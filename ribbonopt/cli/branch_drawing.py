@@ -38,11 +38,9 @@ def draw_branch(
     from ribbonopt.studies.continuation.stored import restored
     from ribbonopt.views.branch import save_branch_figures
     from ribbonopt.views.paper_style import PLAIN
-    from ribbonopt.views.tint import check_field
 
     rows = rows_of(lines)
     inset, style = (asked.inset, asked.style) if asked else ((), PLAIN)
-    check_field(style.color)
     figure = _figure(continuation, rows, pairs, dict(style.labels))
     if asked:
         from .drawing import refuse_points

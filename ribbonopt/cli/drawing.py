@@ -54,6 +54,15 @@ class Wanted:
             if name in self.told:
                 raise SceneError(f"--{name.replace('_', '-')}: {what}")
 
+    def refuse_field(self) -> None:
+        """Raise a SceneError where no surface has the field that is to colour it."""
+        from ribbonopt.views.tint import check_field
+
+        try:
+            check_field(self.style.color)
+        except ModelError as error:
+            raise SceneError(f"--{error}") from None
+
 
 def wanted(options: argparse.Namespace) -> Wanted:
     """Read the options; SceneError for what is none that they may have."""

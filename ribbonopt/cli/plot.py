@@ -29,6 +29,8 @@ def plot(options: argparse.Namespace) -> int:
 
     result, pairs = recovered(options.result), pairs_of(options.plot) or []
     asked = wanted(options)
+    if not is_file(result / "rows.jsonl"):
+        asked.refuse_field()
     if is_file(result / "branch.jsonl"):
         from .branch import draw as draw_branch
 
@@ -48,8 +50,8 @@ def plot(options: argparse.Namespace) -> int:
     elif not os.path.isdir(result):
         beside = f"{result}-branch"
         near = f"; did you mean {beside}?" if os.path.isdir(beside) else ""
-        wanted = "expected one written by ribbonopt solve, continue or batch"
-        raise SceneError(f"{result}: no such folder; {wanted}{near}")
+        known = "expected one written by ribbonopt solve, continue or batch"
+        raise SceneError(f"{result}: no such folder; {known}{near}")
     else:
         asked.refuse(f"{result} is no branch, along which ribbons are drawn", "inset", "animate")
         solution = load_solution(result)
@@ -68,10 +70,7 @@ def draw_solution(solution: Solution, folder: Path, style: Style | None = None) 
     """Draw the pictures of a solution; say what was left out."""
     from ribbonopt.views.files import draw_figures
     from ribbonopt.views.paper_style import PLAIN
-    from ribbonopt.views.tint import check_field
 
-    style = style or PLAIN
-    check_field(style.color)
-    paths, left_out = draw_figures(solution, folder, style=style)
+    paths, left_out = draw_figures(solution, folder, style=style or PLAIN)
     say_left_out(left_out)
     return paths

@@ -158,6 +158,9 @@ class Output(Protocol):
     def states(self, phase: int, sigma: Array) -> Array:
         """States x (k, nx) at the relative positions sigma (k,)."""
 
+    def many(self, phase: int, sigma: Array) -> Array:
+        """States x (k, nx) as `states`, to rounding or errors of its order; soon at many places."""
+
     def algebraic(self, phase: int, sigma: Array) -> Array:
         """Algebraic variables z (k, nz) at the relative positions sigma (k,)."""
 

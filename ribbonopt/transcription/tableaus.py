@@ -111,6 +111,11 @@ def gauss(degree: int) -> Tableau:
     return _gauss(_checked(degree))
 
 
+def gauss_of_any(degree: int) -> Tableau:
+    """Gauss-Legendre collocation of any degree, for what is read out: nothing is solved on it."""
+    return _gauss(degree)
+
+
 def radau(degree: int) -> Tableau:
     """Radau IIA collocation (last node at the end of the step), order 2K - 1, stiffly accurate."""
     return _radau(_checked(degree))

@@ -26,7 +26,8 @@ REGULAR_SLOPE = 0.8  # half_width |eta'| by default at most this
 LEAP_SLOPE = 0.7  # half_width |eta'| where eta leaps
 LEAST_LEAP = 1e-3
 LEAP_SHARE = 1 / 5  # half-width by default at most, of the usual distance between leaps
-NARROWER = 0.8  # times the half-width: what is tried next where generatrices cross
+ROUNDS = 20  # in which the half-width by default is found
+ROUNDING = 1e-9
 FINE = 1e-6  # of the length: rows closer than this do not count for eta'
 
 
@@ -103,9 +104,13 @@ class Generatrices:
         usual = float(np.median(apart)) if len(apart) else np.inf
         found = min(WIDTH_SHARE * length, LEAP_SHARE * usual) / widest
         least = LEAST_SHARE * length / widest  # eta may be steep where there is no strain
-        while found > least and self.overlap(found) > REGULAR_SLOPE:
-            found *= NARROWER
-        return max(found, least)
+        for _ in range(ROUNDS):
+            # Narrower it shows more of what is steep beside leaps, never less: so none is too far.
+            overlap = self.overlap(found)
+            if found <= least or overlap <= REGULAR_SLOPE * (1 + ROUNDING):
+                break
+            found *= REGULAR_SLOPE / overlap
+        return max(float(found), float(least))
 
 
 def _leap(before: float, after: float) -> bool:

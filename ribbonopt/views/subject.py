@@ -2,19 +2,21 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from dataclasses import field
+from functools import cached_property, partial
 
 from ribbonopt.checks.flip import Flip
 from ribbonopt.checks.topology import ClosedBand, closure
 from ribbonopt.classes import dataclass
 from ribbonopt.errors import ViewError
-from ribbonopt.mechanics.laws.catalogue import curvature_across
+from ribbonopt.mechanics.laws.catalogue import capabilities, curvature_across
 from ribbonopt.mechanics.widths import own_width
 from ribbonopt.scene.units import Units
 from ribbonopt.solution.solution import Solution
 
 from .acting import Acting, acting_of
-from .pieces import ROWS, Piece, in_plane, is_rod, sample_pieces
+from .pieces import ROWS, Piece, in_plane, is_rods, sample_pieces
 from .symmetry import continued, image, other_half
 
 ROD_SHARE = 1 / 80  # half-width of the strip that a rod is drawn as, of the length
@@ -35,7 +37,7 @@ class Subject:
         What follows by symmetry, or empty.
     count : int
         How many times the interval makes all of it.
-    acting : Acting
+    acts : function returning Acting
         What acts and holds: at ends only where the ribbon does not go on by symmetry.
     units : Units
         Of all of it.
@@ -56,7 +58,12 @@ class Subject:
     count: int = 1
     across: float | None = 0.0
     rod: bool = False
-    acting: Acting = field(default_factory=Acting)
+    acts: Callable[[], Acting] = Acting
+
+    @cached_property
+    def acting(self) -> Acting:
+        """What acts and holds, found when it is asked for."""
+        return self.acts()
 
     @property
     def pieces(self) -> tuple[Piece, ...]:
@@ -107,11 +114,11 @@ def subject_of(solution: Solution, complete: bool, rows: int = ROWS) -> Subject:
     `rows` are about how many there are of what was solved: fewer of a piece among many.
     """
     start, end = solution.scene.interval
-    width = own_width(solution.scene)
+    width, law = own_width(solution.scene), capabilities(solution.scene)
     band = closure(solution) if complete else None
     half = other_half(solution) if complete and band is None else None
     count = 2 if half is not None else 1 if band is None else band.pieces
-    solved = sample_pieces(solution, min(rows, max(FEWEST_ROWS, 2 * rows // count)))
+    solved = sample_pieces(solution, law, min(rows, max(FEWEST_ROWS, 2 * rows // count)))
     return Subject(
         name=solution.scene.name,
         interval=(float(start), float(end)),
@@ -121,8 +128,8 @@ def subject_of(solution: Solution, complete: bool, rows: int = ROWS) -> Subject:
         half_width=None if width is None else width / 2,
         count=count,
         across=curvature_across(solution.scene),
-        rod=is_rod(solution),
-        acting=acting_of(solution, ends=band is None),
+        rod=is_rods(law),
+        acts=partial(acting_of, solution, ends=band is None),
     )
 
 

@@ -23,6 +23,7 @@ from ribbonopt.transcription.tableaus import Inside
 
 from .blocks import ElementBlocks
 from .phase_equations import PhaseEquations
+from .refined import Refined
 from .substeps import after_substeps
 
 STIFF = 3.0  # exponent of an element, from which on neighbouring solutions part too fast
@@ -84,6 +85,14 @@ class DenseOutput:
             x[inside] = np.where(np.isfinite(ends), ends, x[inside])
         return x
 
+    def many(self, phase: int, sigma: Array) -> Array:
+        """States x (k, nx) as `states`, sooner at many places: see `refined`."""
+        return self._refined.states(phase, sigma)
+
+    @cached_property
+    def _refined(self) -> Refined:
+        return Refined(self)
+
     def approximate(self, phase: int, sigma: Array) -> Array:
         """Unknowns v (k, nv) at relative positions sigma (k,): the collocation polynomials."""
         element, t, h = self.blocks.layout.locate(self.p, phase, sigma)
@@ -110,11 +119,11 @@ class DenseOutput:
         tableau, lay = self.blocks.tableau, self.blocks.layout
         stage_t = t[:, None] * tableau.nodes
         positions = lay.starts(self.p)[element][:, None] + h[:, None] * stage_t
-        places = self._places(phase, positions.ravel())
+        places = self.places(phase, positions.ravel())
         repeated, K = np.repeat(element, tableau.degree), tableau.degree
         x = self._polynomial(repeated, stage_t.ravel(), np.repeat(h, K))
         v = self._with_algebraic(x, repeated, stage_t.ravel())
-        equations, start = self._equations(phase), self.at_nodes[element]
+        equations, start = self.equations(phase), self.at_nodes[element]
         return after_substeps(equations, tableau, start, (h * t)[:, None], v, places)
 
     @cached_property
@@ -123,7 +132,7 @@ class DenseOutput:
         lay, middle = self.blocks.layout, self.blocks.tableau.degree // 2
         v, positions = self._parts[1][:, middle], self.blocks.stage_positions(self.p)[:, middle]
         rates = [
-            self._equations(phase).rates(v[s], self._places(phase, positions[s]))
+            self.equations(phase).rates(v[s], self.places(phase, positions[s]))
             for phase, s in enumerate(lay.phase_slices)
         ]
         return np.asarray(lay.widths(self.p) * np.concatenate(rates))
@@ -137,8 +146,8 @@ class DenseOutput:
         z = self._interpolated(element, t)
         if not z.size:
             return z
-        places = self._places(phase, sigma)
-        return self._equations(phase).algebraic(self.states(phase, sigma), z, places)
+        places = self.places(phase, sigma)
+        return self.equations(phase).algebraic(self.states(phase, sigma), z, places)
 
     def stages(self, phase: int) -> tuple[Array, Array, Array]:
         """Stage values v (k, nv), relative positions (k,) and quadrature weights (k,)."""
@@ -154,8 +163,8 @@ class DenseOutput:
 
         Each state relative to its largest derivative along the solution; the largest of all.
         """
-        coefficients = np.abs(self.blocks.tableau.legendre @ self._rates)
-        scale = np.maximum(np.abs(self._rates).max(axis=(0, 1)), np.finfo(float).tiny)
+        coefficients = np.abs(self.blocks.tableau.legendre @ self.rates)
+        scale = np.maximum(np.abs(self.rates).max(axis=(0, 1)), np.finfo(float).tiny)
         return np.asarray((coefficients / scale).max(axis=2))
 
     def residual_between_nodes(self) -> Array:
@@ -166,16 +175,16 @@ class DenseOutput:
         """
         lay, between = self.blocks.layout, self.blocks.tableau.between
         count = len(between.t)
-        found = between.basis @ self._rates  # (N, k, nx)
+        found = between.basis @ self.rates  # (N, k, nx)
         everywhere = self._everywhere(between)
         positions = lay.starts(self.p)[:, None] + lay.widths(self.p)[:, None] * between.t
         result = np.empty((lay.element_count, count))
         for phase, s in enumerate(lay.phase_slices):
             v = everywhere[s].reshape(-1, lay.nv)
-            places = self._places(phase, positions[s].ravel())
-            F, _ = self._equations(phase).derivatives(v, places)
+            places = self.places(phase, positions[s].ravel())
+            F, _ = self.equations(phase).derivatives(v, places)
             result[s] = np.abs(found[s] - F.reshape(-1, count, lay.nx)).max(axis=2)
-        return np.asarray(result / np.abs(self._rates).max())
+        return np.asarray(result / np.abs(self.rates).max())
 
     @cached_property
     def _parts(self) -> tuple[Array, Array, Array]:
@@ -183,7 +192,7 @@ class DenseOutput:
         return self.blocks.layout.unpack(self.w)
 
     @cached_property
-    def _rates(self) -> Array:
+    def rates(self) -> Array:
         """Derivatives (N, K, nx) at the stages, per relative position."""
         return self.blocks.rates(self.w, self.p)
 
@@ -192,7 +201,7 @@ class DenseOutput:
         lay = self.blocks.layout
         v = np.empty((lay.element_count, len(inside.t), lay.nv))
         x = v[:, :, : lay.nx]
-        np.multiply(lay.widths(self.p)[:, None, None], inside.integrals @ self._rates, out=x)
+        np.multiply(lay.widths(self.p)[:, None, None], inside.integrals @ self.rates, out=x)
         x += self.at_nodes[:-1, None]
         if inside.t[-1] == 1:
             x[:, -1] = self.at_nodes[1:]
@@ -213,18 +222,18 @@ class DenseOutput:
         z: Array = np.einsum("kj,kjz->kz", basis, self._parts[1][element][:, :, lay.nx :])
         return z
 
-    def _places(self, phase: int, sigma: Array) -> Array:
+    def places(self, phase: int, sigma: Array) -> Array:
         """Positions sigma (k,) with the known fields there, as stage functions take them."""
         return at_places(self.known, phase, sigma, self.blocks.layout.known)
 
-    def _equations(self, phase: int) -> PhaseEquations:
+    def equations(self, phase: int) -> PhaseEquations:
         blocks = self.blocks
         return PhaseEquations(blocks.phases[phase], blocks.layout, (self.constants, self.theta))
 
     def _polynomial(self, element: Index, t: Array, h: Array) -> Array:
         nodes = self.at_nodes
         integrals = self.blocks.tableau.integrals(t)
-        increments = (integrals[:, None, :] @ self._rates[element])[:, 0]
+        increments = (integrals[:, None, :] @ self.rates[element])[:, 0]
         x: Array = nodes[element] + h[:, None] * increments
         x[t == 1] = nodes[element[t == 1] + 1]
         return x

@@ -89,6 +89,10 @@ class ShootingOutput:
             x[inside] = self._after(phase, nodes[e], start, (t * h)[inside])
         return x
 
+    def many(self, phase: int, sigma: Array) -> Array:
+        """States x (k, nx) at the relative positions sigma (k,): the same."""
+        return self.states(phase, sigma)
+
     def algebraic(self, phase: int, sigma: Array) -> Array:
         """Algebraic variables z (k, nz): from their equations at the states."""
         return self._algebraic(phase, self.states(phase, sigma), sigma)

@@ -97,7 +97,7 @@ def test_unstable_stretches_are_dashed_and_folds_end_both():
     assert {line.is_dashed() for line in lines_of(axes, "unstable")} == {True}
     assert {line.is_dashed() for line in lines_of(axes, "stable")} == {False}
     assert not lines_of(axes, "stability unknown")
-    assert (axes.get_xlabel(), axes.get_ylabel()) == ("parameters.load", "energy")
+    assert (axes.get_xlabel(), axes.get_ylabel()) == ("load", r"energy $E$")
     assert axes.get_title(loc="left") == "arch"
 
 
@@ -163,8 +163,8 @@ def test_without_any_stability_lines_are_plain():
 @pytest.mark.parametrize("log", [True, ["law.epsilon"]])
 def test_each_parameter_has_its_axis(log):
     left, right = plot_branch(two_stages(), "value", "energy", log=log).axes
-    assert left.get_xlabel() == "parameters.shortening\nstage 1"
-    assert right.get_xlabel() == "law.epsilon\nstage 2"
+    assert left.get_xlabel() == "shortening\nstage 1"
+    assert right.get_xlabel() == "$\\epsilon$\nstage 2"
     assert (left.get_xscale(), right.get_xscale()) == ("linear", "log")  # the first is at 0
     assert left.get_ylim() == right.get_ylim()
     assert data_of(left, "stable")[0][[0, -1]].tolist() == [[0, 0], [0.1 * 3, 3]]
@@ -377,14 +377,14 @@ def test_captions_name_number_kind_and_value(tmp_path, monkeypatch):
     said = []
     monkeypatch.setattr(
         "ribbonopt.views.branch.plot_strip",
-        lambda _, captions: said.append(captions) or blank(1, 1),
+        lambda _, captions, style: said.append(captions) or blank(1, 1, style),
     )
     rows = pitchfork()
     subject = BranchFigure(rows, (("value", "u2"),))
     save_branch_figures(subject, {4: None, rows[-1]["number"]: None}, tmp_path)
     ((first, last),) = said
-    assert first == "4  branch point\nparameters.load = 1"
-    assert last == f"{rows[-1]['number']}\nparameters.load = 2\nbranch 2"
+    assert first == "4  branch point\nload = 1"
+    assert last == f"{rows[-1]['number']}\nload = 2\nbranch 2"
 
 
 def test_mirror_images_are_both_seen():
@@ -418,8 +418,8 @@ def test_axes_bear_units_where_they_are_known(si):
         (axes.get_xlabel(), axes.get_ylabel())
         for axes in draw_branch(BranchFigure(rows, pairs, "arch", si=si), []).axes
     ]
-    expected = [(f"{path} (m)", "energy (J)"), (f"{path} (m)", "tip")]
-    plain = [(path, "energy"), (path, "tip")]
+    expected = [(f"{path} (m)", "energy $E$ (J)"), (f"{path} (m)", "tip")]
+    plain = [(path, "energy $E$"), (path, "tip")]
     assert labels[:2] == (expected if si else plain)
 
 
