@@ -41,7 +41,8 @@ def diagram_of(figure: BranchFigure) -> Data:
         `branch`, `negative` (unstable directions, None unknown), `kind`, `mark` ("" for none) and
         `note` for each row; `pieces`, each with `branch` and, as indices of rows, those it goes
         through (`rows`) and those that decide how it begins (`beyond`); `corners`, indices of rows
-        where the direction may change at once; `x`, `y`, the columns shown first.
+        where the direction may change at once; `moved`, by stage, the column of what it moves;
+        `x`, `y`, the columns shown first.
     """
     rows = figure.rows
     names = _names(figure)
@@ -69,6 +70,7 @@ def diagram_of(figure: BranchFigure) -> Data:
             for piece in plane.pieces
         ],
         "corners": [i for i, row in enumerate(rows) if row["kind"] == KINK],
+        "moved": {str(row["stage"]): names.index(row["parameter"]) for row in rows},
         "x": names.index(x) if x in names else 0,
         "y": names.index(y) if y in names else 0,
     }

@@ -73,7 +73,11 @@ function makeApp() {
     const media = matchMedia("(prefers-color-scheme: dark)");
     dark(media.matches);
     media.addEventListener("change", () => dark(media.matches));
-    get("theme").onclick = () => dark(!document.documentElement.classList.contains("dark"));
+    let before = false; // what is printed is light
+    const isDark = () => document.documentElement.classList.contains("dark");
+    addEventListener("beforeprint", () => ((before = isDark()), dark(false)));
+    addEventListener("afterprint", () => dark(before));
+    get("theme").onclick = () => dark(!isDark());
     const known = FIELDS.filter(([name]) => !name || view.ranges[name]);
     for (const [name, text] of known) get("field").add(new Option(text, name));
     get("field").onchange = paint;

@@ -4,6 +4,7 @@
 // const view = batch.build(element, element, data, onChoose?); view.choose(row)
 const batch = (() => {
   function build(above, below, data, onChoose) {
+    if (!data.rows.length) return { choose() {} };
     let chosen = null;
     const choose = (row) => {
       chosen = row;
@@ -13,7 +14,11 @@ const batch = (() => {
     };
     const back = () => plot.mark(chosen);
     const plot = scatter.build(above, data, { onLeave: back, onChoose: choose });
-    const rows = table.build(below, data, { onHover: (row) => plot.mark(row), onLeave: back, onChoose: choose });
+    const rows = table.build(below, data, {
+      onHover: (row) => plot.mark(row),
+      onLeave: back,
+      onChoose: choose,
+    });
     return { choose };
   }
 

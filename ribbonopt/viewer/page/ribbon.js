@@ -107,7 +107,7 @@ function makeRibbon(stage, onHover) {
     },
     recolour: () => {
       look = undefined;
-      draw();
+      if (mesh && camera.width > 1 && camera.height > 1) paint(); // at once: it may be to be printed
     },
   };
 }

@@ -183,6 +183,11 @@ def test_a_page_needs_nothing_from_elsewhere_and_has_the_colours_of_figures(tmp_
         assert used <= set(re.findall(r"(--\w+): #", part))
 
 
+def test_what_a_report_weighs_without_rows(tmp_path: Path) -> None:
+    page([], tmp_path)
+    assert (tmp_path / "report.html").stat().st_size < 50_000
+
+
 def test_ten_thousand_rows(tmp_path: Path) -> None:
     rows = [good(i, error=1e-9) if i % 50 else bad(i) for i in range(1, 10_001)]
     found = page(rows, tmp_path)

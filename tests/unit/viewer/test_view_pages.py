@@ -108,6 +108,7 @@ def test_units_of_si() -> None:
     told = contents(view_of(solved("lateral_buckling_si")))
     assert told["units"]["force"] == "N"
     assert dict(told["shapes"][0]["numbers"])["energy"].split()[1] == "J"
+    assert dict(told["shapes"][0]["numbers"])["longest arrows"].endswith(" N/m")
     # Its weight hangs along -z, everywhere alike: arrows of one length.
     arrows = [arrow for arrow in told["shapes"][0]["acting"] if arrow["kind"] == "density"]
     assert len(arrows) > 10
