@@ -24,6 +24,7 @@ MODULES = {
     "solve": "scene",
     "check": "scene",
     "plot": "plot",
+    "export": "export",
     "view": "view",
     "schema": "scene",
     "compare": "comparison",
