@@ -16,7 +16,7 @@ from __future__ import annotations
 
 from functools import lru_cache
 from itertools import pairwise
-from typing import TYPE_CHECKING
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,14 +26,51 @@ from ribbonopt.classes import dataclass
 from ribbonopt.transcription.layout import Index
 from ribbonopt.transcription.tableaus import gauss_of_any
 
-if TYPE_CHECKING:
-    from .output import DenseOutput
+from .blocks import ElementBlocks
+from .phase_equations import PhaseEquations
 
 BEYOND = 4  # nodes, more than twice its own
 SWEEPS = 40
 REST = 1e-12  # change of a sweep, of the largest state: the next changes a tenth of that
 BESIDE = 1e-6  # delta, of the largest state, from which on substeps are asked
 DECAYED = 1e-10  # what the last two Legendre coefficients add to a state, of the largest
+
+
+class Read(Protocol):
+    """What polynomials are made of: an output of collocation."""
+
+    @property
+    def blocks(self) -> ElementBlocks:
+        """The discretised equations."""
+
+    @property
+    def p(self) -> Array:
+        """Parameters."""
+
+    @property
+    def order(self) -> int:
+        """Order of the error of `states`."""
+
+    @property
+    def at_nodes(self) -> Array:
+        """States (N + 1, nx) at the nodes."""
+
+    @property
+    def rates(self) -> Array:
+        """Derivatives (N, K, nx) at the stages, per relative position."""
+
+    @property
+    def polynomials(self) -> Refined:
+        """What is made of it here, once."""
+
+    def states(self, phase: int, sigma: Array) -> Array:
+        """States (k, nx) by substeps."""
+
+    def places(self, phase: int, sigma: Array) -> Array:
+        """Positions sigma (k,) with the known fields there."""
+
+    def equations(self, phase: int) -> PhaseEquations:
+        """Equations of a phase."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,7 +89,7 @@ class Refined:
     fit: NDArray[np.bool_]
 
     @classmethod
-    def of(cls, output: DenseOutput) -> Refined:
+    def of(cls, output: Read) -> Refined:
         """Find the polynomials of an output."""
         K, lay = output.blocks.tableau.degree, output.blocks.layout
         tableau = gauss_of_any(2 * K + BEYOND)
@@ -74,7 +111,7 @@ class Refined:
         return np.asarray((basis[:, None] @ self.coefficients[element])[:, 0])
 
 
-def states_at_many(output: DenseOutput, phase: int, sigma: Array) -> Array:
+def states_at_many(output: Read, phase: int, sigma: Array) -> Array:
     """States (k, nx) at relative positions sigma (k,) of a phase, by polynomials where they fit."""
     lay = output.blocks.layout
     if lay.nz or output.order == output.blocks.tableau.dense_order:
@@ -109,7 +146,7 @@ def _in_chebyshev(degree: int, power: int) -> tuple[Array, Array]:
     return found[:, :-1], found[:, -1]
 
 
-def _swept(output: DenseOutput, degree: int, rest: float) -> tuple[Array, NDArray[np.bool_]]:
+def _swept(output: Read, degree: int, rest: float) -> tuple[Array, NDArray[np.bool_]]:
     """Return derivatives (M, N, nx) at Gauss nodes, and in which elements (N,) sweeps come to rest.
 
     Elements that have come to it, or will not, are swept no further.
@@ -136,7 +173,7 @@ def _swept(output: DenseOutput, degree: int, rest: float) -> tuple[Array, NDArra
     return F, fit
 
 
-def _derivatives(output: DenseOutput, elements: Index, x: Array, positions: Array) -> Array:
+def _derivatives(output: Read, elements: Index, x: Array, positions: Array) -> Array:
     """Return derivatives (M, N, nx) at states and relative positions (M, N) in elements (N,)."""
 
     def of(phase: int, x: Array, positions: Array) -> Array:
