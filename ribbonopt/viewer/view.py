@@ -26,7 +26,7 @@ from .ranges import ranges_of
 from .still import still
 
 SI = {"length": "m", "strain": "1/m", "force": "N", "moment": "N m", "energy": "J/m"}
-PLACED = 4000  # points of centre lines from which the view is chosen
+PLACED = 1000  # points of centre lines from which the view is chosen
 ROOM = 1.02  # of the half extents
 LEAST = 1e-300
 

@@ -8,7 +8,7 @@
 const frame = (() => {
   const FONT = "11px system-ui, sans-serif";
   const HEAD = 8;
-  const FOOT = 20;
+  const FOOT = 22;
   const SIDE = 10;
   const GAP = 6; // pixels around the plot
 
@@ -86,13 +86,13 @@ const frame = (() => {
       line(`M${px} 0V${h}`, at, xa);
       if (px - half < last + 8 || px + half > w + SIDE) continue; // no room for it
       last = px + half;
-      write({ x: px, y: h + 15, "text-anchor": "middle" }, short, text);
+      write({ x: px, y: h + 17, "text-anchor": "middle" }, short, text);
     }
     last = Infinity;
     for (const { at, text } of ya.ticks) {
       const py = (1 - at) * h;
       line(`M0 ${py}H${w}`, at, ya);
-      if (py > last - 13) continue;
+      if (py > last - 15) continue;
       last = py;
       write({ x: -GAP, y: py + 4, "text-anchor": "end" }, axes.short(text, letters), text);
     }

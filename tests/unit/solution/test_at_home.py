@@ -53,7 +53,7 @@ def test_all_that_a_prompt_shows_is_short(solved: Solved) -> None:
     continuation = Continuation(scene)
     points = list(continuation)
     found = points[0].solution
-    shown = [scene, found, solved("ribbon_si"), solved("extensible_clamped"), continuation]
+    shown = [scene, found, solved("ribbon_si"), solved("moebius_half"), continuation]
     shown += [points[0], points, prepare(replace(scene, continuation=None))]
     shown += [Branch.of(continuation, points), Batch("b" * 120, 3, ["law.x"] * 90, [])]
     for thing in shown:

@@ -24,7 +24,8 @@ HOSTILE = "</script><b>bold</b><img src=x onerror='window.acted = 1'>"
 RUN = """
 const found = {};
 for (const [name, check] of Object.entries(checks)) {
-  try { check(); found[name] = ""; } catch (error) { found[name] = error.stack; }
+  found[name] = "";
+  try { check(); } catch (error) { found[name] = `${error.message} ${error.stack}`; }
 }
 document.body.replaceChildren();
 document.body.textContent = "[[" + JSON.stringify(found) + "]]";
