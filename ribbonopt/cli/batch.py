@@ -8,6 +8,7 @@ import time
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from contextlib import closing
+from dataclasses import replace
 from datetime import timedelta
 from typing import TYPE_CHECKING, Any
 
@@ -55,7 +56,7 @@ def batch(options: argparse.Namespace) -> int:
     study.check()
     if study.count > HUGE and not options.yes:
         raise SceneError(f"{study.name}: {study.count:,} ribbons; say --yes if that is meant")
-    _known(pairs or [], study.columns)
+    pairs = None if pairs is None else _columns(pairs, study.columns)
     if options.scheduler:
         from ribbonopt.studies.batch.cluster import check_cluster
 
@@ -103,27 +104,24 @@ def draw(result: Path, out: Path, pairs: list[tuple[str, str]], asked: Wanted) -
     from ribbonopt.studies.batch.special import with_columns
 
     columns = list(dict.fromkeys(name for row in rows for name in with_columns(row)))
-    _known(pairs, columns)
-    from .drawing import refuse_column
+    pairs = _columns(pairs, columns)
+    from .drawing import column_named
 
-    refuse_column(asked.style.color, columns)
+    style = replace(asked.style, color=column_named(asked.style.color, columns))
     asked.refuse("figures of a batch show no ribbons", "camera", "half_width")
     asked.refuse(f"{result} is a batch, and no branch", "inset", "animate")
     named, labels = (study["name"], study["ribbons"], study["inputs"]), study.get("labels", {})
-    return _draw(*named, rows, out, pairs, labels, asked.style)
+    return _draw(*named, rows, out, pairs, labels, style)
 
 
-def _known(pairs: list[tuple[str, str]], columns: Sequence[str]) -> None:
-    """Refuse columns that no row has."""
-    for name in (name for pair in pairs for name in pair):
-        if name not in columns:
-            from ribbonopt.scene.faults import suggestion
+def _columns(pairs: list[tuple[str, str]], columns: Sequence[str]) -> list[tuple[str, str]]:
+    """Return columns by their full names; SceneError for one that no row has."""
+    from ribbonopt.studies.columns import column_of
 
-            near = suggestion(name, columns)
-            known = ", ".join(columns)
-            raise SceneError(
-                f"--plot: found {name!r}, expected a column of the rows{near}: {known}"
-            )
+    try:
+        return [(column_of(x, columns), column_of(y, columns)) for x, y in pairs]
+    except SceneError as error:
+        raise SceneError(f"--plot: {error}") from None
 
 
 def _draw(
@@ -173,9 +171,15 @@ def _tell(options: argparse.Namespace, folder: BatchFolder, seconds: float) -> i
     first = min(failed, key=lambda row: int(row["number"]))
     complain(
         f"{folder.study.name}: {len(failed)} of {len(folder.rows)} ribbons failed; the "
-        f"first is number {first['number']}: {first['status']}: {first['message']}"
+        f"first is number {first['number']}: {_why(first)}"
     )
     return NOT_CONVERGED
+
+
+def _why(row: Mapping[str, Any]) -> str:
+    """Return how a ribbon failed, its status said once."""
+    status, message = str(row["status"]), str(row["message"])
+    return message if message.startswith(f"{status}: ") else f"{status}: {message}"
 
 
 def _progress(folder: BatchFolder, rate: float) -> str:

@@ -8,7 +8,7 @@ from typing import TYPE_CHECKING, Any
 from ribbonopt.classes import dataclass
 from ribbonopt.errors import ModelError, SceneError
 from ribbonopt.reading import MEGA, Kind, read_text
-from ribbonopt.scene.faults import InvalidSceneError, quotable, report, shown
+from ribbonopt.scene.faults import InvalidSceneError, quotable, report
 from ribbonopt.scene.schema.annotations import written_keys
 from ribbonopt.scene.schema.validation import validate
 from ribbonopt.scene.yamlio import read_yaml
@@ -127,7 +127,7 @@ def _insets(text: str | None) -> tuple[int, ...]:
     if text is None:
         return ()
     parts = dict.fromkeys(part.strip() for part in text.split(","))
-    numbers = [0 if part == "0" else count("--inset", part, LARGEST) for part in parts]
+    numbers = [count("--inset", part, LARGEST, least=0) for part in parts]
     if len(numbers) > INSETS:
         raise SceneError(f"--inset: found {len(numbers)} points, expected at most {INSETS}")
     return tuple(numbers)
@@ -136,16 +136,18 @@ def _insets(text: str | None) -> tuple[int, ...]:
 def refuse_points(inset: tuple[int, ...], numbers: list[int]) -> None:
     """Refuse points that a branch has not; SceneError."""
     for number in inset:
+        if not numbers:
+            raise SceneError(f"--inset: found {number}, but the branch has no points")
         if number not in numbers:
-            last = max(numbers, default=0)
+            last = max(numbers)
             raise SceneError(f"--inset: found {number}, expected points of the branch, 0 to {last}")
 
 
-def refuse_column(color: str, columns: list[str]) -> None:
-    """Refuse a column that no row of a batch has; SceneError."""
-    if color and color not in columns:
-        from ribbonopt.scene.faults import suggestion
+def column_named(color: str, columns: list[str]) -> str:
+    """Return the column of a batch that a word means; SceneError if no row has it."""
+    from ribbonopt.studies.columns import column_of
 
-        near = suggestion(color, columns)
-        known = ", ".join(columns)
-        raise SceneError(f"--color: found {shown(color)}, expected a column{near}: {known}")
+    try:
+        return color and column_of(color, columns)
+    except SceneError as error:
+        raise SceneError(f"--color: {error}") from None

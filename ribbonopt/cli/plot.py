@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import os
 from typing import TYPE_CHECKING
 
 from ribbonopt.errors import SceneError
@@ -23,11 +22,11 @@ def plot(options: argparse.Namespace) -> int:
     """Draw the pictures of a saved result."""
     from ribbonopt.output.claims import pictures_in
     from ribbonopt.output.results import load_solution
-    from ribbonopt.output.staging import recovered
+    from ribbonopt.studies.loading import folder_of
 
     from .drawing import wanted
 
-    result, pairs = recovered(options.result), pairs_of(options.plot) or []
+    result, pairs = folder_of(options.result), pairs_of(options.plot) or []
     asked = wanted(options)
     if not is_file(result / "rows.jsonl"):
         asked.refuse_field()
@@ -47,11 +46,6 @@ def plot(options: argparse.Namespace) -> int:
         raise SceneError(
             f"--plot: {result} is no branch and no batch, whose columns could be drawn"
         )
-    elif not os.path.isdir(result):
-        beside = f"{result}-branch"
-        near = f"; did you mean {beside}?" if os.path.isdir(beside) else ""
-        known = "expected one written by ribbonopt solve, continue or batch"
-        raise SceneError(f"{result}: no such folder; {known}{near}")
     else:
         asked.refuse(f"{result} is no branch, along which ribbons are drawn", "inset", "animate")
         solution = load_solution(result)

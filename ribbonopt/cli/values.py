@@ -24,11 +24,11 @@ def numbers(option: str, text: str | None) -> list[float] | None:
     return found
 
 
-def count(option: str, text: str, most: int) -> int:
-    """Read a whole number from 1 to a limit; SceneError for anything else."""
-    digits = text.lstrip("0")
+def count(option: str, text: str, most: int, least: int = 1) -> int:
+    """Read a whole number from `least`, 0 or 1, to a limit; SceneError for anything else."""
+    digits = text.lstrip("0") or "0" * (1 - least)
     if not (text.isascii() and text.isdigit() and digits):
-        raise SceneError(f"{option}: found {_short(text)}; expected a whole number from 1")
+        raise SceneError(f"{option}: found {_short(text)}; expected a whole number from {least}")
     if len(digits) > len(str(most)) or int(digits) > most:
         raise SceneError(f"{option}: found {_short(text)}; expected at most {most:,}")
     return int(digits)

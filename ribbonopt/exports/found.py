@@ -9,7 +9,7 @@ from pathlib import Path
 from ribbonopt.classes import dataclass
 from ribbonopt.errors import OutputError
 from ribbonopt.output.exports import EQUILIBRIA
-from ribbonopt.output.results import load_solution
+from ribbonopt.output.results import Built, load_solution
 from ribbonopt.plain import Row, is_number
 from ribbonopt.reading import is_file
 from ribbonopt.scene import Scene
@@ -61,7 +61,8 @@ def opened(path: str | Path, scene: Scene | None = None) -> Thing:
     folder = folder.parent if is_file(folder) else folder
     inner = folder / EQUILIBRIA
     numbers = [p.name for p in inner.iterdir() if p.name.isdecimal()] if inner.is_dir() else []
-    return (found, *(load_solution(inner / n, scene) for n in sorted(numbers, key=int)))
+    built: Built = {}
+    return (found, *(load_solution(inner / n, scene, built) for n in sorted(numbers, key=int)))
 
 
 def name_of(thing: Thing) -> str:
@@ -134,6 +135,11 @@ def _plain(values: Row) -> dict[str, float]:
 def _saved(batch: Batch) -> Iterator[Ribbon]:
     """Yield what a batch has saved; of ribbons that were continued, all their points."""
     if not batch.saved:
+        if not any(row["verified"] for row in batch.rows):
+            raise OutputError(
+                f"{batch.name}: none of its {len(batch)} ribbons was solved, so there is nothing "
+                "to export; what failed stands in its table.csv and report.html"
+            )
         raise OutputError(
             f"{batch.name}: no solution of this batch was saved; `save: all` in its study keeps "
             "them, and with it the batch is to be solved again"

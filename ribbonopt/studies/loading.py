@@ -14,6 +14,7 @@ from ribbonopt.reading import is_file
 from ribbonopt.scene import Scene
 from ribbonopt.scene.faults import nearest
 from ribbonopt.solution.solution import Solution
+from ribbonopt.solvers.status import Status
 from ribbonopt.text import one_line
 
 from .batch.saved import ROWS, STUDY
@@ -33,6 +34,8 @@ OTHERS = {
     "stress.json": "a stress test (ribbonopt stress)",
 }
 YAML = (".yaml", ".yml")
+#: what the name of a scene may have behind it as a folder: of its branch, of what failed
+BESIDE = ("-branch", *dict.fromkeys(f".{way.failure}" for way in Status if way.failure))
 SHOWN = 5  # results that a message names
 
 
@@ -57,12 +60,7 @@ def load(path: str | Path, scene: Scene | None = None) -> Solution | Branch | Ba
         If there is none of these, or its files are damaged. The message says what is there, and
         what may have been meant.
     """
-    if "\0" in os.fspath(path):
-        raise OutputError(f"{os.fspath(path)!r}: no such folder (it holds a null character)")
-    given = recovered(path)
-    if not os.path.lexists(given):
-        raise OutputError(f"{path}: no such folder; {EXPECTED}{_meant(given)}")
-    folder = given.parent if is_file(given) else given
+    folder = folder_of(path)
     if is_file(folder / FILE):
         from .continuation.branch import Branch
 
@@ -71,16 +69,36 @@ def load(path: str | Path, scene: Scene | None = None) -> Solution | Branch | Ba
         from .batch.results import Batch
 
         return Batch.load(folder)
+    return load_solution(folder, scene)
+
+
+def folder_of(path: str | Path) -> Path:
+    """Return the folder of a result, a branch or a batch, given by itself or by a file in it.
+
+    Raises
+    ------
+    OutputError
+        If it holds none of these. The message says what is there, and what may have been meant.
+    """
+    if "\0" in os.fspath(path):
+        raise OutputError(f"{os.fspath(path)!r}: no such folder (it holds a null character)")
+    given = recovered(path)
+    if not os.path.lexists(given):
+        raise OutputError(f"{path}: no such folder; {EXPECTED}{_meant(given)}")
+    folder = given.parent if is_file(given) else given
+    if is_file(folder / FILE) or is_file(folder / STUDY) or is_file(folder / ROWS):
+        return folder
     if any(os.path.lexists(folder / name) for name in (SUMMARY, NUMBERS)):
-        return load_solution(folder, scene)
+        return folder
     raise OutputError(f"{path}: {_found(given, folder)}; {EXPECTED}{_inside(folder)}")
 
 
 def _meant(path: Path) -> str:
-    """Return a suggestion for a path that is not there: its branch, or the nearest name."""
-    beside = path.with_name(f"{path.name}-branch") if path.name else path
-    if os.path.isdir(beside):
-        return f"; did you mean {one_line(str(beside))}?"
+    """Return a suggestion for a path that is not there: what failed, a branch, the nearest name."""
+    for ending in BESIDE:
+        beside = path.with_name(f"{path.name}{ending}") if path.name else path
+        if os.path.isdir(beside):
+            return f"; did you mean {one_line(str(beside))}?"
     try:
         near = nearest(path.name, os.listdir(path.parent))
     except OSError:  # nor is the folder that it should be in

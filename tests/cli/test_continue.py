@@ -264,7 +264,7 @@ def test_a_folder_that_is_not_there(run: Run, tmp_path: Path, there: bool) -> No
         (tmp_path / "results" / "snap-branch").mkdir(parents=True)
     status, out, err = run("plot", "results/snap")
     assert (status, out, err.count("\n")) == (2, "", 1)
-    assert "results/snap: no such folder; expected one written by" in err
+    assert "results/snap: no such folder; expected a folder written by" in err
     assert ("did you mean results/snap-branch?" in err) == there
 
 

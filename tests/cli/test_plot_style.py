@@ -76,7 +76,8 @@ def test_a_batch_is_coloured_by_a_column_and_called_as_its_study_says(
         *("report.html", "outcomes.svg", "scatter.svg")
     }
     status, _, err = run("plot", "b", "--color", "u33", "--out", "none")
-    assert status == 2 and "--color: found 'u33', expected a column; did you mean 'u3'?" in err
+    assert status == 2 and "--color: found 'u33', expected a column" in err
+    assert "did you mean 'u3'?" in err
     for option in ("--camera=x", "--half-width=1", "--inset=1", "--animate=gif"):
         status, _, err = run("plot", "b", option, "--out", "none")
         assert status == 2 and option.split("=")[0] in err

@@ -3,7 +3,8 @@
     results = ribbonopt.load("results/NAME")      # or Batch.of(study, run_batch(study))
     results[3].plot()
 
-A saved solution is read each time that it is asked for.
+A saved solution is read each time that it is asked for; what is built for the first one serves all
+of the same structure.
 """
 
 from __future__ import annotations
@@ -15,7 +16,7 @@ from typing import TYPE_CHECKING
 
 from ribbonopt.doors import batch_drawn, frame_of
 from ribbonopt.errors import OutputError
-from ribbonopt.output.results import load_solution
+from ribbonopt.output.results import Built, load_solution
 from ribbonopt.plain import SPECIALS, Row
 from ribbonopt.reading import is_file
 from ribbonopt.solution.at_home import in_notebook
@@ -71,6 +72,7 @@ class Batch:
         self.labels: Mapping[str, str] = labels or {}
         self.name, self.count, self.inputs, self.folder = name, count, tuple(inputs), folder
         self.rows: list[Row] = sorted(OneEach(rows), key=lambda row: int(row["number"]))
+        self._built: Built = {}
 
     @classmethod
     def load(cls, folder: str | Path) -> Batch:
@@ -121,7 +123,9 @@ class Batch:
                 "study keeps all of them, and run_batch needs a folder"
             )
         place = self._place(number)
-        return Branch.load(place) if is_file(place / FILE) else load_solution(place)
+        if is_file(place / FILE):
+            return Branch.load(place)
+        return load_solution(place, built=self._built)
 
     def __len__(self) -> int:
         """Return the number of rows."""

@@ -89,10 +89,36 @@ def test_what_is_none_is_refused_with_what_is_there(
         assert word.format(place) in str(refused.value)
 
 
-def test_a_branch_is_meant_where_there_is_no_result(tmp_path: Path) -> None:
-    (tmp_path / "arch-branch").mkdir()
-    with pytest.raises(OutputError, match=r"no such folder; .* did you mean .*arch-branch\?"):
+@pytest.mark.parametrize("ending", ["-branch", ".not-converged", ".wrong-solution"])
+def test_a_branch_or_what_failed_is_meant_where_there_is_no_result(
+    tmp_path: Path, ending: str
+) -> None:
+    (tmp_path / f"arch{ending}").mkdir()
+    with pytest.raises(OutputError, match=rf"no such folder; .* did you mean .*arch{ending}\?"):
         load(tmp_path / "arch")
+
+
+def test_what_is_built_for_one_solution_of_a_batch_serves_all(
+    place: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    built = list[Posed]()
+    of = Structure.of
+
+    def noted(posed: Posed) -> Structure:
+        built.append(posed)
+        return of(posed)
+
+    batch = Batch.load(place / "study")
+    with monkeypatch.context() as patch:
+        patch.setattr(Structure, "of", noted)
+        kept = [batch[number] for number in batch.saved]
+    assert (len(kept), len(built)) == (3, 1)
+    for number, found in zip(batch.saved, kept, strict=True):
+        assert isinstance(found, Solution)
+        alone = load(place / "study" / "solutions" / str(number))
+        assert isinstance(alone, Solution)
+        assert found.energy == alone.energy and (found.n0 == alone.n0).all()
+        assert found.scene == alone.scene
 
 
 @pytest.mark.parametrize("file", ["comparison.json", "stress.json", "verification.json"])
