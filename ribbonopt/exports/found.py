@@ -8,8 +8,7 @@ from pathlib import Path
 
 from ribbonopt.classes import dataclass
 from ribbonopt.errors import OutputError
-from ribbonopt.output.exports import EQUILIBRIA
-from ribbonopt.output.results import Built, load_solution
+from ribbonopt.output.results import other_equilibria
 from ribbonopt.plain import Row, is_number
 from ribbonopt.reading import is_file
 from ribbonopt.scene import Scene
@@ -59,10 +58,7 @@ def opened(path: str | Path, scene: Scene | None = None) -> Thing:
         return found
     folder = Path(path)
     folder = folder.parent if is_file(folder) else folder
-    inner = folder / EQUILIBRIA
-    numbers = [p.name for p in inner.iterdir() if p.name.isdecimal()] if inner.is_dir() else []
-    built: Built = {}
-    return (found, *(load_solution(inner / n, scene, built) for n in sorted(numbers, key=int)))
+    return (found, *other_equilibria(folder, scene))
 
 
 def name_of(thing: Thing) -> str:
@@ -150,5 +146,8 @@ def _saved(batch: Batch) -> Iterator[Ribbon]:
         if isinstance(found, Solution):
             told = _plain({name: rows[number].get(name) for name in ("number", *batch.inputs)})
             yield Ribbon(found, label, f", ribbon {number}", told)
+            for i, other in enumerate(batch.others(number), start=2):
+                words = f", ribbon {number}, equilibrium {i}"
+                yield Ribbon(other, f"{label}-{i}", words, told | {"equilibrium": float(i)})
         else:
             yield from _points(found, label)

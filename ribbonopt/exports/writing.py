@@ -8,10 +8,13 @@ from typing import NamedTuple
 
 import numpy as np
 
-from ribbonopt.errors import OutputError
+from ribbonopt.errors import ModelError, OutputError
 from ribbonopt.output.claims import claimed
 from ribbonopt.output.places import unwritable
 from ribbonopt.output.staging import replaced
+from ribbonopt.solution.solution import Solution
+from ribbonopt.studies.batch.results import Batch
+from ribbonopt.studies.continuation.branch import Branch
 from ribbonopt.text import name_fault
 from ribbonopt.views.pieces import ROWS
 from ribbonopt.views.shape import Shape, common_half_width, shape_from
@@ -41,7 +44,7 @@ class Gathered(NamedTuple):
 def export(
     thing: Thing | str | Path,
     path: str | Path,
-    formats: Sequence[str] = (),
+    formats: str | Sequence[str] = (),
     *,
     half_width: float | None = None,
     rows: int = ROWS,
@@ -59,7 +62,8 @@ def export(
         A file, whose ending then is the format (`helix.glb`), or a folder for files that are named
         as the scene. Several ribbons have their numbers behind that name.
     formats
-        One or several of vtp, glb, ply, obj, stl, csv, npz, json, where `path` is a folder.
+        One, or a list of several, where `path` is a folder: vtp, glb, ply, obj, stl, csv, npz,
+        json.
     half_width
         Of the surface, in the scene's unit of length. Default: the ribbon's own where the scene
         says it, else one for all that keeps generatrices apart.
@@ -84,6 +88,7 @@ def export(
     OutputError
         If there is nothing to export, or a file cannot be written.
     """
+    formats = (formats,) if isinstance(formats, str) else formats
     folder, name, formats = place_in(Path(path), formats)
     settings = Settings(tuple(formats), half_width, rows, across, color, complete).checked()
     return write(gather(thing, settings), folder, name, settings)
@@ -100,6 +105,11 @@ def gather(thing: Thing | str | Path, settings: Settings) -> Gathered:
         If there is nothing to export.
     """
     found = opened(thing) if isinstance(thing, str | Path) else thing
+    if not isinstance(found, Solution | Branch | Batch | tuple):
+        raise ModelError(
+            f"export: found an object of type {type(found).__name__}, expected a Solution, a "
+            "Branch, a Batch or the folder of one"
+        )
     left_out, ribbons, subjects = left_out_of(found), list[Ribbon](), list[Subject]()
     for ribbon in ribbons_of(found):
         subject = subject_of(ribbon.solution, settings.complete, settings.rows)

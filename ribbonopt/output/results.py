@@ -170,6 +170,15 @@ def load_solution(
     return solution
 
 
+def other_equilibria(
+    folder: Path, scene: Scene | None = None, built: Built | None = None
+) -> list[Solution]:
+    """Load the other equilibria that a result has, from the second on; arguments as above."""
+    inner, built = folder / EQUILIBRIA, {} if built is None else built
+    numbers = [p.name for p in inner.iterdir() if p.name.isdecimal()] if inner.is_dir() else []
+    return [load_solution(inner / n, scene, built) for n in sorted(numbers, key=int)]
+
+
 def _refuse_other_scene(
     plain: Mapping[str, Any],
     saved: SavedNumbers,

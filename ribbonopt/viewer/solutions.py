@@ -6,7 +6,7 @@ from collections.abc import Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
-from ribbonopt.output.results import Built, load_solution
+from ribbonopt.output.results import other_equilibria
 from ribbonopt.output.saved import read_summary
 from ribbonopt.output.summary import summarize
 from ribbonopt.solution.solution import Solution
@@ -41,8 +41,7 @@ def view_of_result(solution: Solution, folder: Path, half_width: float | None = 
     others = folder / EQUILIBRIA
     names = [item.name for item in others.iterdir()] if others.is_dir() else []
     numbered = [others / name for name in sorted(filter(str.isdecimal, names), key=int)]
-    built: Built = {}
-    found = [solution, *(load_solution(inner, built=built) for inner in numbered)]
+    found = [solution, *other_equilibria(folder)]
     return _view(found, [read_summary(inner)[1] for inner in (folder, *numbered)], half_width)
 
 

@@ -154,6 +154,34 @@ def test_a_batch_is_what_was_saved(here: Path, run: Run) -> None:
     assert numbers == [{"number": i, "law.epsilon": e} for i, e in ((1, 0.1), (2, 0.08))]
 
 
+def test_other_equilibria_of_a_batch_are_exported_too(here: Path, run: Run) -> None:
+    shutil.copytree(here / "one", here / "all/solutions/2/equilibria/2")
+    status, out, err = run("export", "all", "--format", "json", "--out", "o")
+    assert (status, err) == (0, "")
+    files = [Path(line) for line in out.splitlines()]
+    assert [path.stem[-7:] for path in files] == ["ne-0001", "ne-0002", "-0002-2"]
+    told = json.loads(files[2].read_text())
+    assert told["about"]["ribbon"] == "half, ribbon 2, equilibrium 2"
+    assert told["numbers"] == {"number": 2, "law.epsilon": 0.08, "equilibrium": 2}
+
+
+def test_of_a_batch_that_failed_nothing_is_exported(here: Path, run: Run) -> None:
+    shutil.rmtree(here / "all" / "solutions")
+    rows = (here / "all" / "rows.jsonl").read_text()
+    (here / "all" / "rows.jsonl").write_text(rows.replace('"verified": true', '"verified": false'))
+    status, out, err = run("export", "all")
+    assert (status, out) == (2, "") and "none of its 2 ribbons was solved" in err
+
+
+def test_python_takes_one_format_as_a_word_and_says_what_it_wants(here: Path) -> None:
+    one = ribbonopt.load(here / "one")
+    paths = ribbonopt.export(one, here / "o", "stl")
+    assert [path.name for path in paths] == ["half.stl"]
+    with pytest.raises(ModelError, match="expected a Solution, a Branch, a Batch or the folder"):
+        ribbonopt.export([one], here / "p", "stl")  # type: ignore[arg-type]
+    assert not (here / "p").exists()
+
+
 def test_ribbons_that_were_not_saved_are_told(here: Path, run: Run) -> None:
     shutil.rmtree(here / "all" / "solutions" / "1")
     status, out, err = run("export", "all", "--format", "stl")

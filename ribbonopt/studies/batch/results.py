@@ -16,7 +16,7 @@ from typing import TYPE_CHECKING
 
 from ribbonopt.doors import batch_drawn, frame_of
 from ribbonopt.errors import OutputError
-from ribbonopt.output.results import Built, load_solution
+from ribbonopt.output.results import Built, load_solution, other_equilibria
 from ribbonopt.plain import SPECIALS, Row
 from ribbonopt.reading import is_file
 from ribbonopt.solution.at_home import in_notebook
@@ -126,6 +126,10 @@ class Batch:
         if is_file(place / FILE):
             return Branch.load(place)
         return load_solution(place, built=self._built)
+
+    def others(self, number: int) -> list[Solution]:
+        """Return the other equilibria that were saved of a ribbon whose scene has `starts`."""
+        return other_equilibria(self._place(number), built=self._built)
 
     def __len__(self) -> int:
         """Return the number of rows."""

@@ -10,8 +10,10 @@ import pytest
 from half_studies import loaded
 
 from ribbonopt import Batch, Branch, Continuation, Solution, load, loads_scene, run_batch
+from ribbonopt.attempt.structure import Structure
 from ribbonopt.errors import OutputError, SceneError
 from ribbonopt.output.results import save_solution
+from ribbonopt.problem import Posed
 from ribbonopt.studies.batch.files import BatchFolder
 from ribbonopt.studies.continuation.files import BranchFolder
 from ribbonopt.views import Style
