@@ -201,7 +201,7 @@ def test_report_and_figures(run: Run, study: Path, tmp_path: Path) -> None:
     for word in ("--plot", "found 'law.epsilom'", "expected a column", "energy", "iterations"):
         assert word in err
     status, _, err = run("batch", study, "--out", tmp_path / "b", "--plot", "epsilom:u2")
-    assert (status, "did you mean 'law.epsilon'" in err) == (2, True)
+    assert (status, "did you mean 'epsilon'" in err) == (2, True)
     status, _, err = run("batch", study, "--out", tmp_path / "b", "--plot", "energy")
     assert (status, "expected X:Y" in err) == (2, True)
     assert not (tmp_path / "b").exists()
