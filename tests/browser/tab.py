@@ -43,6 +43,11 @@ FRAMES = """new Promise((done) => requestAnimationFrame(() => requestAnimationFr
   requestAnimationFrame(() => done(0)))))"""
 
 
+def number(text: str) -> float:
+    """Return a number as pages write it, with a minus sign that is one."""
+    return float(text.replace("\N{MINUS SIGN}", "-"))
+
+
 class Tab:
     """One tab; a page opened in it is watched for errors and requests."""
 

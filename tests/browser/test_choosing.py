@@ -5,7 +5,7 @@ import re
 import numpy as np
 import pytest
 from pages import FAILED, Pages
-from tab import Pixels, Tab
+from tab import Pixels, Tab, number
 from truth import bounds, extent, inked, placed, ribbon
 
 from ribbonopt.viewer.view import contents
@@ -43,9 +43,9 @@ def is_seen(tab: Tab, pages: Pages, name: str, i: int) -> None:
 
 def spot(tab: Tab, row: int) -> tuple[float, float]:
     """Return where the diagram has a row: asked by its mark, which keys move."""
-    x, y, *_ = tab.box("#diagram .chart-stage")
+    tab.box("#diagram .chart-stage")
     at = tab.run(
-        "(() => { const d = view.diagram, chart = document.querySelector('#diagram .chart-stage');"
+        "(() => { const chart = document.querySelector('#diagram .chart-stage');"
         "const svg = chart.querySelector('svg'); svg.focus();"
         "const press = (key) => svg.dispatchEvent(new KeyboardEvent('keydown', {key}));"
         f"press('Home'); for (let k = 0; k < {row}; k++) press('ArrowRight');"
@@ -101,8 +101,8 @@ def test_the_caption_says_what_is_stable(tab: Tab, pages: Pages) -> None:
         assert shown(tab) == i
         tab.keys("ArrowRight")
     assert {"stable", "unstable"} <= set(tab.text("#diagram .legend").split())
-    dashes = "[...document.querySelectorAll('#diagram .chart .line')].map((one) => one.classList.contains('dashed'))"
-    assert set(tab.run(dashes)) == {False, True}
+    lines = "[...document.querySelectorAll('#diagram .chart .line')]"
+    assert set(tab.run(f"{lines}.map((one) => one.classList.contains('dashed'))")) == {False, True}
 
 
 def test_play_goes_through_all_and_stops(tab: Tab, pages: Pages) -> None:
@@ -147,13 +147,14 @@ def test_rows_are_sorted_and_chosen_by_status(tab: Tab, pages: Pages) -> None:
     tab.open(pages.file("batch"))
     names = tab.run('[...document.querySelectorAll("#table th")].map((one) => one.innerText)')
     k = next(i for i, name in enumerate(names) if name.strip(" ↑↓") == "energy")
-    column = f'[...document.querySelectorAll("#table tbody tr")].map((one) => one.children[{k}].innerText)'
+    lines = '[...document.querySelectorAll("#table tbody tr")]'
+    column = f"{lines}.map((one) => one.children[{k}].innerText)"
     energies = [row["energy"] for row in pages.batch().rows if row["verified"]]
     for order in (1, -1):
         tab.press(f"#table th:nth-child({k + 1}) button")
         *found, last = tab.run(column)
         assert last == ""  # what failed has none, whichever way
-        read = [float(text.replace("−", "-")) for text in found]
+        read = [number(text) for text in found]
         assert read == pytest.approx(sorted(energies)[::order], rel=1e-4)
     # The chosen shape is that of the row, not of its place.
     tab.press("#table tbody tr:nth-child(1) td")

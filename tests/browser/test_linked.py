@@ -4,11 +4,11 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 from pages import Pages
-from tab import Pixels, Tab
+from tab import Pixels, Tab, number
 from truth import CANVAS, Floats, placed, ribbon
 
-from ribbonopt.views.shape import Shape
 from ribbonopt.viewer.view import contents
+from ribbonopt.views.shape import Shape
 
 MARK = np.array([0xD1, 0x00, 0x4B])  # the colour of marks in light
 pytestmark = pytest.mark.slow
@@ -39,7 +39,7 @@ def away(spots: Floats, a: Floats, b: Floats) -> Floats:
 
 def read(tab: Tab, panel: str) -> float:
     """Return the arclength that a panel says is marked."""
-    return float(tab.text(f".{panel} .chart-foot").split()[-1].replace("−", "-"))
+    return number(tab.text(f".{panel} .chart-foot").split()[-1])
 
 
 @pytest.mark.parametrize("name", ["moebius_whole", "moebius_half"])
@@ -57,18 +57,18 @@ def test_a_curve_marks_the_cross_section(tab: Tab, pages: Pages, name: str, shar
     off, along = away(found, a, b)
     near = np.linalg.norm(b - a)
     assert off.max() < 4 + 0.01 * near
-    assert -0.12 - 4 / near < along.min() < 0.1
+    assert -0.12 - 4 / near < along.min() < 0.25  # paler where it is hidden
     assert 0.9 < along.max() < 1.12 + 4 / near
     # All other curves are marked there too, at the same arclength.
     for panel in ("forces", "moments"):
         assert read(tab, panel) == pytest.approx(s, abs=1e-4)
     assert tab.run('document.querySelectorAll(".plane .marks circle").length') == 1
-    values = tab.text(".strains .chart-head").replace("−", "-")
+    values = tab.text(".strains .chart-head")
     shape = pages.view(name).shapes[0]
     row = int(np.abs(shape.s - s).argmin())
     for k in (2, 3):
         value = getattr(shape, f"u{k}")[row]
-        shown = float(values.split(f"u{'₂₃'[k - 2]}")[1].split()[0])
+        shown = number(values.split(f"u{'₂₃'[k - 2]}")[1].split()[0])
         assert shown == pytest.approx(value, abs=2e-3 * np.abs(getattr(shape, f"u{k}")).max())
 
 

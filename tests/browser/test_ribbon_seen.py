@@ -3,7 +3,7 @@
 import numpy as np
 import pytest
 from pages import Pages
-from tab import NARROW, WIDE, Pixels, Tab
+from tab import NARROW, WIDE, Pixels, Tab, number
 from truth import CANVAS, bounds, extent, inked, pixels_of_length, placed, ribbon
 
 from ribbonopt.viewer.view import contents
@@ -157,7 +157,7 @@ def test_colours_tell_of_a_field(tab: Tab, pages: Pages, field: str) -> None:
     choose = 'document.querySelector("#field")'
     tab.run(f'({choose}.value = "{field}", {choose}.dispatchEvent(new Event("change")))')
     assert differing(plain, ribbon(tab), 25) > 0.3
-    low, high = (float(tab.text(one).replace("−", "-")) for one in ("#low", "#high"))
+    low, high = (number(tab.text(one)) for one in ("#low", "#high"))
     values = getattr(pages.view(name).shapes[0], field)
     values = np.clip(values, -1.5, 1.5) if field == "eta" else values
     assert low <= values.min() + 0.01 * abs(low)
