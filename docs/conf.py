@@ -30,6 +30,7 @@ exclude_patterns = ["_build", "results", "examples", "notebooks", "generated/exa
 nitpicky = True
 # In signatures: what is not public, or of other packages. A public name that is not there fails.
 nitpick_ignore_regex = [("py:(class|data|obj)", r"(?!ribbonopt\.\w+$).*")]
+smartquotes = False  # `--out` is two hyphens
 default_role = "literal"  # what docstrings put in backquotes
 
 myst_enable_extensions = ["dollarmath", "colon_fence", "deflist"]

@@ -36,6 +36,34 @@ def solution_drawn(solution: object, kind: str, style: object | None) -> Figure:
     return figure
 
 
+def branch_drawn(
+    rows: Sequence[Mapping[str, Any]],
+    pair: tuple[str, str],
+    log: Sequence[str],
+    title: str,
+    labels: Mapping[str, str],
+    si: bool,
+    style: object | None,
+) -> Figure:
+    """Return a diagram of two columns of a branch; `log` are those on logarithmic axes."""
+    draw, style = door("views", "plot_branch"), style or door("views", "Style")()
+    figure: Figure = draw(rows, *pair, log=log, title=title, labels=labels, si=si, style=style)
+    return figure
+
+
+def batch_drawn(
+    rows: Sequence[Mapping[str, Any]],
+    pair: tuple[str, str],
+    inputs: Sequence[str],
+    labels: Mapping[str, str],
+    style: object | None,
+) -> Figure:
+    """Return a figure of two columns of a batch."""
+    draw, style = door("views", "plot_batch"), style or door("views", "Style")()
+    figure: Figure = draw(rows, *pair, inputs=inputs, labels=labels, style=style)
+    return figure
+
+
 def frame_along(solution: object, s: object | None) -> DataFrame:
     """Return a table of a solution along s."""
     table: DataFrame = door("output.frames", "frame_along")(solution, s)

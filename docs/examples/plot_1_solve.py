@@ -23,9 +23,12 @@ solution
 
 # %%
 # Every number has a bar: an upper bound of its error, estimated from the solution itself.
-print("energy of the half ", solution.integral("energy"))
-print("force at the start ", solution.n0)
-print("moment at the start", solution.m0)
+from ribbonopt import summarize
+
+summary = summarize(solution)
+print("energy of the half ", summary["energy"], "+-", summary["error_estimate"]["energy"])
+print("force at the start ", summary["n0"], "+-", summary["error_estimate"]["n0"])
+print("moment at the start", summary["m0"], "+-", summary["error_estimate"]["m0"])
 
 # %%
 # The ribbon as a surface.

@@ -8,7 +8,7 @@ from __future__ import annotations
 from inspect import isclass
 from pathlib import Path
 
-from markdown import page
+from pieces import page
 
 import ribbonopt
 from ribbonopt import scene

@@ -14,7 +14,7 @@ from multiprocessing import get_context
 from pathlib import Path
 
 from drawn import Drawn, draw
-from markdown import code, fenced, page
+from pieces import code, fenced, page
 
 ROOT = Path(__file__).parents[2]
 CONFIGS = ROOT / "configs"

@@ -6,7 +6,7 @@ import json
 from pathlib import Path
 from typing import Any
 
-from markdown import code, page
+from pieces import code, page
 
 from ribbonopt import json_schema
 from ribbonopt.studies.batch.written import study_schema

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from markdown import code, page, table
+from pieces import code, page, table
 
 from ribbonopt.solvers import Status
 

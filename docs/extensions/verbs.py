@@ -6,7 +6,7 @@ import argparse
 import os
 from pathlib import Path
 
-from markdown import code, fenced, page, table
+from pieces import code, fenced, page, table
 
 from ribbonopt.cli.arguments import VERBS, parser
 
@@ -18,7 +18,7 @@ they are for and what they write, [messages](../messages.md) what they end with.
 
 def pages(folder: Path) -> dict[str, str]:
     """Return the page of all verbs."""
-    os.environ["COLUMNS"] = "88"  # the width that usages are broken to
+    os.environ["COLUMNS"] = "68"  # the width that usages are broken to
     whole = parser()
     found = [action for action in whole._actions if isinstance(action, argparse._SubParsersAction)]
     sections = [_section(name, found[0].choices[name]) for name in VERBS]

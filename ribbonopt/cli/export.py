@@ -19,13 +19,12 @@ if TYPE_CHECKING:
 
 FOLDER = "exports"  # in that of a result
 MOST_LINES = 12  # files that are listed one by one
-MOST_WIDE = 1e300
 
 
 def export(options: argparse.Namespace) -> int:
     """Write files of a result, a branch or a batch."""
     from ribbonopt.exports.formats import FORMATS
-    from ribbonopt.exports.settings import MOST_ACROSS, MOST_ROWS, Settings, place_in
+    from ribbonopt.exports.settings import MOST_ACROSS, MOST_ROWS, MOST_WIDE, Settings, place_in
     from ribbonopt.exports.writing import gather, write
 
     result, formats = Path(options.result), words(options.format) or []
@@ -33,17 +32,14 @@ def export(options: argparse.Namespace) -> int:
         known = ", ".join(FORMATS)
         raise SceneError(f"--format: found {unknown[0][:40]!r}; expected some of {known}")
     out = Path(options.out) if options.out else None
-    folder, name, chosen = place_in(out or Path(), formats)
-    settings = Settings(
-        chosen or ("vtp",),
-        size("--half-width", options.half_width, most=MOST_WIDE),
-        count("--rows", options.rows, MOST_ROWS),
-        count("--across", options.across, MOST_ACROSS),
-        options.color,
-        not options.piece,
-    )
+    half_width = size("--half-width", options.half_width, most=MOST_WIDE)
+    rows = count("--rows", options.rows, MOST_ROWS)
+    across = count("--across", options.across, MOST_ACROSS)
     try:
-        settings = settings.checked()
+        folder, name, chosen = place_in(out or Path(), formats)
+        settings = Settings(
+            chosen or ("vtp",), half_width, rows, across, options.color, not options.piece
+        ).checked()
     except ModelError as error:
         raise SceneError(f"--{error}") from error
     gathered = gather(result, settings)

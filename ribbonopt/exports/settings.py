@@ -17,6 +17,8 @@ from .mesh import ACROSS
 from .quantities import SCALARS
 
 LEAST_ROWS, MOST_ROWS, MOST_ACROSS = 9, 100_000, 1000
+MOST_WIDE = 1e30  # which single precision can say
+MOST_POINTS = 1_000_000  # of a surface, about: some formats take kilobytes for each
 
 
 @dataclass(frozen=True)
@@ -43,22 +45,39 @@ class Settings:
         ):
             if not least <= value <= most:
                 raise ModelError(f"{name}: found {value}, expected from {least} to {most:,}")
+        if (points := self.rows * (self.across + 1)) > MOST_POINTS:
+            raise ModelError(
+                f"rows: found {self.rows:,} rows of {self.across + 1:,} points, {points:,} in all; "
+                f"expected at most {MOST_POINTS:,}"
+            )
         width = self.half_width
-        if width is not None and not 0 < width < float("inf"):
-            raise ModelError(f"half_width: found {width}, expected a positive length")
+        if width is not None and not 0 < width <= MOST_WIDE:
+            raise ModelError(
+                f"half_width: found {width}, expected a positive length, at most {MOST_WIDE:g}"
+            )
         return self
 
 
 def place_in(path: Path, formats: Sequence[str]) -> tuple[Path, str | None, tuple[str, ...]]:
     """Return the folder that a path means, the name of files if it gives one, and the formats.
 
-    A path with the ending of a format is that of a file, and that is its format unless others are
-    given.
+    A path with the ending of a format is that of a file in that format.
+
+    Raises
+    ------
+    ModelError
+        If other formats are given for such a file.
     """
-    ending = path.suffix[1:].lower()
-    if ending in FORMATS and (not formats or tuple(formats) == (ending,)):
-        return path.parent, path.stem, (ending,)
-    return path, None, tuple(dict.fromkeys(formats))
+    ending, formats = path.suffix[1:].lower(), tuple(dict.fromkeys(formats))
+    if ending not in FORMATS:
+        return path, None, formats
+    if formats not in ((), (ending,)):
+        shown = shortened(one_line(", ".join(formats)), 60)
+        raise ModelError(
+            f"format: found {shown} for the file {path.name}; expected {ending}, or a folder for "
+            "files of several formats"
+        )
+    return path.parent, path.stem, (ending,)
 
 
 def _one_of(what: str, found: str, known: Sequence[str]) -> None:

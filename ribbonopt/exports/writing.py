@@ -59,8 +59,7 @@ def export(
         A file, whose ending then is the format (`helix.glb`), or a folder for files that are named
         as the scene. Several ribbons have their numbers behind that name.
     formats
-        One or several of vtp, glb, ply, obj, stl, csv, npz, json; not needed where `path` ends
-        with one.
+        One or several of vtp, glb, ply, obj, stl, csv, npz, json, where `path` is a folder.
     half_width
         Of the surface, in the scene's unit of length. Default: the ribbon's own where the scene
         says it, else one for all that keeps generatrices apart.

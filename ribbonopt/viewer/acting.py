@@ -36,6 +36,17 @@ def arrows_of(acting: Acting, shape: Shape) -> list[dict[str, Any]]:
     return found
 
 
+def longest(acting: Acting, si: bool) -> list[tuple[str, str]]:
+    """Return in words what the longest arrow of each kind is."""
+    sizes = {
+        f"force {acting.largest:.3g}{' N' * si}": acting.largest,
+        f"moment {acting.strongest:.3g}{' N m' * si}": acting.strongest,
+        f"force per length {acting.densest:.3g}{' N/m' * si}": acting.densest,
+    }
+    found = ", ".join(text for text, size in sizes.items() if size > 0)
+    return [("longest arrows", found)] if found else []
+
+
 def _arrow(shape: Shape, s: float, way: Array, kind: str, outward: int) -> dict[str, Any]:
     row = int(np.abs(shape.s - s).argmin())
     press = kind == "force" and outward * float(shape.d3[row] @ way) < AGAINST * np.linalg.norm(way)

@@ -11,7 +11,7 @@ from functools import cache
 from importlib.resources import files
 
 #: what draws charts, in an order in which each finds what it needs
-CHARTS = ("axes.js", "paths.js", "pointer.js", "cloud.js", "charts.js")
+CHARTS = ("axes.js", "paths.js", "frame.js", "pointer.js", "cloud.js", "charts.js")
 SCATTER = ("choice.js", "scatter.js", "table.js", "batch.js")
 
 

@@ -20,13 +20,13 @@ from ribbonopt.views.shape import Shape, shape_from
 from ribbonopt.views.subject import Subject
 from ribbonopt.views.surface import sweep
 
-from .acting import arrows_of
+from .acting import arrows_of, longest
 from .packing import packed
 from .ranges import ranges_of
 from .still import still
 
 SI = {"length": "m", "strain": "1/m", "force": "N", "moment": "N m", "energy": "J/m"}
-PLACED = 4000  # points of centre lines from which the view is chosen
+PLACED = 1000  # points of centre lines from which the view is chosen
 ROOM = 1.02  # of the half extents
 LEAST = 1e-300
 
@@ -130,11 +130,12 @@ def contents(view: View) -> dict[str, Any]:
 
 def _told(ribbon: Ribbon, shape: Shape) -> dict[str, Any]:
     mirrored = np.flatnonzero(shape.mirrored)
+    arrows = longest(ribbon.subject.acting, shape.units.si)
     return {
         "caption": ribbon.caption,
         "note": ribbon.note,
         "verified": ribbon.verified,
-        "numbers": [list(pair) for pair in ribbon.numbers],
+        "numbers": [list(pair) for pair in (*ribbon.numbers, *arrows)],
         "warnings": list(ribbon.warnings),
         "row": ribbon.row,
         "count": len(shape.s),

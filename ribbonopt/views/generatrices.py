@@ -112,7 +112,7 @@ class Generatrices:
         for _ in range(ROUNDS):
             # Narrower it shows more of what is steep beside leaps, never less: so none is too far.
             overlap = self.overlap(found)
-            if found <= least or overlap <= REGULAR_SLOPE * (1 + ROUNDING):
+            if found <= least or not overlap > REGULAR_SLOPE * (1 + ROUNDING):
                 break
             found *= REGULAR_SLOPE / overlap
         return float(f"{max(found, least):.{DIGITS}g}")

@@ -7,6 +7,7 @@ import warnings
 from collections.abc import Iterator
 from contextlib import contextmanager
 from functools import cache
+from io import BytesIO
 from typing import Any
 
 from matplotlib.backend_bases import RendererBase
@@ -43,6 +44,12 @@ class Page(Figure):
             keywords["metadata"] = undated | (keywords.get("metadata") or {})
         with self.style.applied(), _quiet():
             super().savefig(fname, **keywords)
+
+    def _repr_png_(self) -> bytes:
+        """Return what a notebook shows, which knows by itself of figures of pyplot alone."""
+        shown = BytesIO()
+        self.savefig(shown, format="png")
+        return shown.getvalue()
 
 
 @contextmanager

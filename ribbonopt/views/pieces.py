@@ -82,7 +82,8 @@ class Piece:
     @property
     def widths(self) -> Array:
         """The width in every row, (k,)."""
-        return np.broadcast_to(self.width, self.s.shape)
+        found = self.width
+        return found if isinstance(found, np.ndarray) else np.full(self.s.shape, found)
 
 
 def in_plane(pieces: tuple[Piece, ...]) -> float:

@@ -129,7 +129,9 @@ def test_parts_of_scenes_are_parts_of_scenes(page: Path) -> None:
         part = yaml.safe_load(block)
         if block.startswith("name:") or not isinstance(part, dict) or not part.keys() <= KEYS:
             continue
-        whole = yaml.safe_load(BASE) | ({"ribbon": SIZES} if "gravity" in part else {}) | part
+        whole = yaml.safe_load(BASE)
+        parameters = {"parameters": whole["parameters"] | part.get("parameters", {})}
+        whole |= ({"ribbon": SIZES} if "gravity" in part else {}) | part | parameters
         loads_scene(yaml.safe_dump(whole, sort_keys=False), page.name)
 
 

@@ -3,13 +3,14 @@
 import json
 import shutil
 import xml.etree.ElementTree as ET
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
 from branches import COLUMN
-from conftest import Run
 from half_studies import SCENE
 
 import ribbonopt
@@ -19,6 +20,7 @@ from ribbonopt.exports.formats import FORMATS
 from ribbonopt.exports.series import times_of
 from ribbonopt.output.saved import read_summary
 
+Run = Callable[..., Any]
 STAGES = """\
 continuation:
   - {parameter: parameters.P, from: 30, to: 36, largest: 3}
@@ -192,10 +194,13 @@ BAD = {
     "nothing saved": (["none"], "no solution of this batch was saved"),
     "flat": (["one", "--half-width", "0"], "--half-width: found '0'"),
     "no width": (["one", "--half-width", "nan"], "--half-width"),
+    "wider than numbers": (["one", "--half-width", "1e40"], "--half-width: found '1e40'"),
     "few rows": (["one", "--rows", "3"], "--rows: found 3"),
     "no strips": (["one", "--across", "0"], "--across: found '0'"),
     "no field": (["one", "--color", "u4"], "--color: found 'u4'"),
     "a vector": (["one", "--color", "n"], "--color: found 'n'"),
+    "many points": (["one", "--rows", "50000", "--across", "99"], "--rows: found 50,000 rows"),
+    "two formats in a file": (["one", "--out", "a.stl", "--format", "stl,obj"], "the file a.stl"),
     "into a file": (["one", "--out", "one/summary.json/x"], "summary.json"),
     "no path": (["one", "--out", ""], "--out: found ''"),
 }

@@ -30,3 +30,11 @@ def test_the_notebook_runs_and_shows_what_it_says(tmp_path: Path) -> None:
 def last_of(cell: Any) -> dict[str, str]:
     """What a cell shows; an error ends the run before."""
     return dict(cell.outputs[-1].data)
+
+
+def test_a_figure_shows_itself_without_pyplot() -> None:
+    from ribbonopt.views.page import Page
+
+    page = Page(figsize=(1, 1), dpi=50)
+    page.text(0.5, 0.5, "ä")
+    assert page._repr_png_()[:8] == b"\x89PNG\r\n\x1a\n"

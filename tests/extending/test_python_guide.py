@@ -20,6 +20,7 @@ def words_and_numbers(text: str) -> tuple[list[str], list[float]]:
     return NUMBER.sub("#", text).split(), [float(found) for found in NUMBER.findall(text)]
 
 
+@pytest.mark.slow
 def test_the_guide_runs_and_prints_what_it_says(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
@@ -39,6 +40,6 @@ def test_the_guide_runs_and_prints_what_it_says(
             assert numbers == pytest.approx(expected[1], rel=1e-6, abs=1e-9), told
             printed = StringIO()
     assert printed.getvalue() == ""  # nothing is printed that is not shown
-    assert sum(kind == "python" for kind, _ in BLOCKS) == 9
+    assert sum(kind == "python" for kind, _ in BLOCKS) == 8
     for name in ("ribbon", "strains", "energy", "angles"):
         assert (tmp_path / f"{name}.png").read_bytes().startswith(b"\x89PNG")

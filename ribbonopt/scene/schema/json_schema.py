@@ -91,10 +91,11 @@ def _object(cls: Any, *, type_required: bool = False) -> dict[str, Any]:
         or (type_required and member.name == "type")
     ]
     says = described(cls)
-    summary = Described(prose(cls).partition("\n")[0], ())  # of a `type`, which is but a name
 
     def words_of(key: str) -> Described:
-        return says[key] if key in says or key != "type" else summary
+        """Return what is said of a key; of a `type`, which is but a name, what the class is."""
+        summary = prose(cls).partition("\n")[0] if key == "type" else ""
+        return says.get(key, Described(summary, ()))  # python -OO knows no docstrings
 
     told: dict[str, Any] = {"description": prose(cls)}
     if required:

@@ -15,7 +15,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, overload
 
-from ribbonopt.doors import door, frame_of
+from ribbonopt.doors import branch_drawn, frame_of
 from ribbonopt.plain import Row, finite
 from ribbonopt.scene import Scene
 from ribbonopt.scene.continuation import ContinuationStage
@@ -164,12 +164,11 @@ class Branch(Sequence[Solution]):
         SceneError
             If there is no such column, or are several.
         """
-        names = [*self.columns, VALUE]
+        names, scene = [*self.columns, VALUE], self.scene
+        pair = column_of(x, names), column_of(y, names)
         log = [stage.parameter for stage in self._stages if stage.scale == "log"]
-        figure: Figure = door("views.branch", "plot_branch")(
-            self.rows, column_of(x, names), column_of(y, names), log=log, title=self.scene.name
-        )
-        return figure
+        si = scene.ribbon is not None
+        return branch_drawn(self.rows, pair, log, scene.name, scene.labels, si, style)
 
     def __repr__(self) -> str:
         """Say what it is in one line."""

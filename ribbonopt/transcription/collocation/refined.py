@@ -16,7 +16,7 @@ from __future__ import annotations
 
 from functools import lru_cache
 from itertools import pairwise
-from typing import TYPE_CHECKING
+from typing import Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -26,14 +26,44 @@ from ribbonopt.classes import dataclass
 from ribbonopt.transcription.layout import Index
 from ribbonopt.transcription.tableaus import gauss_of_any
 
-if TYPE_CHECKING:
-    from .output import DenseOutput
+from .blocks import ElementBlocks
+from .phase_equations import PhaseEquations
 
 BEYOND = 4  # nodes, more than twice its own
 SWEEPS = 40
 REST = 1e-12  # change of a sweep, of the largest state: the next changes a tenth of that
 BESIDE = 1e-6  # delta, of the largest state, from which on substeps are asked
 DECAYED = 1e-10  # what the last two Legendre coefficients add to a state, of the largest
+
+
+class Sampled(Protocol):
+    """What is asked of a solution: see `DenseOutput`."""
+
+    @property
+    def blocks(self) -> ElementBlocks:
+        """The discretised equations."""
+
+    @property
+    def p(self) -> Array:
+        """Parameters."""
+
+    @property
+    def order(self) -> int:
+        """Order between the nodes."""
+
+    @property
+    def at_nodes(self) -> Array:
+        """States (N + 1, nx)."""
+
+    @property
+    def rates(self) -> Array:
+        """Derivatives (N, K, nx) at the stages."""
+
+    def equations(self, phase: int) -> PhaseEquations:
+        """Equations of a phase."""
+
+    def places(self, phase: int, positions: Array) -> Array:
+        """Where equations are evaluated."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -52,18 +82,18 @@ class Refined:
     fit: NDArray[np.bool_]
 
     @classmethod
-    def of(cls, output: DenseOutput) -> Refined:
+    def of(cls, output: Sampled) -> Refined:
         """Find the polynomials of an output."""
         K, lay = output.blocks.tableau.degree, output.blocks.layout
         tableau = gauss_of_any(2 * K + BEYOND)
         start, h = output.at_nodes[:-1], lay.widths(output.p)[:, None]
         size = float(np.abs(output.at_nodes).max())
         F, still = _swept(output, tableau.degree, REST * size)
-        delta = output.at_nodes[1:] - start - h * np.tensordot(tableau.weights, F, 1)
-        last = h * np.tensordot(tableau.legendre[-2:], F, 1) / (2 * tableau.degree)
+        delta = output.at_nodes[1:] - start - h * _times(tableau.weights[None], F)[0]
+        last = h * _times(tableau.legendre[-2:], F) / (2 * tableau.degree)
         decayed = np.abs(last).max(axis=(0, 2)) <= DECAYED * size
         integrals, power = _in_chebyshev(tableau.degree, output.order + 1)
-        found = h * np.tensordot(integrals, F, 1) + power[:, None, None] * delta
+        found = h * _times(integrals, F) + power[:, None, None] * delta
         found[0] += start
         fit = still & decayed & (np.abs(delta).max(axis=1) <= BESIDE * size)
         return cls(np.ascontiguousarray(found.swapaxes(0, 1)), fit)
@@ -74,16 +104,10 @@ class Refined:
         return np.asarray((basis[:, None] @ self.coefficients[element])[:, 0])
 
 
-def states_at_many(output: DenseOutput, phase: int, sigma: Array) -> Array:
-    """States (k, nx) at relative positions sigma (k,) of a phase, by polynomials where they fit."""
-    lay = output.blocks.layout
-    if lay.nz or output.order == output.blocks.tableau.dense_order:
-        return output.states(phase, sigma)
-    element, t, _ = lay.locate(output.p, phase, sigma)
-    x, rest = output.polynomials(element, t), ~output.polynomials.fit[element]
-    if rest.any():
-        x[rest] = output.states(phase, sigma[rest])
-    return x
+def _times(matrix: Array, values: Array) -> Array:
+    """Return a matrix (m, M) times values (M, N, nx): (m, N, nx)."""
+    found = matrix @ values.reshape(len(values), -1)
+    return np.asarray(found.reshape(len(matrix), *values.shape[1:]))
 
 
 def _chebyshev(t: Array, count: int) -> Array:
@@ -103,7 +127,7 @@ def _in_chebyshev(degree: int, power: int) -> tuple[Array, Array]:
     return found[:, :-1], found[:, -1]
 
 
-def _swept(output: DenseOutput, degree: int, rest: float) -> tuple[Array, NDArray[np.bool_]]:
+def _swept(output: Sampled, degree: int, rest: float) -> tuple[Array, NDArray[np.bool_]]:
     """Return derivatives (M, N, nx) at Gauss nodes, and in which elements (N,) sweeps come to rest.
 
     Elements that have come to it, or will not, are swept no further.
@@ -112,12 +136,12 @@ def _swept(output: DenseOutput, degree: int, rest: float) -> tuple[Array, NDArra
     start, h = output.at_nodes[:-1], lay.widths(output.p)
     places = lay.starts(output.p) + tableau.nodes[:, None] * h
     integrals = output.blocks.tableau.integrals(tableau.nodes)
-    x = start + h[:, None] * np.tensordot(integrals, output.rates.swapaxes(0, 1), 1)
+    x = start + h[:, None] * _times(integrals, output.rates.swapaxes(0, 1))
     F, fit, moving = np.empty_like(x), np.zeros(len(h), dtype=bool), np.arange(len(h))
     before = np.full(len(h), np.inf)
     for _ in range(SWEEPS):
         found = _derivatives(output, moving, x, places[:, moving])
-        improved = start[moving] + h[moving, None] * np.tensordot(tableau.matrix, found, 1)
+        improved = start[moving] + h[moving, None] * _times(tableau.matrix, found)
         change = np.abs(improved - x).max(axis=(0, 2))
         still = change <= rest
         goes_on = ~still & (change < before)
@@ -130,13 +154,20 @@ def _swept(output: DenseOutput, degree: int, rest: float) -> tuple[Array, NDArra
     return F, fit
 
 
-def _derivatives(output: DenseOutput, elements: Index, x: Array, positions: Array) -> Array:
+def _derivatives(output: Sampled, elements: Index, x: Array, positions: Array) -> Array:
     """Return derivatives (M, N, nx) at states and relative positions (M, N) in elements (N,)."""
-    F, slices = np.empty_like(x), output.blocks.layout.phase_slices
+
+    def of(phase: int, x: Array, positions: Array) -> Array:
+        places = output.places(phase, positions.ravel())
+        found, _ = output.equations(phase).derivatives(x.reshape(-1, x.shape[2]), places)
+        return found.reshape(x.shape)
+
+    slices = output.blocks.layout.phase_slices
+    if len(slices) == 1:
+        return of(0, x, positions)
+    F = np.empty_like(x)
     cuts = np.searchsorted(elements, [its.start for its in slices] + [slices[-1].stop])
     for phase, (a, b) in enumerate(pairwise(cuts.tolist())):
         if a < b:
-            flat, places = x[:, a:b].reshape(-1, x.shape[2]), positions[:, a:b].ravel()
-            found, _ = output.equations(phase).derivatives(flat, output.places(phase, places))
-            F[:, a:b] = found.reshape(len(x), b - a, -1)
+            F[:, a:b] = of(phase, x[:, a:b], positions[:, a:b])
     return F

@@ -8,14 +8,16 @@
 //   most    ticks that there is room for
 // `place` gives 0 at the low end and 1 at the high one, NaN where there is no value.
 const axes = (() => {
-  const NOISE = 1e-9, LEAST = 1e-4; // as ribbonopt/views/columns.py: less is rounding
+  const NOISE = 1e-9;
+  const LEAST = 1e-4; // as ribbonopt/views/columns.py: less is rounding
   const MARGIN = 0.05; // of the axis, beside what is drawn
   const pen = document.createElement("canvas").getContext("2d");
 
   const known = (v) => v !== null && v !== undefined && Number.isFinite(+v);
 
   function extent(arrays, positive = false) {
-    let low = Infinity, high = -Infinity;
+    let low = Infinity;
+    let high = -Infinity;
     for (const values of arrays) {
       for (const v of values) {
         if (!known(v) || (positive && !(v > 0))) continue;
@@ -27,13 +29,22 @@ const axes = (() => {
   }
 
   function make({ values = [], range, log = false, words, most = 6 }) {
-    const f = log ? Math.log10 : (v) => v, back = log ? (v) => 10 ** v : (v) => v;
+    const f = log ? Math.log10 : (v) => v;
+    const back = log ? (v) => 10 ** v : (v) => v;
     const [low, high] = words ? [-0.5, Math.max(words.length, 1) - 0.5] : ends(values, range, f, log);
     const place = (v) => (known(v) ? (f(v) - low) / (high - low) : NaN);
     const value = (t) => back(low + t * (high - low));
     const found = words ? words.map((text, k) => ({ v: k, text })) : round(low, high, log, most);
     const ticks = found.map(({ v, text }) => ({ at: place(v), text }));
-    return { place, value, low, high, log, words, ticks: ticks.filter(({ at }) => at > -1e-9 && at < 1 + 1e-9) };
+    return {
+      place,
+      value,
+      low,
+      high,
+      log,
+      words,
+      ticks: ticks.filter(({ at }) => at > -1e-9 && at < 1 + 1e-9),
+    };
   }
 
   // Ends of an axis, of powers as logarithms; what is flat but for rounding lies in the middle.
@@ -71,14 +82,16 @@ const axes = (() => {
   // A number in few digits, with a minus sign that is one.
   function say(value, digits = 5) {
     if (!known(value)) return "none";
-    const v = Number((+value).toPrecision(Math.min(digits, 15))), size = Math.abs(v);
+    const v = Number((+value).toPrecision(Math.min(digits, 15)));
+    const size = Math.abs(v);
     const text = v !== 0 && (size < 1e-3 || size >= 1e6) ? v.toExponential() : String(v);
     return text.replaceAll("-", "−").replace("e+", "e");
   }
 
   // Long words differ at either end.
   function short(text, letters) {
-    const half = Math.max(Math.floor((letters - 1) / 2), 1), signs = [...text];
+    const half = Math.max(Math.floor((letters - 1) / 2), 1);
+    const signs = [...text];
     if (signs.length <= letters) return text;
     return `${signs.slice(0, half).join("")}…${signs.slice(-half).join("")}`;
   }

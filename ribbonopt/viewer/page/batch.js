@@ -14,7 +14,11 @@ const batch = (() => {
     };
     const back = () => plot.mark(chosen);
     const plot = scatter.build(above, data, { onLeave: back, onChoose: choose });
-    const rows = table.build(below, data, { onHover: (row) => plot.mark(row), onLeave: back, onChoose: choose });
+    const rows = table.build(below, data, {
+      onHover: (row) => plot.mark(row),
+      onLeave: back,
+      onChoose: choose,
+    });
     return { choose };
   }
 

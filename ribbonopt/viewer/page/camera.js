@@ -34,8 +34,8 @@ function makeCamera(frame) {
       const across = cross(axis, v);
       return v.map((part, k) => c * part + s * across[k] + (1 - c) * dot(axis, v) * axis[k]);
     };
-    const seen = unit(about(right, y, about(up, x, towards)));
-    const level = unit(about(right, y, about(up, x, right)));
+    const seen = unit(about(right, -y, about(up, -x, towards)));
+    const level = unit(about(right, -y, about(up, -x, right)));
     camera.towards = seen;
     camera.up = unit(cross(seen, level));
     camera.right = cross(camera.up, seen);

@@ -22,8 +22,7 @@
 // legend follow it (charts.css). `smooth`: through the points, but for `corners`, indices; tx, ty:
 // with these directions of the curve at its points; of(index): class of the mark at a point.
 const charts = (() => {
-  const FONT = "11px system-ui, sans-serif";
-  const HEAD = 8, FOOT = 20, SIDE = 10, GAP = 6; // pixels around the plot
+  const { HEAD, node, part } = frame;
   const MARKS = {
     square: "M-4-4H4V4H-4Z",
     diamond: "M0-5.5L5.5 0L0 5.5L-5.5 0Z",
@@ -32,26 +31,16 @@ const charts = (() => {
     dot: "M-4.5 0A4.5 4.5 0 1 0 4.5 0A4.5 4.5 0 1 0-4.5 0Z",
   };
 
-  function node(tag, attributes, parent) {
-    const made = document.createElementNS("http://www.w3.org/2000/svg", tag);
-    for (const [name, value] of Object.entries(attributes)) if (value !== undefined) made.setAttribute(name, value);
-    if (parent) parent.append(made);
-    return made;
-  }
-
-  function part(tag, className, parent) {
-    const made = document.createElement(tag);
-    made.className = className;
-    parent.append(made);
-    return made;
-  }
-
   function plot(element, options) {
-    let asked = { ...options }, box = null, marked = null;
+    let asked = { ...options };
+    let box = null;
+    let marked = null;
     element.classList.add("chart");
     element.replaceChildren();
-    const head = part("div", "chart-head", element), stage = part("div", "chart-stage", element);
-    const foot = part("div", "chart-foot", element), said = part("output", "unseen", element);
+    const head = part("div", "chart-head", element);
+    const stage = part("div", "chart-stage", element);
+    const foot = part("div", "chart-foot", element);
+    const said = part("output", "unseen", element);
     const svg = node("svg", { tabindex: 0, role: "application", "aria-roledescription": "chart" }, stage);
     const canvas = asked.cloud ? part("canvas", "", stage) : null;
     const tip = part("div", "chart-tip", stage);
@@ -82,45 +71,14 @@ const charts = (() => {
       });
     }
 
-    function layout() {
-      const width = stage.clientWidth, height = stage.clientHeight;
-      if (!width || !height) return null;
-      const all = [...(asked.series || []), ...(asked.cloud ? [asked.cloud] : [])], spots = asked.points || [];
-      const of = (key) => [...all.map((s) => s[key]), spots.map((p) => p[key])];
-      const x = { values: of("x"), range: asked.xRange, log: asked.xLog, words: asked.xWords };
-      const y = { values: of("y"), range: asked.yRange, log: asked.yLog, words: asked.yWords };
-      const h = height - HEAD - FOOT;
-      y.most = Math.max(2, Math.floor(h / 34));
-      let ya = axes.make(y);
-      const letters = width < 600 ? 12 : 22;
-      const widest = () => Math.max(14, ...ya.ticks.map(({ text }) => axes.width(axes.short(text, letters), FONT)));
-      const left = Math.ceil(widest()) + GAP + 4, w = Math.max(width - left - SIDE, 20);
-      x.most = Math.max(2, Math.floor(w / 62));
-      let xa = axes.make(x);
-      if (asked.equal) {
-        const per = Math.max((xa.high - xa.low) / w, (ya.high - ya.low) / h);
-        const wide = ({ low, high }, pixels) => [(low + high - per * pixels) / 2, (low + high + per * pixels) / 2];
-        [xa, ya] = [axes.make({ ...x, range: wide(xa, w) }), axes.make({ ...y, range: wide(ya, h) })];
-      }
-      const X = (v) => xa.place(v) * w, Y = (v) => (1 - ya.place(v)) * h;
-      return { width, height, left, w, h, xa, ya, letters, X, Y, spot: (i) => spot(asked.cloud, i, X, Y, h) };
-    }
-
-    // Pixels of a point of the cloud.
-    function spot({ x, y, edge }, i, X, Y, h) {
-      const px = X(x[i]), py = Y(y[i]), lacks = [px, py].map(Number.isNaN);
-      if (lacks[0] === lacks[1] || !edge?.(i)) return [px, py];
-      return lacks[0] ? [0, py] : [px, h];
-    }
-
     function draw() {
-      box = layout();
+      box = frame.layout(asked, stage.clientWidth, stage.clientHeight);
       if (!box) return;
       const { width, height, left, w, h, X, Y } = box;
       svg.replaceChildren();
       svg.setAttribute("viewBox", `0 0 ${width} ${height}`);
       const whole = node("g", { transform: `translate(${left} ${HEAD})` }, svg);
-      grid(whole);
+      frame.grid(whole, box);
       const inner = node("svg", { width: w, height: h, overflow: "hidden" }, whole);
       for (const { x, y, className } of asked.regions || []) {
         node("path", { d: `${paths.straight(pixels(x, y))}Z`, class: `region ${className || ""}` }, inner);
@@ -135,7 +93,11 @@ const charts = (() => {
       if (asked.parts) asked.parts(inner, X, Y, node);
       for (const { x, y, mark, className, title: text } of asked.points || []) {
         if (!paths.isThere([X(x), Y(y)])) continue;
-        const at = { d: MARKS[mark] || MARKS.dot, transform: `translate(${X(x)} ${Y(y)})`, class: `point ${mark || "dot"} ${className || ""}` };
+        const at = {
+          d: MARKS[mark] || MARKS.dot,
+          transform: `translate(${X(x)} ${Y(y)})`,
+          class: `point ${mark || "dot"} ${className || ""}`,
+        };
         const drawn = node("path", at, whole);
         if (text) node("title", {}, drawn).textContent = text;
       }
@@ -152,36 +114,6 @@ const charts = (() => {
       return Array.from(x, (v, i) => [along(tx[i], v, xa) * w, -along(ty[i], y[i], ya) * h]);
     }
 
-    function grid(whole) {
-      const { w, h, xa, ya, letters } = box;
-      const line = (d, at, axis) => {
-        const zero = !axis.words && Math.abs(axis.value(at)) < 1e-9 * (axis.high - axis.low);
-        node("path", { d, class: zero ? "grid zero" : "grid" }, whole);
-      };
-      const write = (at, text, full) => {
-        const made = node("text", at, whole);
-        made.textContent = text;
-        if (full !== text) node("title", {}, made).textContent = full;
-      };
-      let last = -Infinity;
-      const room = xa.words ? Math.max(6, Math.floor(w / Math.max(xa.ticks.length, 1) / 7)) : 99;
-      for (const { at, text } of xa.ticks) {
-        const px = at * w, short = axes.short(text, room), half = axes.width(short, FONT) / 2;
-        line(`M${px} 0V${h}`, at, xa);
-        if (px - half < last + 8 || px + half > w + SIDE) continue; // no room for it
-        last = px + half;
-        write({ x: px, y: h + 15, "text-anchor": "middle" }, short, text);
-      }
-      last = Infinity;
-      for (const { at, text } of ya.ticks) {
-        const py = (1 - at) * h;
-        line(`M0 ${py}H${w}`, at, ya);
-        if (py > last - 13) continue;
-        last = py;
-        write({ x: -GAP, y: py + 4, "text-anchor": "end" }, axes.short(text, letters), text);
-      }
-    }
-
     function mark(index, series) {
       marked = index === null ? null : [index, series];
       if (!box) return;
@@ -195,7 +127,12 @@ const charts = (() => {
       seen.forEach(([k, [px, py]], i) => {
         const { x, className, of } = asked.series?.[k] || asked.cloud;
         if (!i && along()) node("path", { d: `M${px} 0V${box.h}`, class: "hair" }, box.marks);
-        if (py - py === 0) node("circle", { cx: px, cy: py, r: k === "cloud" ? 7 : 4.5, class: of?.(index) ?? className ?? "" }, box.marks);
+        if (py - py === 0)
+          node(
+            "circle",
+            { cx: px, cy: py, r: k === "cloud" ? 7 : 4.5, class: of?.(index) ?? className ?? "" },
+            box.marks,
+          );
         if (!i && !asked.tip) foot.textContent = `${asked.xLabel} ${axes.say(x[index], 4)}`;
       });
       if (!asked.tip) readings.forEach(([place, k]) => (place.textContent = reading(index, k)));
@@ -204,20 +141,42 @@ const charts = (() => {
     // What a named curve says at a point, or its other part of the same class.
     function reading(index, k) {
       const { className } = asked.series?.[k] || {};
-      const own = (asked.series || []).filter((one, j) => j === k || (className && one.className === className));
+      const own = (asked.series || []).filter(
+        (one, j) => j === k || (className && one.className === className),
+      );
       const there = own.find(({ y }) => axes.known(y[index]));
       return there ? axes.say(there.y[index], 4) : "";
     }
 
-    const along = () => (asked.pick || (pointer.ordered(asked.series || []) ? "x" : "xy")) === "x" && !asked.cloud;
+    const along = () =>
+      (asked.pick || (pointer.ordered(asked.series || []) ? "x" : "xy")) === "x" && !asked.cloud;
 
     function told(index, series) {
       if (asked.tip) return asked.tip(index, series);
-      return [foot.textContent, ...[...head.children].map((entry) => [...entry.children].map((part) => part.textContent).join(" ").trim())].join(", ");
+      return [
+        foot.textContent,
+        ...[...head.children].map((entry) =>
+          [...entry.children]
+            .map((part) => part.textContent)
+            .join(" ")
+            .trim(),
+        ),
+      ].join(", ");
     }
 
     const chart = { mark, update, element };
-    pointer.follow({ svg, stage, tip, said, chart, told, asked: () => asked, box: () => box, along, head: HEAD });
+    pointer.follow({
+      svg,
+      stage,
+      tip,
+      said,
+      chart,
+      told,
+      asked: () => asked,
+      box: () => box,
+      along,
+      head: HEAD,
+    });
     new ResizeObserver(draw).observe(stage);
     if (canvas) cloud.onTheme(draw);
     update({});

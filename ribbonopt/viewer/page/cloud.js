@@ -3,7 +3,8 @@
 const cloud = (() => {
   // `begin` and `end` are told of each drawing, and how many points and crosses there are.
   function draw(canvas, { x, colour, cross, begin, end }, { width, height, left, spot }, head) {
-    const dots = window.devicePixelRatio || 1, pen = canvas.getContext("2d");
+    const dots = window.devicePixelRatio || 1;
+    const pen = canvas.getContext("2d");
     [canvas.width, canvas.height] = [Math.round(width * dots), Math.round(height * dots)];
     pen.setTransform(dots, 0, 0, dots, left * dots, head * dots);
     const size = x.length > 2000 ? 2 : x.length > 400 ? 2.6 : 3.6;

@@ -5,10 +5,13 @@
 // const view = diagram.build(element, data, { onHover(row), onLeave(), onClick(row) });
 // view.mark(row | null)
 const diagram = (() => {
-  const STABLE = "stable", UNSTABLE = "unstable", UNKNOWN = "stability unknown";
+  const STABLE = "stable";
+  const UNSTABLE = "unstable";
+  const UNKNOWN = "stability unknown";
   const DASHES = { [STABLE]: "", [UNSTABLE]: "dashed", [UNKNOWN]: "dotted" };
   const BRANCHES = 8; // colours
   const HIDDEN = 0.5; // share of its points that lie under another curve: a curve is drawn wider
+  const LOOKED_AT = 20; // of its points
   const SIGNS = {
     "first point": ["dot", "faint"],
     "last point": ["cross", "faint"],
@@ -22,7 +25,8 @@ const diagram = (() => {
 
   function build(element, data, { onHover, onLeave, onClick } = {}) {
     if (!data.names.length) return { mark() {} }; // a branch without points
-    const form = charts.part("div", "choice", element), place = charts.part("div", "diagram", element);
+    const form = charts.part("div", "choice", element);
+    const place = charts.part("div", "diagram", element);
     const legend = charts.part("div", "legend", element);
     const logs = [[], []];
     const fields = ["x", "y"].map((axis, k) => {
@@ -69,32 +73,41 @@ const diagram = (() => {
     }
 
     function tip(row) {
-      const count = data.negative[row], several = stages.length > 1;
+      const count = data.negative[row];
+      const several = stages.length > 1;
       const lines = [`point ${data.number[row]}${data.kind[row] === "point" ? "" : `, ${data.kind[row]}`}`];
       for (const k of [0, 1]) lines.push(`${data.labels[fields[k].value]}: ${axes.say(column(k)[row], 6)}`);
       if (count) lines.push(`unstable, ${count} direction${count > 1 ? "s" : ""}`);
       else if (known) lines.push(state(row));
-      if (data.branch[row] || several) lines.push(`branch ${data.branch[row]}${several ? `, stage ${data.stage[row] + 1}` : ""}`);
+      if (data.branch[row] || several)
+        lines.push(`branch ${data.branch[row]}${several ? `, stage ${data.stage[row] + 1}` : ""}`);
       if (data.note[row]) lines.push(data.note[row]);
       return lines.join("\n");
     }
 
     // Curves through the rows of each piece that have both values, a path for each stretch.
     function curves(inner, X, Y, node) {
-      const rough = fields.some(({ value }) => data.rough[value]), corners = new Set(data.corners);
+      const rough = fields.some(({ value }) => data.rough[value]);
+      const corners = new Set(data.corners);
       const at = (row) => [X(column(0)[row]), Y(column(1)[row])];
       const drawn = data.pieces.map(({ branch, rows, beyond }) => {
         const group = node("g", { class: `branch${branch % BRANCHES}` }, inner);
         const own = [...[...beyond].reverse(), ...rows].filter((row) => paths.isThere(at(row)));
-        const points = own.map(at), first = own.indexOf(rows.find((row) => paths.isThere(at(row))));
+        const points = own.map(at);
+        const first = own.indexOf(rows.find((row) => paths.isThere(at(row))));
         const cut = own.map((row, i) => (rough || corners.has(row) ? i : -1));
         const parts = paths.parts(points, cut);
-        let whole = "", d = "", last = null;
-        const end = () => d && node("path", { d, class: `line ${last === null || known ? DASHES[last ?? UNKNOWN] : ""}` }, group);
-        if (first >= 0 && first === own.length - 1) node("path", { d: `M${paths.text(points[first])}h0`, class: "line alone" }, group);
+        let whole = "";
+        let d = "";
+        let last = null;
+        const end = () =>
+          d &&
+          node("path", { d, class: `line ${last === null || known ? DASHES[last ?? UNKNOWN] : ""}` }, group);
+        if (first >= 0 && first === own.length - 1)
+          node("path", { d: `M${paths.text(points[first])}h0`, class: "line alone" }, group);
         for (let i = Math.max(first, 0); i < parts.length; i++) {
           const now = between(own[i], own[i + 1]);
-          if (now !== last) end(), (d = `M${paths.text(points[i])}`), (last = now);
+          if (now !== last) (end(), (d = `M${paths.text(points[i])}`), (last = now));
           d += parts[i];
           whole += (whole ? "" : `M${paths.text(points[i])}`) + parts[i];
         }
@@ -107,9 +120,10 @@ const diagram = (() => {
     // A curve that one drawn later hides, as mirror images do, is seen on both sides of it.
     function widen(drawn) {
       drawn.forEach(({ group, points }, i) => {
+        const some = points.filter((_, k) => k % Math.ceil(points.length / LOOKED_AT) === 0);
         const under = ({ whole }) => {
-          const count = points.filter(([x, y]) => whole.isPointInStroke(new DOMPoint(x, y))).length;
-          return points.length > 1 && count > HIDDEN * points.length;
+          const count = some.filter(([x, y]) => whole.isPointInStroke(new DOMPoint(x, y))).length;
+          return points.length > 1 && count > HIDDEN * some.length;
         };
         if (drawn.slice(i + 1).some(under)) group.classList.add("behind");
       });
@@ -122,7 +136,13 @@ const diagram = (() => {
       rows.sort((a, b) => order(a) - order(b));
       return rows.map((row) => {
         const [mark, className] = SIGNS[data.mark[row]] || SIGNS["other special point"];
-        return { x: column(0)[row], y: column(1)[row], mark, className, title: `${data.mark[row]}, point ${data.number[row]}` };
+        return {
+          x: column(0)[row],
+          y: column(1)[row],
+          mark,
+          className,
+          title: `${data.mark[row]}, point ${data.number[row]}`,
+        };
       });
     }
 
@@ -130,8 +150,11 @@ const diagram = (() => {
       legend.replaceChildren();
       const seen = (values) => [...new Set(values)].sort((a, b) => a - b);
       const branches = seen(data.branch);
-      for (const b of branches.length > 1 ? branches : []) choice.key(legend, "M-10 0H10", `line branch${b % BRANCHES}`, `branch ${b}`);
-      const states = new Set(data.pieces.flatMap(({ rows }) => rows.slice(1).map((row, i) => between(rows[i], row))));
+      for (const b of branches.length > 1 ? branches : [])
+        choice.key(legend, "M-10 0H10", `line branch${b % BRANCHES}`, `branch ${b}`);
+      const states = new Set(
+        data.pieces.flatMap(({ rows }) => rows.slice(1).map((row, i) => between(rows[i], row))),
+      );
       for (const name of known ? [STABLE, UNSTABLE, UNKNOWN] : []) {
         if (states.has(name)) choice.key(legend, "M-10 0H10", `line ${DASHES[name]}`, name);
       }

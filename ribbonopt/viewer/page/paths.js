@@ -15,7 +15,8 @@ const paths = (() => {
   const dotted = (d) => d.replace(/M([^MLC]+)(?=M|$)/g, "M$1h0");
 
   function straight(points) {
-    let found = "", pen = "M";
+    let found = "";
+    let pen = "M";
     for (const p of points) {
       if (isThere(p)) [found, pen] = [found + pen + text(p), "L"];
       else pen = "M";
@@ -29,13 +30,16 @@ const paths = (() => {
     for (let i = 0; i < points.length; i++) {
       if (!isThere(points[i])) continue;
       const joined = i > 0 && isThere(points[i - 1]);
-      found += joined ? bent(points[i - 1], points[i], unit(tangents[i - 1]), unit(tangents[i])) : "M" + text(points[i]);
+      found += joined
+        ? bent(points[i - 1], points[i], unit(tangents[i - 1]), unit(tangents[i]))
+        : "M" + text(points[i]);
     }
     return found;
   }
 
   function smooth(points, corners = []) {
-    let found = "", joined = false;
+    let found = "";
+    let joined = false;
     const pieces = parts(points, corners);
     points.forEach((p, i) => {
       if (!isThere(p)) return;
@@ -53,8 +57,10 @@ const paths = (() => {
     let run = [];
     const end = () => {
       if (run.length > 1) {
-        const own = run.map((i) => points[i]), tangents = tangentsOf(own);
-        for (let k = 1; k < own.length; k++) found[run[k - 1]] = bent(own[k - 1], own[k], tangents[k - 1], tangents[k]);
+        const own = run.map((i) => points[i]);
+        const tangents = tangentsOf(own);
+        for (let k = 1; k < own.length; k++)
+          found[run[k - 1]] = bent(own[k - 1], own[k], tangents[k - 1], tangents[k]);
       }
       run = [];
     };
@@ -62,7 +68,7 @@ const paths = (() => {
       if (!isThere(points[i])) end();
       else {
         run.push(i);
-        if (cuts.has(i)) end(), run.push(i);
+        if (cuts.has(i)) (end(), run.push(i));
       }
     }
     end();
@@ -71,7 +77,14 @@ const paths = (() => {
 
   function bent(a, b, out, into) {
     const third = Math.hypot(...minus(b, a)) / 3;
-    return "C" + text([a[0] + third * out[0], a[1] + third * out[1]], [b[0] - third * into[0], b[1] - third * into[1]], b);
+    return (
+      "C" +
+      text(
+        [a[0] + third * out[0], a[1] + third * out[1]],
+        [b[0] - third * into[0], b[1] - third * into[1]],
+        b,
+      )
+    );
   }
 
   function unit(way) {
@@ -82,9 +95,12 @@ const paths = (() => {
   function tangentsOf(points) {
     const ways = points.slice(1).map((p, i) => minus(p, points[i]));
     const chords = ways.map((way) => Math.max(Math.hypot(...way), 1e-9));
-    const towards = ways.map((way, i) => way.map((v) => v / chords[i])), last = ways.length;
+    const towards = ways.map((way, i) => way.map((v) => v / chords[i]));
+    const last = ways.length;
     const inner = (i) =>
-      [0, 1].map((k) => (chords[i] * towards[i - 1][k] + chords[i - 1] * towards[i][k]) / (chords[i - 1] + chords[i]));
+      [0, 1].map(
+        (k) => (chords[i] * towards[i - 1][k] + chords[i - 1] * towards[i][k]) / (chords[i - 1] + chords[i]),
+      );
     const end = (way, next) => {
       const found = [0, 1].map((k) => 2 * way[k] - next[k]);
       return Math.hypot(...found) > 1 ? unit(found) : found;
@@ -101,7 +117,8 @@ const paths = (() => {
   function oneWay(tangent, i, towards) {
     const near = [i - 2, i - 1, i, i + 1].map((j) => towards[Math.min(Math.max(j, 0), towards.length - 1)]);
     return tangent.map((v, k) => {
-      const around = near.map((way) => way[k]), most = STEEPEST * Math.min(Math.abs(around[1]), Math.abs(around[2]));
+      const around = near.map((way) => way[k]);
+      const most = STEEPEST * Math.min(Math.abs(around[1]), Math.abs(around[2]));
       if (around.every((w) => w > 0)) return Math.min(Math.max(v, 0), most);
       if (around.every((w) => w < 0)) return Math.max(Math.min(v, 0), -most);
       return v;

@@ -9,7 +9,8 @@ const pointer = (() => {
     if (!first || first.length < 2) return false;
     let last = -Infinity;
     for (let i = 0; i < first.length; i++) {
-      if (first[i] < last || series.some(({ x }) => x !== first && x[i] !== first[i] && x[i] === x[i])) return false;
+      if (first[i] < last || series.some(({ x }) => x !== first && x[i] !== first[i] && x[i] === x[i]))
+        return false;
       if (first[i] > last) last = first[i];
     }
     return series.every(({ x }) => x.length === first.length);
@@ -17,7 +18,8 @@ const pointer = (() => {
 
   // The nearest point of all series and the cloud, [index, series]; null if none is in reach.
   function nearest(px, py, box, asked, along) {
-    let best = null, least = along ? Infinity : REACH ** 2;
+    let best = null;
+    let least = along ? Infinity : REACH ** 2;
     const look = (x, y, i, k) => {
       const gap = along ? (x - px) ** 2 + 1e-6 * (y - py) ** 2 : (x - px) ** 2 + (y - py) ** 2;
       if (gap < least) [best, least] = [[i, k], gap];
@@ -32,8 +34,10 @@ const pointer = (() => {
     let here = null;
 
     function place(event) {
-      const frame = svg.getBoundingClientRect(), scale = box().width / frame.width;
-      const px = (event.clientX - frame.left) * scale - box().left, py = (event.clientY - frame.top) * scale - head;
+      const frame = svg.getBoundingClientRect();
+      const scale = box().width / frame.width;
+      const px = (event.clientX - frame.left) * scale - box().left;
+      const py = (event.clientY - frame.top) * scale - head;
       return nearest(px, py, box(), asked(), along());
     }
 
@@ -56,7 +60,8 @@ const pointer = (() => {
     }
 
     function spot() {
-      const { placed, left } = box(), [i, k] = here;
+      const { placed, left } = box(),
+        [i, k] = here;
       const [px, py] = k === "cloud" ? box().spot(i) : placed[k][i];
       return [px + left, py + head];
     }
@@ -65,19 +70,23 @@ const pointer = (() => {
       tip.hidden = !asked().tip;
       if (tip.hidden) return;
       tip.textContent = told(...here);
-      const [px, py] = spot(), { width, height } = box();
+      const [px, py] = spot(),
+        { width, height } = box();
       const beyond = px + 14 + tip.offsetWidth > width;
       tip.style.left = `${Math.max(beyond ? px - 14 - tip.offsetWidth : px + 14, 0)}px`;
       tip.style.top = `${Math.max(Math.min(py + 10, height - tip.offsetHeight), 0)}px`;
     }
 
     function key(event) {
-      const series = asked().series || [], now = here || [0, series.length ? 0 : "cloud"];
+      const series = asked().series || [];
+      const now = here || [0, series.length ? 0 : "cloud"];
       const count = (k) => (k === "cloud" ? asked().cloud.x.length : series[k].x.length);
-      const stride = event.shiftKey ? 10 : 1, moves = { ArrowRight: stride, ArrowLeft: -stride, Home: -Infinity, End: Infinity };
+      const stride = event.shiftKey ? 10 : 1;
+      const moves = { ArrowRight: stride, ArrowLeft: -stride, Home: -Infinity, End: Infinity };
       let [i, k] = now;
       if (event.key in moves) i = here ? i + moves[event.key] : event.key === "End" ? Infinity : 0;
-      else if (event.key === "ArrowUp" || event.key === "ArrowDown") k = k === "cloud" ? k : k + (event.key === "ArrowUp" ? -1 : 1);
+      else if (event.key === "ArrowUp" || event.key === "ArrowDown")
+        k = k === "cloud" ? k : k + (event.key === "ArrowUp" ? -1 : 1);
       else if (event.key === "Escape") return leave();
       else if ((event.key === "Enter" || event.key === " ") && here) asked().onClick?.(...here);
       else return;

@@ -1,7 +1,8 @@
 "use strict";
 // The report of a batch: light or dark, its scatter and its table.
 (() => {
-  const get = (id) => document.getElementById(id), data = JSON.parse(get("data").textContent);
+  const get = (id) => document.getElementById(id);
+  const data = JSON.parse(get("data").textContent);
   const media = matchMedia("(prefers-color-scheme: dark)");
   const dark = (on) => document.documentElement.classList.toggle("dark", on);
   dark(media.matches);

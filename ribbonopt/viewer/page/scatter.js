@@ -5,11 +5,21 @@
 // const view = scatter.build(element, data, { onHover(row), onLeave(), onChoose(row) });
 // view.mark(row | null)
 const scatter = (() => {
-  const PLAIN = "(one colour)", LETTERS = 12, STEPS = 64;
+  const PLAIN = "(one colour)";
+  const LETTERS = 12;
+  const STEPS = 64;
   const PALETTE = [0, 1, 2, 3, 4, 5, 6, 7].map((k) => `--branch${k}`);
   // Viridis; paper swallows its lightest end, a dark page its darkest.
-  const RAMP = [[68, 1, 84], [65, 68, 135], [42, 120, 142], [34, 168, 132], [122, 209, 81], [253, 231, 37]];
-  const ON_PAPER = [0, 0.88], ON_DARK = [0.25, 1];
+  const RAMP = [
+    [68, 1, 84],
+    [65, 68, 135],
+    [42, 120, 142],
+    [34, 168, 132],
+    [122, 209, 81],
+    [253, 231, 37],
+  ];
+  const ON_PAPER = [0, 0.88];
+  const ON_DARK = [0.25, 1];
 
   const variable = (name) => getComputedStyle(document.documentElement).getPropertyValue(name).trim();
 
@@ -20,7 +30,8 @@ const scatter = (() => {
   }
 
   function ramp(t) {
-    const [low, high] = isDark() ? ON_DARK : ON_PAPER, at = (low + t * (high - low)) * (RAMP.length - 1);
+    const [low, high] = isDark() ? ON_DARK : ON_PAPER;
+    const at = (low + t * (high - low)) * (RAMP.length - 1);
     const k = Math.min(Math.floor(at), RAMP.length - 2);
     return `rgb(${RAMP[k].map((v, j) => Math.round(v + (at - k) * (RAMP[k + 1][j] - v))).join(" ")})`;
   }
@@ -28,7 +39,8 @@ const scatter = (() => {
   // What a column says of a row: a number, or the place of a word among the words of the column.
   function column(data, name) {
     const at = data.names.indexOf(name);
-    let values = data.rows.map((row) => row[at]), words = null;
+    let values = data.rows.map((row) => row[at]);
+    let words = null;
     if (!data.numeric[at]) {
       const places = new Map();
       values.forEach((v) => v !== null && !places.has(v) && places.set(v, places.size));
@@ -46,13 +58,17 @@ const scatter = (() => {
   // The colour of each row, and what tells of it.
   function shades(data, name) {
     if (name === PLAIN) return { of: () => variable(PALETTE[0]) };
-    const { values, words, log } = column(data, name), none = variable("--none");
+    const { values, words, log } = column(data, name);
+    const none = variable("--none");
     if (words) {
-      const paint = (k) => variable((name === "status" && data.colours[words[k]]) || PALETTE[k % PALETTE.length]);
+      const paint = (k) =>
+        variable((name === "status" && data.colours[words[k]]) || PALETTE[k % PALETTE.length]);
       const known = words.map((_, k) => paint(k));
       return { of: (i) => known[values[i]] ?? none, words, paint };
     }
-    const [low, high] = axes.extent([values], log), f = log ? Math.log10 : (v) => v, size = f(high) - f(low) || 1;
+    const [low, high] = axes.extent([values], log);
+    const f = log ? Math.log10 : (v) => v;
+    const size = f(high) - f(low) || 1;
     // Whole steps, so that few colours are set up for many points.
     const known = Array.from({ length: STEPS + 1 }, (_, k) => ramp(k / STEPS));
     const of = (i) => known[Math.round(((f(values[i]) - f(low)) / size) * STEPS)] ?? none;
@@ -60,9 +76,11 @@ const scatter = (() => {
   }
 
   function build(element, data, { onHover, onLeave, onChoose } = {}) {
-    const form = charts.part("div", "choice", element), place = charts.part("div", "scatter", element);
+    const form = charts.part("div", "choice", element);
+    const place = charts.part("div", "scatter", element);
     const legend = charts.part("div", "legend", element);
-    const names = data.names.filter((_, k) => data.axis[k]), logs = {};
+    const names = data.names.filter((_, k) => data.axis[k]);
+    const logs = {};
     const fields = {};
     const nameOf = (key) => (key === "c" ? [PLAIN, ...names] : names)[fields[key].value];
     for (const axis of ["x", "y"]) {
@@ -72,27 +90,33 @@ const scatter = (() => {
       logs[axis] = choice.powers(group, () => show());
       suggest(axis);
     }
-    const shown = charts.part("span", "", form), first = names.indexOf(data.c) + 1;
+    const shown = charts.part("span", "", form);
+    const first = names.indexOf(data.c) + 1;
     fields.c = choice.column(shown, "colour", [PLAIN, ...names], first, () => show());
 
     // Logarithmic axes where they can be, and ticked where they are usual, once a column is chosen.
     function suggest(key) {
-      const { words, values, log } = column(data, nameOf(key)), [low] = axes.extent([values]);
+      const { words, values, log } = column(data, nameOf(key)),
+        [low] = axes.extent([values]);
       const can = !words && low > 0 && low < Infinity;
       Object.assign(logs[key], { disabled: !can, checked: can && log });
     }
 
     function tip(row) {
       const told = ["number", ...data.inputs, "status", ...["x", "y", "c"].map(nameOf)];
-      const lines = [...new Set(told)].filter((name) => data.names.includes(name)).map((name) => {
-        const value = data.rows[row][data.names.indexOf(name)];
-        return `${name}: ${value === null ? "none" : typeof value === "number" ? axes.say(value, 8) : value}`;
-      });
+      const lines = [...new Set(told)]
+        .filter((name) => data.names.includes(name))
+        .map((name) => {
+          const value = data.rows[row][data.names.indexOf(name)];
+          return `${name}: ${value === null ? "none" : typeof value === "number" ? axes.say(value, 8) : value}`;
+        });
       return lines.join("\n");
     }
 
     function drawing() {
-      const x = column(data, nameOf("x")), y = column(data, nameOf("y")), by = nameOf("c");
+      const x = column(data, nameOf("x"));
+      const y = column(data, nameOf("y"));
+      const by = nameOf("c");
       let shade = null;
       const bad = (i) => !data.verified[i];
       return {

@@ -4,9 +4,11 @@
 // const view = table.build(element, data, { onHover(row), onLeave(), onChoose(row) });
 // view.choose(row)                          // shows its page and tells it apart
 const table = (() => {
-  const PAGE = 100, LONGEST = 60;
+  const PAGE = 100;
+  const LONGEST = 60;
   const words = new Intl.Collator("en", { numeric: true });
-  const ALL = "all", FAILED = "failed";
+  const ALL = "all";
+  const FAILED = "failed";
 
   const put = (tag, parent, text = "") => {
     const made = charts.part(tag, "", parent);
@@ -22,25 +24,49 @@ const table = (() => {
   }
 
   function build(element, data, { onHover, onLeave, onChoose } = {}) {
-    const form = charts.part("div", "choice", element), scroll = charts.part("div", "scroll", element);
-    const { names, rows } = data, status = names.indexOf("status"), number = names.indexOf("number");
-    let sorted = number, down = false, from = 0, chosen = null, kept = rows.map((_, row) => row);
+    const form = charts.part("div", "choice", element);
+    const scroll = charts.part("div", "scroll", element);
+    const { names, rows } = data;
+    const status = names.indexOf("status");
+    const number = names.indexOf("number");
+    let sorted = number;
+    let down = false;
+    let from = 0;
+    let chosen = null;
+    let kept = rows.map((_, row) => row);
 
     const statuses = [...new Set(rows.map((row) => row[status]))];
     const count = (of) => rows.filter((_, row) => of(row)).length;
     const filters = [[`${ALL} ${rows.length}`, () => true]];
-    if (data.verified.includes(false)) filters.push([`${FAILED} ${count((row) => !data.verified[row])}`, (row) => !data.verified[row]]);
-    for (const name of statuses) filters.push([`${name} ${count((row) => rows[row][status] === name)}`, (row) => rows[row][status] === name]);
-    const filter = choice.column(form, "status", filters.map(([text]) => text), 0, () => arrange());
-    const pages = charts.part("span", "pages", form), back = put("button", pages, "‹"), where = put("output", pages), on = put("button", pages, "›");
+    if (data.verified.includes(false))
+      filters.push([`${FAILED} ${count((row) => !data.verified[row])}`, (row) => !data.verified[row]]);
+    for (const name of statuses)
+      filters.push([
+        `${name} ${count((row) => rows[row][status] === name)}`,
+        (row) => rows[row][status] === name,
+      ]);
+    const filter = choice.column(
+      form,
+      "status",
+      filters.map(([text]) => text),
+      0,
+      () => arrange(),
+    );
+    const pages = charts.part("span", "pages", form);
+    const back = put("button", pages, "‹");
+    const where = put("output", pages);
+    const on = put("button", pages, "›");
     back.setAttribute("aria-label", "rows before");
     on.setAttribute("aria-label", "rows after");
     back.onclick = () => turn(from - PAGE);
     on.onclick = () => turn(from + PAGE);
 
-    const whole = put("table", scroll), head = put("tr", put("thead", whole)), body = put("tbody", whole);
+    const whole = put("table", scroll);
+    const head = put("tr", put("thead", whole));
+    const body = put("tbody", whole);
     names.forEach((name, k) => {
-      const cell = put("th", head), sign = put("button", cell, name);
+      const cell = put("th", head);
+      const sign = put("button", cell, name);
       cell.className = sortsOf(k);
       sign.onclick = () => {
         [sorted, down] = [k, sorted === k && !down];
@@ -86,7 +112,8 @@ const table = (() => {
 
     function cell(made, row, value, k) {
       const text = value === null ? "" : typeof value === "number" ? axes.say(value, 6) : value;
-      const place = put("td", made), link = k === number && data.links[value];
+      const place = put("td", made);
+      const link = k === number && data.links[value];
       place.className = sortsOf(k) + (k === status && !data.verified[row] ? " bad" : "");
       if (text.length > LONGEST) place.title = text;
       const said = text.length > LONGEST ? `${text.slice(0, LONGEST - 1)}…` : text;

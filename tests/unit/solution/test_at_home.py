@@ -11,7 +11,7 @@ from fresh import loaded_by
 from references import HALF_MOEBIUS
 
 from ribbonopt import Batch, Branch, Continuation, loads_scene, prepare, solve
-from ribbonopt.errors import PackageError, ViewError
+from ribbonopt.errors import ModelError, PackageError, ViewError
 from ribbonopt.solution.solution import Solution
 
 Solved = Callable[..., Solution]
@@ -53,7 +53,7 @@ def test_all_that_a_prompt_shows_is_short(solved: Solved) -> None:
     continuation = Continuation(scene)
     points = list(continuation)
     found = points[0].solution
-    shown = [scene, found, solved("ribbon_si"), solved("extensible_clamped"), continuation]
+    shown = [scene, found, solved("ribbon_si"), solved("moebius_half"), continuation]
     shown += [points[0], points, prepare(replace(scene, continuation=None))]
     shown += [Branch.of(continuation, points), Batch("b" * 120, 3, ["law.x"] * 90, [])]
     for thing in shown:
@@ -140,3 +140,15 @@ def test_a_notebook_shows_the_viewer_or_words(
 
     monkeypatch.setattr("ribbonopt.viewer.embedded", nothing)
     assert found._repr_html_() is None
+
+
+def test_a_figure_of_each_kind_shows_what_it_says(solved: Solved) -> None:
+    found = solved("moebius_half")
+    lines = [line.get_ydata() for line in found.plot("strains").axes[0].lines]
+    drawn = max(float(np.nanmax(np.abs(values))) for values in lines if len(values))
+    s = np.linspace(*found.scene.interval, 2001)
+    largest = max(np.abs(found.sample(s, name)).max() for name in ("u2", "u3"))
+    assert drawn == pytest.approx(largest, rel=1e-3)
+    assert found.plot().axes and found.plot("plane").axes
+    with pytest.raises(ModelError, match="kind: found 'shape', expected one of ribbon"):
+        found.plot("shape")

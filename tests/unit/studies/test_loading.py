@@ -14,6 +14,7 @@ from ribbonopt.errors import OutputError, SceneError
 from ribbonopt.output.results import save_solution
 from ribbonopt.studies.batch.files import BatchFolder
 from ribbonopt.studies.continuation.files import BranchFolder
+from ribbonopt.views import Style
 
 BRANCH = """\
 name: column
@@ -221,3 +222,15 @@ def test_figures_show_the_columns_that_were_asked_for(place: Path) -> None:
     )
     found = sorted(map(tuple, np.asarray(cloud.get_offsets())))
     assert found == sorted((row["law.epsilon"], row["energy"]) for row in batch)
+
+
+def test_figures_have_the_style_that_was_asked_for(place: Path) -> None:
+    branch, batch = load(place / "column-branch"), load(place / "study")
+    assert isinstance(branch, Branch) and isinstance(batch, Batch)
+    style = Style(width=3.35)
+    for figure in (
+        branch.plot("P", "energy", style),
+        batch.plot("epsilon", "energy", style),
+        branch[0].plot("strains", style),
+    ):
+        assert figure.get_size_inches()[0] == pytest.approx(3.35)

@@ -39,6 +39,11 @@ Object.assign(checks, {
     choose(document.querySelectorAll("select")[1], "estimated error");
     assert(document.querySelectorAll("input")[1].checked); // powers
   },
+  "a curve under another is seen beside it"() {
+    branch(given.mirrored);
+    const behind = curves().map((line) => line.parentNode.classList.contains("behind"));
+    assert(behind.join() === "false,true,false", behind);
+  },
   "stages of a diagram one by one"() {
     branch(given.stages);
     const stage = document.querySelectorAll("select")[2];

@@ -24,7 +24,8 @@ HOSTILE = "</script><b>bold</b><img src=x onerror='window.acted = 1'>"
 RUN = """
 const found = {};
 for (const [name, check] of Object.entries(checks)) {
-  try { check(); found[name] = ""; } catch (error) { found[name] = error.stack; }
+  found[name] = "";
+  try { check(); } catch (error) { found[name] = `${error.message} ${error.stack}`; }
 }
 document.body.replaceChildren();
 document.body.textContent = "[[" + JSON.stringify(found) + "]]";
@@ -53,6 +54,9 @@ def given() -> dict[str, object]:
         point(6, 3.0, 2.5, branch=1, kind="kink"),
         point(7, 4.0, 2.6, branch=1),
     ]
+    mirrored = [point(i, i, 0.0) for i in range(3)]
+    mirrored += [point(3 + i, 2 + i, i * i, branch=1, origin=2) for i in range(1, 9)]
+    mirrored += [point(11 + i, 2 + i, i * i, branch=2, origin=2) for i in range(1, 9)]
     later = [
         {**point(i, 4.0, 2.6 + i, branch=1, stage=1), "parameter": "law.q", "law.q": 0.1 * i}
         for i in range(8, 20)
@@ -68,6 +72,7 @@ def given() -> dict[str, object]:
     return {
         "branch": diagram_of(BranchFigure(branch, (("value", "energy"),))),
         "stages": diagram_of(BranchFigure([*branch, *later], (("value", "energy"),))),
+        "mirrored": diagram_of(BranchFigure(mirrored, (("value", "energy"),))),
         "none": diagram_of(BranchFigure([], ())),
         "empty": table_of([], ()),
         "batch": table_of(rows, ("a", "word")),
@@ -103,4 +108,4 @@ def test_scripts(name: str, found: dict[str, str]) -> None:
 
 
 def test_each_check_is_known() -> None:
-    assert len(NAMES) == len(set(NAMES)) == 23
+    assert len(NAMES) == len(set(NAMES)) == 24

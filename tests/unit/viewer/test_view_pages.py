@@ -8,6 +8,7 @@ import re
 import zlib
 from dataclasses import replace
 from functools import cache
+from itertools import pairwise
 from pathlib import Path
 
 import pytest
@@ -15,6 +16,7 @@ import pytest
 from ribbonopt import load_scene, solve
 from ribbonopt.solution.solution import Solution
 from ribbonopt.viewer import embedded
+from ribbonopt.viewer.branches import caption_of, chosen_of, left_out
 from ribbonopt.viewer.looking import view_of
 from ribbonopt.viewer.page import MORE, assembled, page_of
 from ribbonopt.viewer.view import contents
@@ -108,6 +110,7 @@ def test_units_of_si() -> None:
     told = contents(view_of(solved("lateral_buckling_si")))
     assert told["units"]["force"] == "N"
     assert dict(told["shapes"][0]["numbers"])["energy"].split()[1] == "J"
+    assert dict(told["shapes"][0]["numbers"])["longest arrows"].endswith(" N/m")
     # Its weight hangs along -z, everywhere alike: arrows of one length.
     arrows = [arrow for arrow in told["shapes"][0]["acting"] if arrow["kind"] == "density"]
     assert len(arrows) > 10
@@ -144,3 +147,31 @@ def test_a_page_in_a_notebook_stands_for_itself() -> None:
     text = embedded(solved("moebius_half"))
     (inner,) = re.findall(r'^<iframe srcdoc="([^"]*)" sandbox="allow-scripts" ', text)
     assert html.unescape(inner) == page()
+
+
+def test_of_long_branches_special_points_and_some_evenly_between() -> None:
+    special = {37: "fold", 38: "kink", 701: "branch point"}
+    rows = [{"kind": special.get(i, "point")} for i in range(1000)]
+    chosen = chosen_of(rows)
+    assert len(chosen) == 400
+    assert chosen == sorted(set(chosen))
+    assert {0, 999, *special} <= set(chosen)
+    assert max(b - a for a, b in pairwise(chosen)) <= 4
+    assert chosen_of(rows[:400]) == list(range(400))
+    folds = [{"kind": "fold"}] * 1000
+    assert len(chosen_of(folds)) == 400
+    (told,) = left_out(1000, 400, "points")
+    assert told.startswith("the shapes of 600 of 1000 points")
+    assert left_out(400, 400, "points") == ()
+
+
+@pytest.mark.parametrize(
+    ("negative", "words"),
+    [(0, "stable"), (1, "unstable, 1 direction"), (2, "unstable, 2 directions")],
+)
+def test_stability_in_words(negative: int, words: str) -> None:
+    row = {"number": 3, "kind": "point", "parameter": "law.epsilon", "law.epsilon": 0.25}
+    assert caption_of(row | {"negative": negative}) == f"point 3: epsilon = 0.25, {words}"
+    assert caption_of(row | {"negative": None}).endswith("stability not known")
+    fold = row | {"negative": None, "kind": "fold"}  # where stability changes
+    assert caption_of(fold) == "point 3: fold, epsilon = 0.25"

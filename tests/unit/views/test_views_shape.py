@@ -175,3 +175,14 @@ def test_a_common_half_width_is_the_least_but_not_of_one_odd_ribbon(solved: Solv
     assert common_half_width([solved("ribbon_si")]) == pytest.approx(0.005)
     with pytest.raises(ModelError, match="no ribbon"):
         common_half_width([])
+
+
+def test_a_result_that_failed_has_a_shape(solved: Solved) -> None:
+    found = solved("moebius_half")
+    w = found.dense.w.copy()
+    w[40:90] = np.nan
+    trajectory = replace(found.trajectory, dense=replace(found.dense, w=w), found={})  # type: ignore[type-var]
+    shape = shape_of(replace(found, trajectory=trajectory))
+    assert shape.half_width == pytest.approx(0.05)
+    known = np.isfinite(shape.r).all(axis=1)
+    assert 0.3 < known.mean() < 1
