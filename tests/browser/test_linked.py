@@ -42,8 +42,15 @@ def read(tab: Tab, panel: str) -> float:
     return number(tab.text(f".{panel} .chart-foot").split()[-1])
 
 
-@pytest.mark.parametrize("name", ["moebius_whole", "moebius_half"])
-@pytest.mark.parametrize("share", [0.1, 0.37, 0.62, 0.9])
+@pytest.mark.parametrize(
+    ("name", "share"),
+    [
+        ("moebius_whole", 0.1),
+        ("moebius_whole", 0.62),
+        ("moebius_half", 0.37),
+        ("moebius_half", 0.9),
+    ],
+)
 def test_a_curve_marks_the_cross_section(tab: Tab, pages: Pages, name: str, share: float) -> None:
     tab.open(pages.file(name))
     assert len(marked(ribbon(tab))) == 0

@@ -44,6 +44,7 @@ def test_four_hundred_shapes(tab: Tab, pages: Pages) -> None:
     tab.open(path)
     assert tab.text("#count") == f"1 of {MANY}"
     first = ribbon(tab)
+    tab.focus("#slider")
     tab.keys("End")
     assert tab.text("#count") == f"{MANY} of {MANY}"
     assert (ribbon(tab) != first).any()

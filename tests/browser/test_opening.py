@@ -96,7 +96,7 @@ def test_what_a_scene_says_is_text(tab: Tab, pages: Pages) -> None:
 
 
 @pytest.mark.slow
-@pytest.mark.parametrize("name", KINDS)
+@pytest.mark.parametrize("name", ["moebius_half", "branch", "batch", "report"])
 def test_light_and_dark_can_be_read(tab: Tab, pages: Pages, name: str) -> None:
     ready(tab, pages, name)
     for dark in (False, True):
