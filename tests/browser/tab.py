@@ -160,6 +160,18 @@ class Tab:
         self.hand([steps[0], down, *steps[1:], up])
         self.settle()
 
+    def pinch(self, *ways: list[tuple[float, float]]) -> None:
+        """Move fingers, each along places, down from the first to the last."""
+        sources = []
+        for k, way in enumerate(ways):
+            steps = [{"type": "pointerMove", "x": round(x), "y": round(y)} for x, y in way]
+            down, up = ({"type": name, "button": 0} for name in ("pointerDown", "pointerUp"))
+            finger = {"type": "pointer", "id": f"finger{k}", "parameters": {"pointerType": "touch"}}
+            sources.append({**finger, "actions": [steps[0], down, *steps[1:], up]})
+        given = {"context": self.context, "actions": sources}
+        self.bidi.call("input.performActions", given)
+        self.settle()
+
     def wheel(self, x: float, y: float, pixels: int) -> None:
         turn = {"type": "scroll", "x": round(x), "y": round(y), "deltaX": 0, "deltaY": pixels}
         source = {"type": "wheel", "id": "wheel", "actions": [turn]}

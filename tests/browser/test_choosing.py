@@ -116,6 +116,7 @@ def test_play_goes_through_all_and_stops(tab: Tab, pages: Pages) -> None:
         "? done(0) : setTimeout(look, 20); look(); })"
     )
     tab.press("#play")
+    tab.keys("ArrowLeft")  # of the page, though the button has the focus
     at = shown(tab)
     tab.run("new Promise((done) => setTimeout(done, 700))")
     assert shown(tab) == at
@@ -141,7 +142,11 @@ def test_rows_of_a_batch(tab: Tab, pages: Pages) -> None:
         is_seen(tab, pages, "batch", row)
     before = ribbon(tab)
     tab.press(f"#table tbody tr:nth-child({FAILED}) td")
-    assert "not on this page" in tab.text("#caption")
+    said = "ribbon 10, unreachable: its shape is not on this page; seen is ribbon 8, verified"
+    assert tab.text("#caption").removeprefix("✗ ") == said
+    before_it = "getComputedStyle(document.querySelector('#caption'), '::before').content"
+    assert tab.run(before_it) == '"✗ "'
+    assert tab.text("#facts") == ""  # numbers of another ribbon are not laid at its door
     assert alike(ribbon(tab), before)
     assert tab.faults() == []
 

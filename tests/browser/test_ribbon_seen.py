@@ -115,6 +115,17 @@ def test_a_wheel_zooms_about_the_pointer_and_a_double_click_brings_it_back(
     assert (ribbon(tab) == first).all()
 
 
+def test_two_fingers_zoom(tab: Tab, pages: Pages) -> None:
+    tab.open(pages.file("moebius_half"), NARROW)
+    scale, (x, y) = pixels_of_length(tab), middle(tab)
+    left = [(x - 40 - 10 * k, y) for k in range(5)]
+    right = [(x + 40 + 10 * k, y) for k in range(5)]
+    tab.pinch(left, right)
+    assert pixels_of_length(tab) == pytest.approx(2 * scale, rel=0.03)  # 80 apart, then 160
+    assert tab.run("visualViewport.scale") == 1  # the ribbon, not the page
+    assert tab.faults() == []
+
+
 def test_keys_turn_zoom_and_bring_it_back(tab: Tab, pages: Pages) -> None:
     tab.open(pages.file("moebius_half"))
     first, scale = ribbon(tab), pixels_of_length(tab)
