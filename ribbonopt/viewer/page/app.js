@@ -76,7 +76,8 @@ function makeApp() {
     let before = false; // what is printed is light
     const isDark = () => document.documentElement.classList.contains("dark");
     addEventListener("beforeprint", () => ((before = isDark()), dark(false)));
-    addEventListener("afterprint", () => dark(before));
+    // Firefox has the colours of paper until all who are told of the end have heard of it.
+    addEventListener("afterprint", () => setTimeout(() => dark(before)));
     get("theme").onclick = () => dark(!isDark());
     const known = FIELDS.filter(([name]) => !name || view.ranges[name]);
     for (const [name, text] of known) get("field").add(new Option(text, name));
@@ -90,9 +91,10 @@ function makeApp() {
       show(+get("slider").value);
     };
     get("play").onclick = () => play(!playing);
-    const strides = { ArrowLeft: -1, ArrowRight: 1, PageUp: -10, PageDown: 10, Home: -1e9, End: 1e9 };
-    document.addEventListener("keydown", ({ key, target }) => {
+    const strides = { ArrowLeft: -1, ArrowRight: 1 }; // Home and End scroll, or move the slider
+    document.addEventListener("keydown", ({ key, target, altKey, ctrlKey, metaKey }) => {
       if (target !== document.body || !strides[key] || view.shapes.length < 2) return;
+      if (altKey || ctrlKey || metaKey) return; // Alt and an arrow lead to another page
       play(false);
       show(Math.min(Math.max(shape + strides[key], 0), view.shapes.length - 1));
     });
