@@ -27,9 +27,9 @@ def planar_problems(solution: Solution) -> list[str]:
     if solution.scene.states == "planar" or not is_planar(solution):
         return []
     return [
-        "the answer lies in a plane, though nothing holds it there: it may be unstable, and others "
-        "may leave the plane (try `starts`, or `stability: true` in a `continuation`; `planar: "
-        "true` says that the plane is meant)"
+        "the answer lies in a plane, though nothing holds it there: others may leave the plane "
+        "(try `starts`), and so does this one where it is not stable (`planar: true` says that the "
+        "plane is meant)"
     ]
 
 

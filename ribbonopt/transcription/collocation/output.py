@@ -23,7 +23,7 @@ from ribbonopt.transcription.tableaus import Inside
 
 from .blocks import ElementBlocks
 from .phase_equations import PhaseEquations
-from .refined import Refined
+from .refined import Refined, states_at_many
 from .substeps import after_substeps
 
 STIFF = 3.0  # exponent of an element, from which on neighbouring solutions part too fast
@@ -87,14 +87,7 @@ class DenseOutput:
 
     def many(self, phase: int, sigma: Array) -> Array:
         """States x (k, nx) as `states`, sooner at many places: see `refined`."""
-        lay = self.blocks.layout
-        if lay.nz or self.order == self.blocks.tableau.dense_order:
-            return self.states(phase, sigma)
-        element, t, _ = lay.locate(self.p, phase, sigma)
-        x, rest = self.polynomials(element, t), ~self.polynomials.fit[element]
-        if rest.any():
-            x[rest] = self.states(phase, sigma[rest])
-        return x
+        return states_at_many(self, phase, sigma)
 
     @cached_property
     def polynomials(self) -> Refined:

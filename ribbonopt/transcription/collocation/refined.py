@@ -36,8 +36,8 @@ BESIDE = 1e-6  # delta, of the largest state, from which on substeps are asked
 DECAYED = 1e-10  # what the last two Legendre coefficients add to a state, of the largest
 
 
-class Sampled(Protocol):
-    """What is asked of a solution: see `DenseOutput`."""
+class Read(Protocol):
+    """What polynomials are made of: an output of collocation."""
 
     @property
     def blocks(self) -> ElementBlocks:
@@ -49,21 +49,28 @@ class Sampled(Protocol):
 
     @property
     def order(self) -> int:
-        """Order between the nodes."""
+        """Order of the error of `states`."""
 
     @property
     def at_nodes(self) -> Array:
-        """States (N + 1, nx)."""
+        """States (N + 1, nx) at the nodes."""
 
     @property
     def rates(self) -> Array:
-        """Derivatives (N, K, nx) at the stages."""
+        """Derivatives (N, K, nx) at the stages, per relative position."""
+
+    @property
+    def polynomials(self) -> Refined:
+        """What is made of it here, once."""
+
+    def states(self, phase: int, sigma: Array) -> Array:
+        """States (k, nx) by substeps."""
+
+    def places(self, phase: int, sigma: Array) -> Array:
+        """Positions sigma (k,) with the known fields there."""
 
     def equations(self, phase: int) -> PhaseEquations:
         """Equations of a phase."""
-
-    def places(self, phase: int, positions: Array) -> Array:
-        """Where equations are evaluated."""
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,7 +89,7 @@ class Refined:
     fit: NDArray[np.bool_]
 
     @classmethod
-    def of(cls, output: Sampled) -> Refined:
+    def of(cls, output: Read) -> Refined:
         """Find the polynomials of an output."""
         K, lay = output.blocks.tableau.degree, output.blocks.layout
         tableau = gauss_of_any(2 * K + BEYOND)
@@ -102,6 +109,18 @@ class Refined:
         """States (k, nx) at positions t (k,) from 0 to 1 in elements (k,)."""
         basis = _chebyshev(t, self.coefficients.shape[1])
         return np.asarray((basis[:, None] @ self.coefficients[element])[:, 0])
+
+
+def states_at_many(output: Read, phase: int, sigma: Array) -> Array:
+    """States (k, nx) at relative positions sigma (k,) of a phase, by polynomials where they fit."""
+    lay = output.blocks.layout
+    if lay.nz or output.order == output.blocks.tableau.dense_order:
+        return output.states(phase, sigma)
+    element, t, _ = lay.locate(output.p, phase, sigma)
+    x, rest = output.polynomials(element, t), ~output.polynomials.fit[element]
+    if rest.any():
+        x[rest] = output.states(phase, sigma[rest])
+    return x
 
 
 def _times(matrix: Array, values: Array) -> Array:
@@ -127,7 +146,7 @@ def _in_chebyshev(degree: int, power: int) -> tuple[Array, Array]:
     return found[:, :-1], found[:, -1]
 
 
-def _swept(output: Sampled, degree: int, rest: float) -> tuple[Array, NDArray[np.bool_]]:
+def _swept(output: Read, degree: int, rest: float) -> tuple[Array, NDArray[np.bool_]]:
     """Return derivatives (M, N, nx) at Gauss nodes, and in which elements (N,) sweeps come to rest.
 
     Elements that have come to it, or will not, are swept no further.
@@ -154,7 +173,7 @@ def _swept(output: Sampled, degree: int, rest: float) -> tuple[Array, NDArray[np
     return F, fit
 
 
-def _derivatives(output: Sampled, elements: Index, x: Array, positions: Array) -> Array:
+def _derivatives(output: Read, elements: Index, x: Array, positions: Array) -> Array:
     """Return derivatives (M, N, nx) at states and relative positions (M, N) in elements (N,)."""
 
     def of(phase: int, x: Array, positions: Array) -> Array:

@@ -135,6 +135,11 @@ def test_ribbons_of_no_known_width_are_as_wide_as_each_other(
     paths = export(several, tmp_path, ["npz"], complete=False)
     widths = [float(np.load(path)["half_width"].max()) for path in paths]
     assert widths == pytest.approx([min(alone)] * 2)
+    # Colours mean the same on both.
+    scenes = [glb(path)[0] for path in export(several, tmp_path, ["glb"], complete=False)]
+    told = [scene["scenes"][0]["extras"]["color_largest"] for scene in scenes]
+    largest = [float(np.abs(np.load(path)["u2"]).max()) for path in paths]
+    assert told == [max(largest)] * 2 and largest[0] != largest[1]
     # One that is known stays what it is.
     paths = export((*several, solved("ribbon_si")), tmp_path, ["npz"], complete=False)
     assert np.load(paths[2])["half_width"][0] == pytest.approx(0.005)

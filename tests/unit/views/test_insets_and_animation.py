@@ -38,6 +38,15 @@ def rows() -> Rows:
     return [row(i, 4.0 * i, energy=float(i * i)) for i in range(9)]
 
 
+def test_insets_of_points_that_are_close_do_not_lie_on_one_another() -> None:
+    marks = np.array([[0.5, 0.51, 0.5, 0.52], [0.5, 0.5, 0.51, 0.5]])
+    size = np.array([0.2, 0.15])
+    corners = corners_of(marks, size, marks)
+    for k in range(4):
+        apart = np.abs(np.delete(corners, k, axis=1) - corners[:, [k]]) >= size[:, None]
+        assert apart.any(axis=0).all()
+
+
 def test_insets_stand_beside_curves_and_apart() -> None:
     x = np.linspace(0.08, 0.92, 200)
     curve = np.array([x, 0.5 + 0.3 * np.sin(6 * x)])
