@@ -79,8 +79,10 @@ def _run(words: list[str], folder: Path, stack: contextlib.ExitStack) -> IO[byte
     )
 
     def end() -> None:
+        # A screen gives its number back; browsers would take seconds to say goodbye.
+        gently = words[0] == "Xvfb"
         with contextlib.suppress(ProcessLookupError):
-            os.killpg(process.pid, signal.SIGKILL)
+            os.killpg(process.pid, signal.SIGTERM if gently else signal.SIGKILL)
         process.wait()
         if process.stdout:
             process.stdout.close()

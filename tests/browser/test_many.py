@@ -2,7 +2,6 @@
 
 import time
 
-import numpy as np
 import pytest
 from pages import MANY, Pages
 from tab import Tab
@@ -62,5 +61,4 @@ def test_four_hundred_shapes(tab: Tab, pages: Pages) -> None:
     spent = (time.perf_counter() - start) / frames
     tab.hand([{"type": "pointerUp", "button": 0}])
     assert spent < FRAME
-    assert np.isfinite(spent)
     assert tab.faults() == []
