@@ -40,6 +40,8 @@ from .staging import OWN_FILES, recovered
 from .summary import settings_of
 
 #: what a summary says of its scene that decides what the numbers are
+#: what was built for solutions, by the structure of their scenes
+Built = dict[tuple[object, ...], Structure]
 SETTINGS = ("name", "formulation", "states", "transcription", "scheme", "parameters", "interval")
 
 
@@ -97,10 +99,14 @@ def _refuse_twice(exports: Sequence[Export]) -> None:
             writers[name] = export.name
 
 
-def load_solution(path: str | Path, scene: Scene | None = None) -> Solution:
+def load_solution(
+    path: str | Path, scene: Scene | None = None, built: Built | None = None
+) -> Solution:
     """Load a saved solution: its result folder, or any of the files in it.
 
     `scene` is that of the solution, where it was declared in Python, so that no file says it.
+    `built` is what was built for other solutions, an empty dict at first: of many that differ in
+    numbers only, as those of a batch, it is built for the first and serves all.
 
     Raises
     ------
@@ -126,7 +132,10 @@ def load_solution(path: str | Path, scene: Scene | None = None) -> Solution:
     saved = read_numbers(folder, summary)
     try:
         posed = Posed.of(scene, _units(scene, saved.units))
-        structure = Structure.of(posed).in_phases(saved.sheets)
+        built = {} if built is None else built
+        if posed.structure not in built:
+            built[posed.structure] = Structure.of(posed)
+        structure = built[posed.structure].in_phases(saved.sheets)
         problem = structure.problem
         if len(saved.elements) != len(problem.phases):
             raise ValueError(

@@ -17,6 +17,6 @@ def many_outputs(solution: Solution, s: Array) -> Mapping[str, Array]:
     what makes the others cheap.
     """
     start, end = solution.scene.interval
-    values = solution.trajectory.many((s - start) / (end - start))
+    values = solution.trajectory.outputs((s - start) / (end - start), many=True)
     same, unit_of = solution.posed.given is solution.posed.scene, solution.units.of
     return values if same else Each(values, lambda name, value: value * unit_of(name))

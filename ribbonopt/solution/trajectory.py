@@ -86,14 +86,9 @@ class Trajectory:
             v[rows] = self.dense.approximate(i, local)
         return v
 
-    def outputs(self, fraction: Array) -> dict[str, Array]:
-        """Named outputs at fractions: (k,) for scalars, (k, 3) for vectors."""
-        return self._outputs(self._choices.every, self._unknowns(fraction), fraction)
-
-    def many(self, fraction: Array) -> dict[str, Array]:
-        """Named outputs at many fractions: as exact as `outputs`, equal to rounding, and sooner."""
-        v = self._unknowns(fraction) if self.dense.blocks.layout.nz else self._many(fraction)
-        return self._outputs(self._choices.every, v, fraction)
+    def outputs(self, fraction: Array, *, many: bool = False) -> dict[str, Array]:
+        """Named outputs at fractions: (k,) for scalars, (k, 3) for vectors; soon at `many`."""
+        return self._outputs(self._choices.every, self._unknowns(fraction, many=many), fraction)
 
     def looked_at(self, fraction: Array) -> dict[str, Array]:
         """Return those outputs that estimates compare between the nodes; see `outputs`."""
@@ -111,18 +106,12 @@ class Trajectory:
         frames = np.stack([o["d1"], o["d2"], o["d3"]], axis=2)
         return RodFields(o["r"], frames, o["n"], o["m"], own)
 
-    def states(self, fraction: Array) -> Array:
-        """States (k, nx) at fractions."""
+    def states(self, fraction: Array, *, many: bool = False) -> Array:
+        """States x (k, nx) at fractions; soon at `many`."""
+        read = self.dense.many if many else self.dense.states
         x = np.empty((len(fraction), self.dense.blocks.layout.nx))
         for i, rows, local in self._local(fraction):
-            x[rows] = self.dense.states(i, local)
-        return x
-
-    def _many(self, fraction: Array) -> Array:
-        """States (k, nx) at many fractions."""
-        x = np.empty((len(fraction), self.dense.blocks.layout.nx))
-        for i, rows, local in self._local(fraction):
-            x[rows] = self.dense.many(i, local)
+            x[rows] = read(i, local)
         return x
 
     @cached_property
@@ -201,11 +190,11 @@ class Trajectory:
                 # A phase may begin without length.
                 yield i, rows, np.clip((fraction[rows] - a) / (b - a or 1.0), 0.0, 1.0)
 
-    def _unknowns(self, fraction: Array) -> Array:
+    def _unknowns(self, fraction: Array, *, many: bool = False) -> Array:
         """Unknowns v (k, nv) at fractions."""
         layout = self.dense.blocks.layout
         if not layout.nz:
-            return self.states(fraction)
+            return self.states(fraction, many=many)
         v = np.empty((len(fraction), layout.nv))
         v[:, : layout.nx] = self.states(fraction)
         for i, rows, local in self._local(fraction):

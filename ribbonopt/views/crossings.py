@@ -67,4 +67,4 @@ def _interpolated(places: Array, values: Array, first: NDArray[np.intp]) -> Arra
         for k in range(1, 2 * LOCAL):
             low, high = y[:, :-k], y[:, k:]
             found = (high * found[:, :-1] - low * found[:, 1:]) / (high - low)
-    return np.where(np.isfinite(found[:, 0]), found[:, 0], x[:, LOCAL])
+    return np.asarray(np.where(np.isfinite(found[:, 0]), found[:, 0], x[:, LOCAL]))

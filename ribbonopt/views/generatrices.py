@@ -27,7 +27,7 @@ LEAP_SLOPE = 0.7  # half_width |eta'| where eta leaps
 LEAST_LEAP = 1e-3
 LEAP_SHARE = 1 / 5  # half-width by default at most, of the usual distance between leaps
 ROUNDS = 20  # in which the half-width by default is found
-ROUNDING = 1e-9
+ROUNDING, DIGITS = 1e-9, 7
 FINE = 1e-6  # of the length: rows closer than this do not count for eta'
 
 
@@ -94,11 +94,16 @@ class Generatrices:
         eta = self.drawn(half_width)
         rows = np.flatnonzero(self.steps)
         slope = (eta[rows + 1] - eta[rows]) / (self.s[rows + 1] - self.s[rows])
-        slope += self.u1[rows + 1] * (1 + eta[rows + 1] ** 2)
-        return half_width * float(np.abs(slope * self.widths[rows + 1]).max(initial=0.0))
+        turning = self.u1 * (1 + eta**2)
+        slope += (turning[rows] + turning[rows + 1]) / 2
+        widths = np.maximum(self.widths[rows], self.widths[rows + 1])
+        return half_width * float(np.abs(slope * widths).max(initial=0.0))
 
     def usual_half_width(self) -> float:
-        """Return the half-width by default: as wide as `sweep` says, so that none cross."""
+        """Return the half-width by default: as wide as `sweep` says, so that none cross.
+
+        Rounded, so that it is the same of the same ribbon elsewhere or seen in a mirror.
+        """
         length, widest = self.s[-1] - self.s[0], float(self.widths.max())
         apart = np.diff(self.leaps)
         usual = float(np.median(apart)) if len(apart) else np.inf
@@ -107,10 +112,10 @@ class Generatrices:
         for _ in range(ROUNDS):
             # Narrower it shows more of what is steep beside leaps, never less: so none is too far.
             overlap = self.overlap(found)
-            if found <= least or overlap <= REGULAR_SLOPE * (1 + ROUNDING):
+            if found <= least or not overlap > REGULAR_SLOPE * (1 + ROUNDING):
                 break
             found *= REGULAR_SLOPE / overlap
-        return max(float(found), float(least))
+        return float(f"{max(found, least):.{DIGITS}g}")
 
 
 def _leap(before: float, after: float) -> bool:

@@ -3,8 +3,8 @@
 There eta = u3/u2 leaps from one sign to the other, whether u2 jumps (Sadowsky's law at m2 = 0) or
 passes through 0 (the other laws). They are split as well where something acts at a single place.
 Rows are even along the whole; they approach the ends of each piece from inside, so that a jump at
-an end shows its own side only, and they crowd there, where regularised laws change quickly. With natural strains u2 may leap from
-and to any value: pieces are the phases, where there are any.
+an end shows its own side only, and they crowd there, where regularised laws change quickly. With
+natural strains u2 may leap from and to any value: pieces are the phases, where there are any.
 """
 
 from __future__ import annotations
@@ -82,7 +82,8 @@ class Piece:
     @property
     def widths(self) -> Array:
         """The width in every row, (k,)."""
-        return np.broadcast_to(self.width, self.s.shape)
+        found = self.width
+        return found if isinstance(found, np.ndarray) else np.full(self.s.shape, found)
 
 
 def in_plane(pieces: tuple[Piece, ...]) -> float:
@@ -126,12 +127,26 @@ def sample_pieces(
     if not law.variational:
         values["energy"] = np.full(len(s), np.nan)  # m . u / 2 was found, which is no energy of it
     columns = {"s": s, "eta": eta, "width": widths(solution.scene, s), **values}
-    columns.pop(OWN_ETA, None)
-    ends = np.searchsorted(s, cuts)
-    return tuple(
-        Piece(**{name: column[a:b] for name, column in columns.items()})
-        for a, b in pairwise(ends.tolist())
-        if b > a
+    ends = np.searchsorted(s, cuts).tolist()
+    return tuple(_piece(columns, slice(a, b)) for a, b in pairwise(ends) if b > a)
+
+
+def _piece(columns: dict[str, Array], rows: slice) -> Piece:
+    part = {name: column[rows] for name, column in columns.items()}
+    return Piece(
+        s=part["s"],
+        u1=part["u1"],
+        u2=part["u2"],
+        u3=part["u3"],
+        eta=part["eta"],
+        r=part["r"],
+        d1=part["d1"],
+        d2=part["d2"],
+        d3=part["d3"],
+        width=part["width"],
+        n=part["n"],
+        m=part["m"],
+        energy=part["energy"],
     )
 
 
@@ -199,7 +214,7 @@ def _crossings(
 
     start, end = solution.scene.interval
     before, after = rows[at], rows[at + 1]
-    found = crossings(told, (s[before], s[after]), up[before], INSET * (end - start) / 4)
+    found = crossings(told, (s[before], s[after]), up[before], INSET * (end - start) / 2)
     return tuple(found.tolist())
 
 

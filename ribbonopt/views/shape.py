@@ -10,12 +10,15 @@ from collections.abc import Sequence
 import numpy as np
 
 from ribbonopt.classes import dataclass
+from ribbonopt.errors import ModelError
 from ribbonopt.scene.units import Units
 from ribbonopt.solution.solution import Solution
 
 from .pieces import ROWS, Array
 from .subject import Subject, subject_of
 from .surface import Surface, sweep
+
+LEAST_OF_MOST = 0.5  # of the median: a half-width for many is not less
 
 
 @dataclass(frozen=True, eq=False)
@@ -107,7 +110,7 @@ def shape_of(
     Raises
     ------
     ModelError
-        If half_width is not positive.
+        If half_width is not a positive number.
     """
     subject = subject_of(solution, complete, rows)
     return shape_from(
@@ -151,6 +154,19 @@ def shape_from(subject: Subject, surface: Surface) -> Shape:
 
 
 def common_half_width(ribbons: Sequence[Solution | Subject]) -> float:
-    """Return one half-width to draw all of some ribbons to, those of a branch or a batch."""
+    """Return one half-width to draw all of some ribbons to, those of a branch or a batch.
+
+    The least of what each would have, so that generatrices of none cross; but not less than half
+    of what most have, so that one odd ribbon does not make hairlines of all. Ribbons whose own
+    widths differ are better drawn each to its own: `Subject.half_width`.
+
+    Raises
+    ------
+    ModelError
+        If there is no ribbon.
+    """
+    if not ribbons:
+        raise ModelError("found no ribbon; expected one at least, to find a half-width for")
     subjects = [r if isinstance(r, Subject) else subject_of(r, complete=True) for r in ribbons]
-    return min(s.drawn or sweep(s.pieces).half_width for s in subjects)
+    found = [s.drawn or sweep(s.pieces).half_width for s in subjects]
+    return max(min(found), LEAST_OF_MOST * float(np.median(found)))

@@ -110,14 +110,14 @@ def sweep(pieces: tuple[Piece, ...], half_width: float | None = None) -> Surface
     half_width
         Where the width is 1. Default: a twentieth of the length where it is largest, or less (to a
         two-hundredth) so that no generatrices cross and those that fan out where eta leaps leave
-        room between.
+        room between. How steep eta is beside a leap does not count: it is drawn smooth there.
 
     Raises
     ------
     ModelError
-        If half_width is not positive.
+        If half_width is not a positive number.
     """
-    if half_width is not None and not half_width > 0:
+    if half_width is not None and not 0 < half_width < np.inf:
         raise ModelError(f"half_width is expected to be positive, found {half_width}")
     lines = Generatrices.of(pieces, _closing(pieces))
     w = lines.usual_half_width() if half_width is None else half_width

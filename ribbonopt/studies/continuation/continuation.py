@@ -105,10 +105,19 @@ class Continuation:
 
     @property
     def ending(self) -> Ending:
-        """How the whole has ended: as the first stage that did not reach its goal, or the last."""
-        ways = [len(ends_of(stage)) for stage in self.stages]
-        mains = [e for (stage, branch), e in self.endings.items() if branch < ways[stage]]
-        return next((ending for ending in mains if not ending.reached), mains[-1])
+        """How the whole has ended: as the first stage that did not reach its goal, or the last.
+
+        Before that, as one that has not: it is not reached, and says how far it is.
+        """
+        ways = [max(1, len(ends_of(stage))) for stage in self.stages]
+        mains = {key: e for key, e in self.endings.items() if key[1] < ways[key[0]]}
+        short = next((ending for ending in mains.values() if not ending.reached), None)
+        last = mains.get((len(ways) - 1, ways[-1] - 1))
+        if ending := short or last:
+            return ending
+        done = sum((stage, count - 1) in mains for stage, count in enumerate(ways))
+        where = f"{done} of {len(ways)} stages have ended" if done else "no stage has ended"
+        return Ending(False, f"not followed to the end yet: {where}")
 
     def __repr__(self) -> str:
         """Say what is followed, and how far, in one line."""

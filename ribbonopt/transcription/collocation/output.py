@@ -23,7 +23,7 @@ from ribbonopt.transcription.tableaus import Inside
 
 from .blocks import ElementBlocks
 from .phase_equations import PhaseEquations
-from .refined import Refined
+from .refined import Refined, states_at_many
 from .substeps import after_substeps
 
 STIFF = 3.0  # exponent of an element, from which on neighbouring solutions part too fast
@@ -87,11 +87,12 @@ class DenseOutput:
 
     def many(self, phase: int, sigma: Array) -> Array:
         """States x (k, nx) as `states`, sooner at many places: see `refined`."""
-        return self._refined.states(phase, sigma)
+        return states_at_many(self, phase, sigma)
 
     @cached_property
-    def _refined(self) -> Refined:
-        return Refined(self)
+    def polynomials(self) -> Refined:
+        """Polynomials of the elements that have the order of the nodes."""
+        return Refined.of(self)
 
     def approximate(self, phase: int, sigma: Array) -> Array:
         """Unknowns v (k, nv) at relative positions sigma (k,): the collocation polynomials."""
@@ -227,6 +228,7 @@ class DenseOutput:
         return at_places(self.known, phase, sigma, self.blocks.layout.known)
 
     def equations(self, phase: int) -> PhaseEquations:
+        """Return the equations of a phase with these numbers."""
         blocks = self.blocks
         return PhaseEquations(blocks.phases[phase], blocks.layout, (self.constants, self.theta))
 
