@@ -22,8 +22,8 @@ from ribbonopt.solution.solution import Solution
 from ribbonopt.text import one_line
 
 from .album import Album, album_of, place
-from .paper_style import PLAIN, Style, sized
-from .ribbon import scale_bar
+from .paper_style import PLAIN, USUAL, Style, sized
+from .ribbon import is_flat, scale_bar
 from .style import INK, blank, title
 
 if TYPE_CHECKING:
@@ -35,7 +35,7 @@ KINDS: tuple[Kind, ...] = ("gif", "mp4")
 MOST = 200  # frames
 RATE = 12  # frames a second
 HOLD = 8  # frames for which the last one stays
-WIDTH, TALLEST, WORDS = 6.4, 4.8, 0.75  # inches
+WIDTH, TALLEST, WORDS, BAR = 6.4, 4.8, 0.75, 0.7  # inches
 MOST_PIXELS = 3e8  # of all frames
 SECONDS = 600.0  # that ffmpeg may take
 
@@ -113,12 +113,13 @@ def _images(album: Album, captions: Sequence[str], style: Style, name: str) -> I
     box = album.box()
     shape = (box.high - box.low) / (box.right - box.left)
     width = style.width or WIDTH
-    figure = blank(width, min(width * shape, TALLEST * width / WIDTH) + WORDS, style)
+    words = WORDS * style.type_size / USUAL + (BAR if album.tint and is_flat(box) else 0.0)
+    figure = blank(width, min(width * shape, TALLEST * width / WIDTH) + words, style)
     inches = float(np.prod(figure.get_size_inches())) * len(captions)
     figure.set_dpi(min(style.dpi, float(np.sqrt(MOST_PIXELS / inches))))
     axes = figure.add_subplot()
     if album.tint:
-        album.tint.bar([axes])
+        album.tint.bar([axes], below=is_flat(box))
     longest = max(captions, key=len)
     for i in (None, *range(len(captions))):
         axes.clear()

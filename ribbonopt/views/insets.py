@@ -27,6 +27,7 @@ LARGEST, LEAST = 0.34, 0.14  # of the axes: width and height of an inset
 WIDER = 0.3  # of what is drawn: room above and below it
 STEPS = 25  # places along each side that are tried
 APART = 0.012  # of the axes: least room between insets, and between these and the frame
+NUMBER = 0.07  # of the axes: room for a number to the left of an inset
 CROSSED = 4.0  # what it costs to lie on one sample of a curve, in lengths of the axes
 SAMPLES = 24  # of a line from an inset to its point
 BELOW = 0.04  # of their size: room below ribbons
@@ -70,10 +71,17 @@ def draw_insets(
             ha="right",
             va="center",
         )
-        seen = corner + size * (drawing.corners.reshape(-1, 2) - low) / (high - low)
-        near = seen[np.hypot(*(seen - mark).T).argmin()]
-        ends = np.stack([mark, near], axis=1)
-        axes.plot(*ends, transform=axes.transAxes, color=FAINT, lw=stroke(0.6), label="_lead")
+        seen = drawing.corners.reshape(-1, 2)
+        near = np.hypot(*(corner + size * (seen - low) / (high - low) - mark).T).argmin()
+        line = {"arrowstyle": "-", "color": FAINT, "lw": stroke(0.6), "shrinkA": 0, "shrinkB": 0}
+        axes.annotate(
+            "",
+            xy=tuple(mark),
+            xycoords="axes fraction",
+            xytext=tuple(seen[near]),
+            textcoords=inset.transData,  # which the layout settles
+            arrowprops=line,
+        )
     if album.tint:
         album.tint.bar(axes.figure.axes)
 
@@ -90,7 +98,8 @@ def corners_of(marks: Array, size: Array, taken: Array) -> Array:
     taken
         Points (2, m) that insets rather do not lie on.
     """
-    sides = [np.linspace(APART, 1 - APART - extent, STEPS) for extent in size]
+    begins = (NUMBER, APART)
+    sides = [np.linspace(b, 1 - APART - s, STEPS) for b, s in zip(begins, size, strict=True)]
     corners = np.stack(np.meshgrid(*sides), axis=-1).reshape(-1, 2)
     inside = (taken.T > corners[:, None]) & (taken.T < corners[:, None] + size)
     covered = inside.all(axis=2).sum(axis=1).astype(float)

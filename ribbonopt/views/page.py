@@ -32,7 +32,7 @@ class Page(Figure):
 
     def draw(self, renderer: RendererBase) -> None:
         """Draw; what no font of this machine has stays an empty box."""
-        with self.style.applied(), _quiet():
+        with self.style.applied(), quiet():
             _complete(self)
             super().draw(renderer)
 
@@ -42,7 +42,7 @@ class Page(Figure):
         undated = next((date for end, date in UNDATED.items() if name.endswith(end)), None)
         if undated:
             keywords["metadata"] = undated | (keywords.get("metadata") or {})
-        with self.style.applied(), _quiet():
+        with self.style.applied(), quiet():
             super().savefig(fname, **keywords)
 
     def _repr_png_(self) -> bytes:
@@ -53,17 +53,19 @@ class Page(Figure):
 
 
 @contextmanager
-def _quiet() -> Iterator[None]:
+def quiet() -> Iterator[None]:
     """Keep to ourselves which letters and weights fonts lack."""
-    log = logging.getLogger("matplotlib.font_manager")
-    level = log.level
-    log.setLevel(logging.ERROR)
+    logs = [logging.getLogger(f"matplotlib.{part}") for part in ("font_manager", "mathtext")]
+    levels = [log.level for log in logs]
+    for log in logs:
+        log.setLevel(logging.ERROR)
     try:
         with warnings.catch_warnings():
             warnings.filterwarnings("ignore", message=r"Glyph .* missing from")
             yield
     finally:
-        log.setLevel(level)
+        for log, level in zip(logs, levels, strict=True):
+            log.setLevel(level)
 
 
 def _complete(figure: Figure) -> None:

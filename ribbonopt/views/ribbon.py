@@ -27,6 +27,7 @@ if TYPE_CHECKING:
 WIDTH, HEIGHT = 7.2, 6.4  # inches, at most
 NARROWEST = 0.75  # width of a picture over its height: room for its title
 WORDS, BAR = 0.7, 0.85  # inches: of title and caption, and of a bar of colours
+FLAT = 0.5  # height of a picture over its width, below which it is
 MARGINS = 0.3  # inches that are no caption's
 UNSHORTENED = {"shrinkA": 0, "shrinkB": 0}  # arrows
 
@@ -76,10 +77,10 @@ def draw_ribbon(subject: Subject, half_width: float | None = None, style: Style 
     beside = max(0.03 * size, (NARROWEST * (high - low) - (right - left)) / 2)
     box = (left - beside, right + beside, low, high)
     width, type_size = style.width or WIDTH, style.type_size / USUAL
-    bar = BAR * type_size if tint else 0.0
-    page = (width - bar) / (box[1] - box[0])
+    flat, bar = is_flat(box), BAR * type_size if tint else 0.0
+    page = (width - (0.0 if flat else bar)) / (box[1] - box[0])
     height = min(HEIGHT * width / WIDTH, page * (box[3] - box[2]))
-    words = WORDS * type_size if style.titles else 0.0
+    words = (WORDS * type_size if style.titles else 0.0) + (bar if flat else 0.0)
     figure = blank(width, max(height, 0.2 * width) + words, style)
     axes = figure.add_subplot()
     paint(axes, drawing)
@@ -90,12 +91,17 @@ def draw_ribbon(subject: Subject, half_width: float | None = None, style: Style 
     scale_bar(axes, box, size, " m" if subject.units.si else "")
     _triad(axes, camera, box, size)
     if tint:
-        tint.bar([axes])
+        tint.bar([axes], below=flat)
     if style.titles:
         caption = _caption(subject, surface, lit=tint is None).splitlines()
         text = "\n".join(wrapped(line, width - MARGINS, sized(8.5)) for line in caption)
         figure.supxlabel(text, fontsize=sized(8.5), color=INK)
     return figure
+
+
+def is_flat(box: tuple[float, float, float, float]) -> bool:
+    """Whether a bar of colours beside a picture (left, right, low, high) would be short."""
+    return box[3] - box[2] < FLAT * (box[1] - box[0])
 
 
 def paint(axes: Axes, drawing: Drawing) -> None:

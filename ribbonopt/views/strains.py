@@ -151,6 +151,7 @@ def _label(top: Axes, bottom: Axes, subject: Subject, strains: str) -> None:
     head(top, subject.name, subject.units, pad=spaced(10 + 16 * rows))
     top.set_ylabel(subject.label(strains, "1/m"))
     look = {"frameon": False, "fontsize": sized(9), "columnspacing": 1.4}
+    look |= {"handlelength": 1.4, "columnspacing": 1.0} if _width(top) < NARROW else {}
     top.legend(loc="lower left", bbox_to_anchor=(0, 1.0, 1, 0), ncols=columns, **look)
     bottom.set_xlabel(subject.label(r"arclength $s$", "m"))
     bottom.set_xlim(subject.interval[0], subject.end)

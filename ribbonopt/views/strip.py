@@ -51,7 +51,7 @@ def plot_strip(
         axes.set_xlabel(text, fontsize=sized(9), color=INK)
     scale_bar(panels[0], box, album.size, " m" if album.subjects[0].units.si else "")
     if album.tint:
-        album.tint.bar(list(panels[:count]))
+        album.tint.bar(list(panels[:count]), below=rows == 1)
     if style.titles:
         note = "; light: by symmetry" if album.mirrored and not album.tint else ""
         figure.supxlabel(f"one scale, one view{note}", fontsize=sized(8.5), color=FAINT)

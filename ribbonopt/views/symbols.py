@@ -46,10 +46,13 @@ def _readable(text: str) -> bool:
     from matplotlib.font_manager import FontProperties
     from matplotlib.mathtext import MathTextParser
 
+    from .page import quiet
+
     if not is_math_text(text):
         return False
     try:
-        found = MathTextParser("path").parse(text, 72, FontProperties(size=1))
+        with quiet():
+            found = MathTextParser("path").parse(text, 72, FontProperties(size=1))
     except (ValueError, RecursionError):
         return False
     return 0 < float(found[0]) < WIDEST and float(found[1]) < WIDEST

@@ -64,8 +64,8 @@ class Tint:
         place = (middle - self.low) / (self.high - self.low) * (TINTS - 1)
         return np.asarray(self.table[np.clip(np.rint(place), 0, TINTS - 1).astype(int)])
 
-    def bar(self, axes: Sequence[Axes]) -> None:
-        """Draw the bar of colours beside axes."""
+    def bar(self, axes: Sequence[Axes], below: bool = False) -> None:
+        """Draw the bar of colours beside axes, or below them."""
         from matplotlib.cm import ScalarMappable
         from matplotlib.colors import ListedColormap, Normalize
         from matplotlib.ticker import MaxNLocator
@@ -76,6 +76,7 @@ class Tint:
         bar = axes[0].figure.colorbar(
             shades,
             ax=list(axes),
+            location="bottom" if below else "right",
             shrink=0.7,
             aspect=25,
             pad=0.02,

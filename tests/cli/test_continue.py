@@ -219,7 +219,7 @@ def test_what_is_drawn(
     monkeypatch.setattr("ribbonopt.views.branch.save_branch_figures", note)
     scene = written(tmp_path, COLUMN + SHORT)
     assert run("continue", scene, "--out", "o", "--quiet", "--plot", *asked).status == 0
-    ((figure, ribbons, _),) = calls
+    ((figure, ribbons, *_),) = calls
     rows = points(tmp_path / "o")
     assert list(figure.pairs) == drawn
     assert (figure.rows, figure.title, figure.si) == (rows, "column", False)
@@ -246,7 +246,7 @@ def test_a_jump_that_is_noted_is_drawn_as_one(
         lines[number]["row"]["note"] = text
     data = "".join(json.dumps(line) + "\n" for line in lines).encode()
     assert run("plot", reference.cut(tmp_path / "o", data)).status == 0
-    ((figure, _, _),) = calls
+    ((figure, *_),) = calls
     assert list(figure.jumps) == [2, 5]
 
 

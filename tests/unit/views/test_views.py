@@ -227,7 +227,7 @@ def test_the_ribbon_says_what_it_shows():
 @pytest.mark.parametrize("name", SCENES)
 def test_pictures_are_written(name, tmp_path):
     paths = save_figures(solved(name), tmp_path)
-    assert {p.name for p in paths} == set(PICTURES)
+    assert {p.name for p in paths} == {name for name in PICTURES if name.endswith(".png")}
     for path in paths:
         pixels = imread(path)
         assert min(pixels.shape[:2]) > 300
