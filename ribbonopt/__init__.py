@@ -13,6 +13,7 @@ from typing import TYPE_CHECKING, Any
 from ribbonopt import version
 
 if TYPE_CHECKING:
+    from .exports import export
     from .output.results import load_solution, save_solution
     from .output.summary import summarize
     from .pipeline.prepared import prepare, solve
@@ -42,6 +43,7 @@ __all__ = [
     "buckling_loads",
     "compare",
     "dump_scene",
+    "export",
     "json_schema",
     "load",
     "load_batch",
@@ -70,6 +72,7 @@ _HOMES = {
     "buckling_loads": "studies.buckling.buckling",
     "compare": "studies.comparison.compare",
     "dump_scene": "scene",
+    "export": "exports",
     "json_schema": "scene",
     "load": "studies.loading",
     "load_batch": "studies.batch.files",

@@ -10,15 +10,11 @@ from __future__ import annotations
 from importlib import import_module
 from typing import TYPE_CHECKING, Any
 
-from ribbonopt.errors import ViewError
-
 if TYPE_CHECKING:
-    from collections.abc import Callable
+    from collections.abc import Callable, Mapping, Sequence
 
     from matplotlib.figure import Figure
     from pandas import DataFrame
-
-    from ribbonopt.plain import Rows
 
 
 def door(room: str, name: str) -> Callable[..., Any]:
@@ -33,22 +29,38 @@ def told_in_short(solution: object) -> str:
     return words
 
 
-def embedded(thing: object) -> str | None:
-    """Return the viewer of a solution, a branch or a batch as HTML, for a notebook.
-
-    None where there is nothing to be seen, so that a notebook shows words.
-    """
-    try:
-        page: str = door("viewer", "embedded")(thing)
-    except ViewError:
-        return None
-    return page
-
-
 def solution_drawn(solution: object, kind: str, style: object | None) -> Figure:
     """Return a figure of a solution; without a style as the command line draws it."""
     more = () if style is None else (style,)
     figure: Figure = door("views", "plot_solution")(solution, kind, *more)
+    return figure
+
+
+def branch_drawn(
+    rows: Sequence[Mapping[str, Any]],
+    pair: tuple[str, str],
+    log: Sequence[str],
+    title: str,
+    labels: Mapping[str, str],
+    si: bool,
+    style: object | None,
+) -> Figure:
+    """Return a diagram of two columns of a branch; `log` are those on logarithmic axes."""
+    draw, style = door("views", "plot_branch"), style or door("views", "Style")()
+    figure: Figure = draw(rows, *pair, log=log, title=title, labels=labels, si=si, style=style)
+    return figure
+
+
+def batch_drawn(
+    rows: Sequence[Mapping[str, Any]],
+    pair: tuple[str, str],
+    inputs: Sequence[str],
+    labels: Mapping[str, str],
+    style: object | None,
+) -> Figure:
+    """Return a figure of two columns of a batch."""
+    draw, style = door("views", "plot_batch"), style or door("views", "Style")()
+    figure: Figure = draw(rows, *pair, inputs=inputs, labels=labels, style=style)
     return figure
 
 
@@ -58,7 +70,7 @@ def frame_along(solution: object, s: object | None) -> DataFrame:
     return table
 
 
-def frame_of(rows: Rows, names: list[str]) -> DataFrame:
+def frame_of(rows: Sequence[Mapping[str, Any]], names: list[str]) -> DataFrame:
     """Return a table of rows with these columns."""
     table: DataFrame = door("output.frames", "frame_of")(rows, names)
     return table

@@ -19,6 +19,7 @@ _FIGURES = ("strains", "plane", "ribbon", "branch", "ribbons", "outcomes", "scat
 #: what our own folders hold: a folder of results so named would be taken for a part of a result
 RESERVED_NAMES = frozenset(
     (
+        "exports",
         *("equilibria", "solutions", "scene.yaml", "summary.json", "solution.npz", "exports.json"),
         *("strains.png", "plane.png", "ribbon.png", "branch.png", "ribbons.png", "report.html"),
         *(f"{name}.{f}" for name in _FIGURES for f in ("svg", "pdf")),
@@ -28,7 +29,7 @@ RESERVED_NAMES = frozenset(
         *("benchmark.csv", "benchmark.json", "benchmark.png"),
         *("laws.csv", "laws.json", "laws.png", "special.csv", "special.png"),
         *("verification.csv", "verification.json", "verification.md"),
-        *("stress.csv", "stress.json", "stress.png"),
+        *("stress.csv", "stress.json", "stress.png", "view.html"),
     )
 )
 _EXECUTED = frozenset("=+-@")

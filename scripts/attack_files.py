@@ -197,7 +197,7 @@ def _branch(folder: Path, originals: Originals) -> None:
 def _batch(folder: Path, originals: Originals) -> None:
     from ribbonopt.studies.batch.files import BatchFolder, load_batch
     from ribbonopt.studies.batch.sweep import load_study
-    from ribbonopt.views.report import write_report
+    from ribbonopt.viewer.report import write_report
 
     rows = _lines(folder / "rows.jsonl")
     record, loaded = load_batch(folder)

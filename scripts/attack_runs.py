@@ -123,7 +123,7 @@ def warm() -> None:
     import ribbonopt.pipeline.check
     import ribbonopt.pipeline.prepared
     import ribbonopt.studies.batch.files
-    import ribbonopt.views.report  # noqa: F401
+    import ribbonopt.viewer.report  # noqa: F401
 
 
 def hidden(folder: Path) -> list[str]:

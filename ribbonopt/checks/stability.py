@@ -60,17 +60,23 @@ class SecondVariation:
     @property
     def verdict(self) -> str:
         """What it says, in words."""
-        count = f"{self.negative} negative direction{'s' if self.negative > 1 else ''}"
-        found = f"unstable: {count}" if self.negative else "stable"
-        found += " in its plane" if self.planar else ""
+        where = " in its plane" if self.planar else ""
+        found = stability_in_words(self.negative, where)
         if self.in_plane is not None:
             found = (
                 f"{found}, {self.in_plane} of them in its plane"
                 if self.in_plane
-                else f"stable in its plane, {found} in space"
+                else f"stable in its plane, {stability_in_words(self.negative, ' in space')}"
             )
         found += " among disturbances with its symmetry" if self.symmetric else ""
         return f"{found}; neutral: {SPIN}" if self.spins else found
+
+
+def stability_in_words(negative: int, where: str = "") -> str:
+    """Say in users' words what a count of negative directions means, such as "in its plane"."""
+    if not negative:
+        return f"stable{where}"
+    return f"unstable{where}, {negative} direction{'s' if negative > 1 else ''}"
 
 
 def negative_directions(solution: Solution) -> int | None:

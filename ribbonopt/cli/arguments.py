@@ -28,6 +28,11 @@ VERBS = {
     "verify": ("compute numbers with sources again, and say which are confirmed", options.verify),
     "schema": ("print the JSON schema of scenes or studies, for editors", options.schema),
     "plot": ("draw the pictures of a saved result", options_shown.plot),
+    "export": ("write a saved result for ParaView, Blender, pandas, ...", options_shown.export),
+    "view": (
+        "write a page on which a saved result, branch or batch is turned and looked at",
+        options_shown.view,
+    ),
 }
 
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import gc
+import time
 from collections import Counter
 from collections.abc import Mapping, Sequence
 from contextlib import closing
@@ -12,9 +13,16 @@ from typing import TYPE_CHECKING, Any
 
 from ribbonopt.errors import SceneError
 from ribbonopt.scene.limits import JOBS
-from ribbonopt.text import one_line
 
-from .common import INTERRUPTED, NOT_CONVERGED, default_folder, drawn, listing, pairs_of
+from .batch_report import report, took
+from .common import (
+    INTERRUPTED,
+    NOT_CONVERGED,
+    default_folder,
+    drawn,
+    pairs_of,
+    refuse_idle_verbose,
+)
 from .progress import ProgressLine
 from .terminal import complain, say, say_json
 from .values import count
@@ -33,7 +41,8 @@ MANY = 5_000  # ribbons, beyond which it takes a while until the first one is be
 
 def batch(options: argparse.Namespace) -> int:
     """Solve all ribbons of a study."""
-    pairs = pairs_of(options.plot)
+    refuse_idle_verbose(options)
+    pairs, begun = pairs_of(options.plot), time.perf_counter()
     from ribbonopt.studies.batch.batch import run_batch
     from ribbonopt.studies.batch.files import BatchFolder
     from ribbonopt.studies.batch.sweep import load_study
@@ -83,7 +92,7 @@ def batch(options: argparse.Namespace) -> int:
             "--resume goes on from there"
         )
         return INTERRUPTED
-    return _tell(options, folder) or status
+    return _tell(options, folder, time.perf_counter() - begun) or status
 
 
 def draw(result: Path, out: Path, pairs: list[tuple[str, str]], asked: Wanted) -> list[Path]:
@@ -129,7 +138,7 @@ def _draw(
 ) -> list[Path]:
     """Write the report, and the figures where they are wanted, and return where."""
     from ribbonopt.studies.batch.special import with_columns
-    from ribbonopt.views.report import write_report
+    from ribbonopt.viewer.report import write_report
 
     rows = [with_columns(row) for row in rows]
     report = write_report(rows, inputs, out / "report.html", name=name, count=count)
@@ -141,7 +150,7 @@ def _draw(
     return [report, *save_batch_figures(rows, inputs, out, pairs, labels, style or PLAIN)]
 
 
-def _tell(options: argparse.Namespace, folder: BatchFolder) -> int:
+def _tell(options: argparse.Namespace, folder: BatchFolder, seconds: float) -> int:
     failed = [row for row in folder.rows if not row["verified"]]
     statuses = Counter(row["status"] for row in folder.rows)
     if options.json:
@@ -156,14 +165,9 @@ def _tell(options: argparse.Namespace, folder: BatchFolder) -> int:
             }
         )
     elif not options.quiet:
-        study = ", ".join(f"{number} {status}" for status, number in statuses.most_common())
-        seconds = sum(row.get("seconds", 0.0) for row in folder.rows)
-        say(
-            f"{folder.study.name}: {len(folder.rows)} ribbons: {study}\n"
-            f"{_noted(folder)}"
-            f"  {seconds:.1f} s of solving\n"
-            f"  written: {one_line(listing(folder.folder))}"
-        )
+        say(report(folder))
+        if options.verbose:
+            say(took(folder, seconds))
     if not failed:
         return 0
     first = min(failed, key=lambda row: int(row["number"]))
@@ -172,16 +176,6 @@ def _tell(options: argparse.Namespace, folder: BatchFolder) -> int:
         f"first is number {first['number']}: {first['status']}: {first['message']}"
     )
     return NOT_CONVERGED
-
-
-def _noted(folder: BatchFolder) -> str:
-    """Return a line on the ribbons that were not solved from where they were begun, if any."""
-    noted = [row for row in folder.rows if row.get("note")]
-    if not noted:
-        return ""
-    first = min(noted, key=lambda row: int(row["number"]))
-    count = f"{len(noted)} ribbon{'s' * (len(noted) > 1)}"
-    return f"  note: {count} fell back (column note); number {first['number']}: {first['note']}\n"
 
 
 def _progress(folder: BatchFolder, rate: float) -> str:

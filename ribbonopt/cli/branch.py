@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import gc
+import time
 from collections.abc import Generator
 from contextlib import closing
 from typing import TYPE_CHECKING
@@ -11,7 +12,7 @@ from typing import TYPE_CHECKING
 from ribbonopt.errors import SceneError
 
 from .branch_drawing import draw_branch
-from .branch_report import report
+from .branch_report import report, took
 from .common import (
     INTERRUPTED,
     NOT_CONVERGED,
@@ -19,6 +20,7 @@ from .common import (
     drawn,
     load,
     pairs_of,
+    refuse_idle_verbose,
 )
 from .progress import ProgressLine
 from .terminal import complain, say, say_json
@@ -39,7 +41,8 @@ BAR = 12
 
 def follow(options: argparse.Namespace) -> int:
     """Follow the branches of a scene's `continuation`."""
-    pairs = pairs_of(options.plot)
+    refuse_idle_verbose(options)
+    pairs, begun = pairs_of(options.plot), time.perf_counter()
     scene, _ = load(options)
     from ribbonopt.studies.continuation.continuation import Continuation
     from ribbonopt.studies.continuation.files import BranchFolder
@@ -65,7 +68,7 @@ def follow(options: argparse.Namespace) -> int:
             "--resume goes on from there"
         )
         return INTERRUPTED
-    return _tell(options, folder, continuation) or status
+    return _tell(options, folder, continuation, time.perf_counter() - begun) or status
 
 
 def draw(result: Path, out: Path, pairs: list[tuple[str, str]], asked: Wanted) -> list[Path]:
@@ -87,7 +90,9 @@ def _columns(pairs: list[tuple[str, str]], recorder: Recorder) -> list[tuple[str
     return [(recorder.column(x), recorder.column(y)) for x, y in pairs]
 
 
-def _tell(options: argparse.Namespace, folder: BranchFolder, continuation: Continuation) -> int:
+def _tell(
+    options: argparse.Namespace, folder: BranchFolder, continuation: Continuation, seconds: float
+) -> int:
     ending = continuation.ending
     if options.json:
         say_json(
@@ -107,6 +112,8 @@ def _tell(options: argparse.Namespace, folder: BranchFolder, continuation: Conti
         )
     elif not options.quiet:
         say(report(folder, continuation))
+        if options.verbose:
+            say(took(folder, continuation, seconds))
     if ending.reached:
         return 0
     complain(

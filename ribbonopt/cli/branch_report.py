@@ -1,11 +1,16 @@
-"""What `continue` says of a branch: stages, special points, stability, notes."""
+"""What `continue` says of a branch: stages, special points with bars, stability, notes, files.
+
+What it took is told apart (`took`), for `--verbose`.
+"""
 
 from __future__ import annotations
 
 from collections.abc import Iterator
-from itertools import groupby, pairwise
+from itertools import groupby
 from typing import TYPE_CHECKING, Any
 
+from ribbonopt.checks.stability import stability_in_words
+from ribbonopt.output.digits import SMALL, digits, upwards
 from ribbonopt.studies.continuation.recorded import value_of
 from ribbonopt.text import one_line
 
@@ -13,6 +18,7 @@ from .common import listing
 
 if TYPE_CHECKING:
     from ribbonopt.studies.continuation.continuation import Continuation
+    from ribbonopt.studies.continuation.curve import Curve
     from ribbonopt.studies.continuation.files import BranchFolder
 
 Row = dict[str, Any]
@@ -20,25 +26,57 @@ Row = dict[str, Any]
 
 def report(folder: BranchFolder, continuation: Continuation) -> str:
     """Return what is said of a branch in its folder."""
-    lines = [f"{folder.scene.name}: {len(folder.rows)} points"]
+    count = len(folder.rows)
+    lines = [f"{folder.scene.name}: {count} points, all verified"]
+    if not count:
+        lines = [f"{folder.scene.name}: no points"]
     for (stage, branch), ending in continuation.endings.items():
         rows = [r for r in folder.rows if (r["stage"], r["branch"]) == (stage, branch)]
-        where = f"stage {stage + 1}" + (f", branch {branch}" if branch else "")
-        lines.append(f"  {where}: {_extent(rows)}: {ending.reason}")
+        lines.append(f"  {_which(stage, branch)}: {_extent(rows)}: {ending.reason}")
         lines += _notes(rows)
+        curve = continuation.curve(stage, continuation.scene)
         for before, row in zip([None, *rows], rows, strict=False):
             if row["kind"] != "point":
                 more = _more(row, before, continuation.stages[stage].switch)
-                lines.append(f"    {row['kind']} at {_place(row, '.10g')}{more}")
-        changes = list(_changes(rows))
-        lines += [f"    {change}" for change in changes]
-        if changes and continuation.prepared.scene.boundary.repeats:
+                lines.append(f"    {row['kind']} at {_place(row, curve)}{more}")
+        told = list(_stability(rows))
+        lines += [f"    {each}" for each in told]
+        if told and continuation.prepared.scene.boundary.repeats:
             lines.append("    (among disturbances with the symmetry of which a piece is solved)")
     return "\n".join([*lines, f"  written: {one_line(listing(folder.folder))}"])
 
 
-def _place(row: Row, digits: str) -> str:
-    return f"{row['parameter']} = {value_of(row):{digits}}"
+def took(folder: BranchFolder, continuation: Continuation, seconds: float) -> str:
+    """Return what a branch took, stage by stage, what was skipped, and the seconds of this run."""
+    lines = ["  what it took:"]
+    for stage, branch in continuation.endings:
+        rows = [r for r in folder.rows if (r["stage"], r["branch"]) == (stage, branch)]
+        if rows:
+            iterations = sum(row["iterations"] for row in rows)
+            meshes = [row["intervals"] for row in rows]
+            lines.append(
+                f"    {_which(stage, branch)}: {iterations} iterations of the solves that stayed, "
+                f"on {min(meshes)} to {max(meshes)} intervals"
+            )
+    prepared = continuation.prepared
+    lines.append(f"    equations and functions, built before the first: {prepared.seconds:.2f} s")
+    lines.append(f"    this run in all: {seconds:.1f} s")
+    lines.append("  skipped, and why:")
+    return "\n".join(lines + [f"    {reason}" for reason in continuation.skipped])
+
+
+def _which(stage: int, branch: int) -> str:
+    return f"stage {stage + 1}" + (f", branch {branch}" if branch else "")
+
+
+def _place(row: Row, curve: Curve) -> str:
+    """Return where a special point is, with the bar of that where it is known."""
+    value, relative = value_of(row), row["error"]
+    if relative is None:
+        return f"{row['parameter']} = {value:.10g} +- not known"
+    bar = relative * curve.measure(value)
+    number = digits(value, bar, 0 < abs(value) < SMALL)
+    return f"{row['parameter']} = {number} +- {upwards(bar)}"
 
 
 def _more(row: Row, before: Row | None, switch: bool | int) -> str:
@@ -58,7 +96,8 @@ def _extent(rows: list[Row]) -> str:
     if not rows:
         return "no points"
     errors = [row["error"] for row in rows if row["error"] is not None]
-    return f"{len(rows)} points, {_place(rows[0], '.6g')} to {value_of(rows[-1]):.6g}, " + (
+    where = f"{rows[0]['parameter']} = {value_of(rows[0]):.6g} to {value_of(rows[-1]):.6g}"
+    return f"{len(rows)} points, {where}, " + (
         f"relative error at most {max(errors):.0e}" if errors else "errors not known"
     )
 
@@ -73,15 +112,14 @@ def _notes(rows: list[Row]) -> Iterator[str]:
             yield f"    note at {same[0]['parameter']} = {' to '.join(values)}: {note}"
 
 
-def _changes(rows: list[Row]) -> Iterator[str]:
-    """Say where stability changes, and how it is where it is known and does not."""
+def _stability(rows: list[Row]) -> Iterator[str]:
+    """Say where a branch is stable and where not, of the points where that is known."""
     known = [row for row in rows if row["negative"] is not None]
-    for a, b in pairwise(known):
-        if a["negative"] != b["negative"]:
-            yield (
-                f"{a['negative']} negative directions at {value_of(a):.6g}, {b['negative']} at "
-                f"{value_of(b):.6g}"
-            )
-    if known and len({row["negative"] for row in known}) == 1:
-        count = known[0]["negative"]
-        yield "stable" if count == 0 else f"unstable: {count} negative directions"
+    runs = [list(run) for _, run in groupby(known, key=lambda row: row["negative"])]
+    for run in runs:
+        words = stability_in_words(run[0]["negative"])
+        if len(runs) > 1:
+            places = dict.fromkeys(f"{value_of(row):.6g}" for row in (run[0], run[-1]))
+            comma = "," if run[0]["negative"] else ""
+            words += f"{comma} at {run[0]['parameter']} = {' to '.join(places)}"
+        yield words

@@ -24,6 +24,8 @@ MODULES = {
     "solve": "scene",
     "check": "scene",
     "plot": "plot",
+    "export": "export",
+    "view": "view",
     "schema": "scene",
     "compare": "comparison",
     "bench": "comparison",

@@ -34,6 +34,13 @@ def load(options: argparse.Namespace) -> tuple[Scene, float]:
     return scene, (reading - start) + (time.perf_counter() - read)
 
 
+def refuse_idle_verbose(options: argparse.Namespace) -> None:
+    """Refuse `--verbose` beside what prints nothing but its own."""
+    if options.verbose and (options.json or options.quiet):
+        other = "--json" if options.json else "--quiet"
+        raise SceneError(f"--verbose: found {other} as well, which prints nothing but its own")
+
+
 def default_folder(name: str, verb: str) -> str:
     """Return the folder of what a verb makes of a scene, where no other is asked for.
 

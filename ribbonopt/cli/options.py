@@ -14,11 +14,7 @@ def solve(verb: argparse.ArgumentParser) -> None:
     verb.add_argument(
         "--plot", action="store_true", help="draw pictures (into --out, or results/NAME)"
     )
-    verb.add_argument(
-        "--verbose",
-        action="store_true",
-        help="print what each step took, and what was skipped and why",
-    )
+    _verbose(verb, "print all numbers, what each step took, and what was skipped and why")
 
 
 def check(verb: argparse.ArgumentParser) -> None:
@@ -74,6 +70,7 @@ def follow(verb: argparse.ArgumentParser) -> None:
         "--out", metavar="DIR", help="folder of the branch (default: results/NAME-branch)"
     )
     verb.add_argument("--resume", action="store_true", help="go on with the branch in the folder")
+    _verbose(verb, "print also what each stage took, and what was skipped and why")
     columns(
         verb,
         "draw columns, such as law.epsilon:energy u2:energy, and ribbons along the branch",
@@ -98,6 +95,7 @@ def batch(verb: argparse.ArgumentParser) -> None:
     )
     verb.add_argument("--scheduler", metavar="ADDRESS", help="Dask scheduler to use instead")
     columns(verb, "draw columns against each other too, such as law.epsilon:energy")
+    _verbose(verb, "print also what it took: seconds, iterations, starts")
     verb.add_argument("--yes", action="store_true", help="solve more than 100,000 ribbons")
     verb.add_argument("--json", action="store_true", help="print exactly one JSON object")
     verb.add_argument("--quiet", action="store_true", help="print nothing unless it fails")
@@ -176,6 +174,10 @@ def _scene(verb: argparse.ArgumentParser) -> None:
     )
     verb.add_argument("--json", action="store_true", help="print exactly one JSON object")
     verb.add_argument("--quiet", action="store_true", help="print nothing unless it fails")
+
+
+def _verbose(verb: argparse.ArgumentParser, words: str) -> None:
+    verb.add_argument("--verbose", action="store_true", help=words)
 
 
 def _pairs(verb: argparse.ArgumentParser) -> None:

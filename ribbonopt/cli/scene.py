@@ -3,11 +3,20 @@
 from __future__ import annotations
 
 import argparse
+import time
 from typing import TYPE_CHECKING, Any
 
-from ribbonopt.errors import OutputError, SceneError
+from ribbonopt.errors import OutputError
 
-from .common import NOT_CONVERGED, default_folder, drawn, listing, load, say_left_out
+from .common import (
+    NOT_CONVERGED,
+    default_folder,
+    drawn,
+    listing,
+    load,
+    refuse_idle_verbose,
+    say_left_out,
+)
 from .plot import draw_solution
 from .terminal import complain, say, say_json, say_line
 
@@ -19,9 +28,7 @@ if TYPE_CHECKING:
 
 def solve(options: argparse.Namespace) -> int:
     """Solve a scene and report its numbers."""
-    if options.verbose and (options.json or options.quiet):
-        other = "--json" if options.json else "--quiet"
-        raise SceneError(f"--verbose: found {other} as well, which prints nothing but its own")
+    refuse_idle_verbose(options)
     scene, import_seconds = load(options)
     from ribbonopt.pipeline.prepared import solve
 
@@ -46,7 +53,6 @@ def solve(options: argparse.Namespace) -> int:
 def _tell(
     options: argparse.Namespace, solution: Solution, import_seconds: float, written: Path | None
 ) -> int:
-    from ribbonopt.output.report import report
     from ribbonopt.output.summary import summarize
 
     summary = summarize(solution)
@@ -54,11 +60,7 @@ def _tell(
     if options.json:
         say_json(summary)
     elif not options.quiet:
-        say(report(summary, steps=not options.verbose))
-        if options.verbose:
-            from ribbonopt.output.steps import steps_of
-
-            say(steps_of(summary, drawn=options.plot, written=written is not None))
+        _say_found(options, solution, summary, written)
         if written:
             say_line(f"  written: {listing(written)}")
     if solution.verified:
@@ -66,6 +68,38 @@ def _tell(
     kept = f"; kept in {written}" if written else ""
     complain(f"{solution.scene.name}: {solution.message}{kept}")
     return NOT_CONVERGED
+
+
+def _say_found(
+    options: argparse.Namespace,
+    solution: Solution,
+    summary: dict[str, Any],
+    written: Path | None,
+) -> None:
+    """Say what was found in short, or at length and how."""
+    begun = time.perf_counter()
+    verdict = _stability(solution)
+    judged = time.perf_counter() - begun
+    if not options.verbose:
+        from ribbonopt.output.brief import brief
+
+        say(brief(summary, verdict))
+        return
+    from ribbonopt.output.report import report
+    from ribbonopt.output.steps import steps_of
+
+    say(report(summary, steps=False, verdict=verdict))
+    say(steps_of(summary, drawn=options.plot, written=written is not None, judged=judged))
+
+
+def _stability(solution: Solution) -> str:
+    """Return what the second variation says, in words; "" where there is no equilibrium."""
+    if not solution.status.converged:
+        return ""
+    from ribbonopt.checks.stability import second_variation
+
+    found = second_variation(solution)
+    return f"not known: {found}" if isinstance(found, str) else found.verdict
 
 
 def check(options: argparse.Namespace) -> int:

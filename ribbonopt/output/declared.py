@@ -31,6 +31,9 @@ BATCH_PICTURES = (
     *(f"{name}.{f}" for name in ("outcomes", "scatter", "special") for f in FORMATS),
 )
 
+#: what `ribbonopt.viewer` writes beside any of them
+PAGE = "view.html"
+
 
 def declare(folder: Path, names: Iterable[str]) -> None:
     """Add names of files or folders, directly in a folder, to those that are ours there."""

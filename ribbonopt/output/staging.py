@@ -17,7 +17,7 @@ from typing import IO
 from ribbonopt.classes import dataclass
 from ribbonopt.errors import OutputError
 
-from .declared import PICTURES
+from .declared import PAGE, PICTURES
 from .disk import sync
 from .locks import refuse_held
 from .places import (
@@ -33,7 +33,7 @@ from .placing import beside, locked, place, put_right, recover
 WAIT = 1.0  # seconds for who writes the result of a failed solve to the same place
 
 #: files of a result that every version knows; others are declared by the folder itself
-OWN_FILES = frozenset(("scene.yaml", "summary.json", "solution.npz", "equilibria", *PICTURES))
+OWN_FILES = frozenset(("scene.yaml", "summary.json", "solution.npz", "equilibria", PAGE, *PICTURES))
 
 
 @dataclass(frozen=True, eq=False)

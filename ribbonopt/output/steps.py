@@ -11,11 +11,14 @@ UNSAID = {
 }
 
 
-def steps_of(summary: Mapping[str, Any], *, drawn: bool, written: bool) -> str:
+def steps_of(
+    summary: Mapping[str, Any], *, drawn: bool, written: bool, judged: float | None = None
+) -> str:
     """Return a table of the steps of a summary, one a line, and what was skipped.
 
     `drawn` and `written` say whether there are pictures and files. Steps on the way have their own
-    seconds; what no step has is verification, bars and all between them.
+    seconds; what no step has is verification, bars and all between them. `judged` are the seconds
+    that stability took once the answer was there, if that was asked.
     """
     timings, path = summary["timings"], summary["path"]
     build, total = timings.get("build", 0.0), timings["total"]
@@ -26,7 +29,9 @@ def steps_of(summary: Mapping[str, Any], *, drawn: bool, written: bool) -> str:
     rows.append(("equations and functions, built before the first step", None, build))
     rows += [(step["step"], step.get("iterations"), step["seconds"]) for step in path]
     rows.append(("verification, bars, functions built on the way, and all else", None, between))
-    rows.append(("in all", None, total + timings.get("import", 0.0)))
+    if judged is not None:
+        rows.append(("stability of the answer: second derivatives, elimination", None, judged))
+    rows.append(("in all", None, total + timings.get("import", 0.0) + (judged or 0.0)))
     width = max(len(name) for name, _, _ in rows)
     lines = [f"  {'steps':<{width}}  iterations         ms"]
     for name, count, seconds in rows:

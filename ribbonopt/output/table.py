@@ -3,9 +3,10 @@
 from __future__ import annotations
 
 import csv
+import io
 from collections.abc import Iterable, Sequence
 from pathlib import Path
-from typing import Any
+from typing import IO, Any
 
 from ribbonopt.plain import Row
 from ribbonopt.text import cell
@@ -25,10 +26,21 @@ def write_table(path: Path, names: Sequence[str], rows: Iterable[Row]) -> None:
         If it cannot be written.
     """
     with replacing(path, newline="") as file:
-        writer = csv.writer(file, lineterminator="\n")
-        writer.writerow(map(cell, names))
-        for row in rows:
-            writer.writerow([_cell(row.get(name)) for name in names])
+        _write(file, names, rows)
+
+
+def table_text(names: Sequence[str], rows: Iterable[Row]) -> str:
+    """Return what `write_table` writes."""
+    file = io.StringIO(newline="")
+    _write(file, names, rows)
+    return file.getvalue()
+
+
+def _write(file: IO[str], names: Sequence[str], rows: Iterable[Row]) -> None:
+    writer = csv.writer(file, lineterminator="\n")
+    writer.writerow(map(cell, names))
+    for row in rows:
+        writer.writerow([_cell(row.get(name)) for name in names])
 
 
 def _cell(value: Any) -> Any:

@@ -18,6 +18,7 @@ from .continuation import ContinuationStage
 from .ends import Boundary, Loop
 from .frames import LabVector, Triple
 from .guesses import Guess, Numbers3
+from .in_short import in_short
 from .laws import Law
 from .loads import Loads
 from .membrane import AnyMembrane
@@ -189,8 +190,4 @@ class Scene:
     symmetric: bool | Literal["d1", "d2", "-d1", "-d2"] = False
     labels: dict[str, str] = field(default_factory=dict)
 
-    def __repr__(self) -> str:
-        """Say what it is in one line; `dump_scene` says all of it."""
-        from .in_short import in_short  # scenes are read more often than shown
-
-        return in_short(self)
+    __repr__ = in_short  # `dump_scene` says all of it

@@ -7,7 +7,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from ribbonopt.doors import embedded, frame_along, solution_drawn, told_in_short
+from ribbonopt.doors import door, frame_along, solution_drawn, told_in_short
+from ribbonopt.errors import ViewError
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -48,4 +49,16 @@ class AtHome:
         return told_in_short(self)
 
     def _repr_html_(self) -> str | None:
-        return embedded(self)
+        return in_notebook(self)
+
+
+def in_notebook(thing: object) -> str | None:
+    """Return the viewer of a solution, a branch or a batch as HTML.
+
+    None where there is nothing to be seen, so that a notebook shows words.
+    """
+    try:
+        page: str = door("viewer", "embedded")(thing)
+    except ViewError:
+        return None
+    return page

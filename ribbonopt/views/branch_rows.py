@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Collection, Mapping
 from dataclasses import field
 from functools import cached_property
+from itertools import takewhile
 from typing import NamedTuple
 
 import numpy as np
@@ -172,6 +173,7 @@ class Plane:
             # So are one that begins there and one that leaves it: the two ways from a start.
             sides += [r[1:] for r in self.runs if r[0] is begin and r is not run]
             beyond = sides[0][:BEYOND] if begin is not None and len(sides) == 1 else []
+            beyond = list(takewhile(lambda row: row["number"] not in self.figure.jumps, beyond))
             rows = [] if begin is None else [begin]
             for row in run:
                 if row["number"] in self.figure.jumps:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import math
 import re
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from ribbonopt.classes import dataclass
 from ribbonopt.plain import Row, Rows
@@ -38,8 +38,11 @@ def failures_of(rows: Rows) -> list[Failure]:
     return sorted(found, key=lambda failure: -len(failure.rows))
 
 
-def failures_html(rows: Rows, inputs: Sequence[str], colours: dict[str, str]) -> str:
-    """Return a section of the report: a paragraph for each group, and where among the inputs."""
+def failures_html(rows: Rows, inputs: Sequence[str], colours: Mapping[str, str]) -> str:
+    """Return a section of the report: a paragraph for each group, and where among the inputs.
+
+    `colours` by status, as variables of the style sheet.
+    """
     failures = failures_of(rows)
     if not failures:
         words = "Nothing: all verified." if rows else "No ribbon has been solved."
@@ -55,7 +58,7 @@ def failures_html(rows: Rows, inputs: Sequence[str], colours: dict[str, str]) ->
             for key in inputs
         )
         parts.append(
-            f'<section class="why" style="border-color:{colours[failure.status]}">'
+            f'<section class="why" style="border-color:var({colours[failure.status]})">'
             f"<h3>{len(failure.rows)} {marked_up(failure.status)}</h3>"
             f"<p>{marked_up(failure.message or 'no message')}</p>"
             f'<p class="faint">ribbon{"s" * (len(failure.rows) > 1)} {named}</p>'

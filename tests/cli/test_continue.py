@@ -59,11 +59,12 @@ def test_report_says_what_was_found(run: Run, tmp_path: Path) -> None:
     assert names(tmp_path) == ["o", "scene_.yaml"]
     rows = points(tmp_path / "o")
     for words in (
-        f"column: {len(rows)} points\n",
+        f"column: {len(rows)} points, all verified\n",
         "  stage 1: 4 points, parameters.P = 36 to 40.5, relative error at most ",
         "reached parameters.P = 40.5",
         "    branch point at parameters.P = 39.478417",
-        "    0 negative directions at ",
+        "    stable at parameters.P = 36 to ",
+        "    unstable, 1 direction, at parameters.P = ",
         "  stage 1, branch 1: ",
         "  stage 1, branch 2: ",
         "    stable\n",
@@ -72,6 +73,13 @@ def test_report_says_what_was_found(run: Run, tmp_path: Path) -> None:
         "  written: o: branch.csv, branch.jsonl, scene.yaml\n",
     ):
         assert words in out
+    (told,) = re.findall(r"    branch point at parameters\.P = (\S+) \+- ([^:\s]+)", out)
+    value, bar = map(float, told)
+    # In the rows it is relative to the value; what is written is no smaller, and has one digit.
+    (row,) = [row for row in rows if row["kind"] == "branch point"]
+    assert 0.999 <= bar / (row["error"] * value_of(row)) <= 2
+    assert abs(value - 4 * math.pi**2) <= bar + 0.5 * 10.0 ** -len(told[0].partition(".")[2])
+    assert "iterations" not in out and "skipped" not in out
 
 
 def test_table_has_the_rows_of_the_branch(whole: Callable[[str], Whole]) -> None:
@@ -363,4 +371,6 @@ continuation: {parameter: parameters.P, from: 5, to: 8, largest: 1}
     assert status == 0
     assert "errors not known" in out
     assert out.count("m2 = m3 = 0 along the ribbon") == 1
-    assert "buckling point at parameters.P = 6.729347255 (`switch: true` follows" in out
+    assert (
+        "buckling point at parameters.P = 6.729347255 +- not known (`switch: true` follows" in out
+    )

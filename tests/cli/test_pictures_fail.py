@@ -88,7 +88,7 @@ def test_batch(run: Run, study: Path, fails: None, monkeypatch: pytest.MonkeyPat
     def fail(*_: Any) -> str:
         raise RecursionError("on purpose")
 
-    monkeypatch.setattr("ribbonopt.views.report._page", fail)
+    monkeypatch.setattr("ribbonopt.viewer.report._page", fail)
     status, _, err = run("batch", study, "--out", "again", "--jobs", "1")
     assert (status, "pictures: cannot be drawn (RecursionError: on purpose)" in err) == (3, True)
     assert sorted(os.listdir("again")) == rows[1:]

@@ -81,7 +81,7 @@ def test_stability_of_a_half_is_told_as_that_of_symmetric_disturbances() -> None
     assert not isinstance(half, str) and not isinstance(whole, str)
     assert (half.negative, whole.negative) == (0, 1)
     assert half.verdict == "stable among disturbances with its symmetry"
-    assert whole.verdict == "unstable: 1 negative direction"
+    assert whole.verdict == "unstable, 1 direction"
 
 
 def test_the_width_along_the_axis_bends_a_strip_to_an_s() -> None:

@@ -7,6 +7,7 @@ from pathlib import Path
 import pytest
 from hostile import ALL, FORMULAS, MARKUP, NAMES_KEPT, NAMES_REFUSED, acting, texts
 
+from ribbonopt.cli.export import FOLDER
 from ribbonopt.output.declared import BATCH_PICTURES, BRANCH_PICTURES, MANIFEST
 from ribbonopt.output.staging import OWN_FILES
 from ribbonopt.scene.text.yamltext import read
@@ -89,7 +90,7 @@ def test_what_our_folders_hold_is_reserved() -> None:
     ours = {*OWN_FILES, MANIFEST, *BATCH_PICTURES, *BRANCH_PICTURES, "solutions"}
     ours |= {"rows.jsonl", "table.csv", "study.json", "branch.jsonl", "branch.csv"}
     ours |= {*files_of("comparison"), *files_of("benchmark"), "special.csv"}
-    ours |= {"laws.csv", "laws.json", "laws.png", *VERIFIED, *STRESSED}
+    ours |= {FOLDER, "laws.csv", "laws.json", "laws.png", *VERIFIED, *STRESSED}
     assert ours == RESERVED_NAMES
     assert all(name_fault(name.upper()) for name in ours)
 

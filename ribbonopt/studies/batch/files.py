@@ -16,7 +16,7 @@ from typing import Any
 
 from ribbonopt.errors import OutputError
 from ribbonopt.output.claims import claimed, put_all_right
-from ribbonopt.output.declared import BATCH_PICTURES
+from ribbonopt.output.declared import BATCH_PICTURES, PAGE
 from ribbonopt.output.disk import Appended
 from ribbonopt.output.places import unwritable
 from ribbonopt.output.staging import replacing
@@ -50,7 +50,7 @@ class BatchFolder:
         self.rows, self._twice, self._finished = OneEach(), False, False
         try:
             with contextlib.ExitStack() as refused:
-                own = {ROWS, TABLE, SPECIAL, STUDY, SOLUTIONS, *BATCH_PICTURES}
+                own = {ROWS, TABLE, SPECIAL, STUDY, SOLUTIONS, PAGE, *BATCH_PICTURES}
                 self.folder = refused.enter_context(claimed(self.folder, own))
                 self._begin(resume)
                 self._claimed = refused.pop_all()  # the folder is ours until it is closed

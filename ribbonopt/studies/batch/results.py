@@ -9,15 +9,16 @@ A saved solution is read each time that it is asked for.
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Iterator, Sequence
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ribbonopt.doors import door, embedded, frame_of
+from ribbonopt.doors import batch_drawn, frame_of
 from ribbonopt.errors import OutputError
 from ribbonopt.output.results import load_solution
 from ribbonopt.plain import SPECIALS, Row
 from ribbonopt.reading import is_file
+from ribbonopt.solution.at_home import in_notebook
 from ribbonopt.solution.solution import Solution
 from ribbonopt.studies.columns import column_of, names_of
 from ribbonopt.studies.continuation.branch import Branch
@@ -53,6 +54,8 @@ class Batch:
         as a list under `specials`.
     folder : Path or None
         Where solutions are saved.
+    labels : mapping
+        What columns are called beside the axes of figures.
     """
 
     def __init__(
@@ -62,8 +65,10 @@ class Batch:
         inputs: Sequence[str],
         rows: Iterable[Row],
         folder: Path | None = None,
+        labels: Mapping[str, str] | None = None,
     ) -> None:
         """Take rows in any order; of several of one ribbon the last verified one counts."""
+        self.labels: Mapping[str, str] = labels or {}
         self.name, self.count, self.inputs, self.folder = name, count, tuple(inputs), folder
         self.rows: list[Row] = sorted(OneEach(rows), key=lambda row: int(row["number"]))
 
@@ -71,7 +76,8 @@ class Batch:
     def load(cls, folder: str | Path) -> Batch:
         """Return the batch of a folder; OutputError if it holds none, or is damaged."""
         study, rows = load_batch(folder)
-        return cls(study["name"], study["ribbons"], study["inputs"], rows, Path(folder))
+        parts = study["name"], study["ribbons"], study["inputs"], rows, Path(folder)
+        return cls(*parts, labels=study.get("labels"))
 
     @classmethod
     def of(cls, study: Study, rows: Iterable[Row], folder: str | Path | None = None) -> Batch:
@@ -80,7 +86,7 @@ class Batch:
         `folder` is that which was given there, if any.
         """
         place = Path(folder) if folder else None
-        return cls(study.name, study.count, study.keys, rows, place)
+        return cls(study.name, study.count, study.keys, rows, place, study.called)
 
     @property
     def columns(self) -> list[str]:
@@ -129,8 +135,15 @@ class Batch:
         """Return the rows as a table, with the columns of `table.csv`; needs pandas."""
         return frame_of(self._told, self.columns)
 
-    def plot(self, x: str, y: str) -> Figure:
-        """Return a figure of two columns, of paths their last parts: "epsilon" and "energy".
+    def plot(self, x: str, y: str, style: object | None = None) -> Figure:
+        """Return a figure of two columns, such as "epsilon" and "energy".
+
+        Parameters
+        ----------
+        x, y
+            Columns; of a path its last part will do (`epsilon` for `law.epsilon`).
+        style
+            A `ribbonopt.views.Style`.
 
         Raises
         ------
@@ -139,8 +152,7 @@ class Batch:
         """
         names = self.columns
         pair = column_of(x, names), column_of(y, names)
-        figure: Figure = door("views.batch", "plot_scatter")(self._told, [pair], self.inputs)
-        return figure
+        return batch_drawn(self._told, pair, self.inputs, self.labels, style)
 
     def __repr__(self) -> str:
         """Say what it is in one line."""
@@ -153,7 +165,7 @@ class Batch:
         return f"<Batch {name}: {len(self)}{some} ribbons{told}; inputs {inputs}>"
 
     def _repr_html_(self) -> str | None:
-        return embedded(self)
+        return in_notebook(self)
 
     @property
     def _told(self) -> list[Row]:

@@ -15,11 +15,12 @@ from functools import cached_property
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, overload
 
-from ribbonopt.doors import door, embedded, frame_of
+from ribbonopt.doors import branch_drawn, frame_of
 from ribbonopt.plain import Row, finite
 from ribbonopt.scene import Scene
 from ribbonopt.scene.continuation import ContinuationStage
 from ribbonopt.scene.stages import ends_of, stages_of
+from ribbonopt.solution.at_home import in_notebook
 from ribbonopt.solution.solution import Solution
 from ribbonopt.studies.columns import column_of, names_of
 from ribbonopt.text import one_line, shortened
@@ -163,12 +164,11 @@ class Branch(Sequence[Solution]):
         SceneError
             If there is no such column, or are several.
         """
-        names = [*self.columns, VALUE]
+        names, scene = [*self.columns, VALUE], self.scene
+        pair = column_of(x, names), column_of(y, names)
         log = [stage.parameter for stage in self._stages if stage.scale == "log"]
-        figure: Figure = door("views.branch", "plot_branch")(
-            self.rows, column_of(x, names), column_of(y, names), log=log, title=self.scene.name
-        )
-        return figure
+        si = scene.ribbon is not None
+        return branch_drawn(self.rows, pair, log, scene.name, scene.labels, si, style)
 
     def __repr__(self) -> str:
         """Say what it is in one line."""
@@ -177,11 +177,11 @@ class Branch(Sequence[Solution]):
         kinds = Counter(row["kind"] for row in self.special)
         special = "".join(f", {count} {kind}{'s' * (count > 1)}" for kind, count in kinds.items())
         goal = "goal reached" if self.reached else "goal not reached"
-        moved = shortened(moved, 80)
-        return f"<Branch {name}: {len(self)} points along {moved}{special}; {goal}>"
+        points = f"{len(self)} point{'s' * (len(self) != 1)} along {shortened(moved, 80)}"
+        return f"<Branch {name}: {points}{special}; {goal}>"
 
     def _repr_html_(self) -> str | None:
-        return embedded(self)
+        return in_notebook(self)
 
     @property
     def _stages(self) -> tuple[ContinuationStage, ...]:

@@ -15,6 +15,7 @@ from dataclasses import replace
 from ribbonopt.errors import ModelError
 from ribbonopt.mechanics.ends.smallest import settled
 from ribbonopt.pipeline.prepared import Prepared, prepare
+from ribbonopt.pipeline.skipped import skipped
 from ribbonopt.problem.wellposed.reach import refuse_far_goals
 from ribbonopt.scene import Scene
 from ribbonopt.scene.continuation import ContinuationStage
@@ -97,6 +98,11 @@ class Continuation:
     def resume(self, history: History[Solution]) -> Iterator[Point[Solution]]:
         """Go on where a history ends, as if there had been no break."""
         return followed(len(self.stages), self._stage, self.register, history)
+
+    @property
+    def skipped(self) -> tuple[str, ...]:
+        """What its solves do not need and is therefore not made, each with its reason."""
+        return skipped(self.prepared.posed(), self.prepared.problem)
 
     @property
     def endings(self) -> dict[Key, Ending]:

@@ -146,6 +146,11 @@ class Curve:
             return float(np.log(10)) * error
         return error / max(abs(position), SOME * self.span)
 
+    def measure(self, value: float) -> float:
+        """Return what the relative error of a value of the parameter is relative to."""
+        log = self.stage.scale == "log"
+        return abs(value) if log else max(abs(value), SOME * self.span)
+
     def scene_at(self, position: float) -> Scene:
         """Return the scene with the parameter's value at a position."""
         return self.posed_at(position).given

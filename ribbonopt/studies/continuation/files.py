@@ -16,7 +16,7 @@ from typing import Any
 
 from ribbonopt.errors import OutputError
 from ribbonopt.output.claims import claimed
-from ribbonopt.output.declared import BRANCH_PICTURES
+from ribbonopt.output.declared import BRANCH_PICTURES, PAGE
 from ribbonopt.output.disk import Appended
 from ribbonopt.output.places import unwritable
 from ribbonopt.output.saved import SCENE as SAVED
@@ -54,7 +54,7 @@ class BranchFolder:
         self._finished = False
         try:
             with ExitStack() as refused:
-                own = {FILE, SCENE, TABLE, *BRANCH_PICTURES}
+                own = {FILE, SCENE, TABLE, PAGE, *BRANCH_PICTURES}
                 self.folder = refused.enter_context(claimed(self.folder, own))
                 self._begin(resume)
                 self._claimed = refused.pop_all()  # the folder is ours until it is closed

@@ -11,11 +11,11 @@ from hostile import ALL, MARKUP, NAMES_KEPT, acting, texts
 from matplotlib.font_manager import fontManager
 from matplotlib.text import Text
 
+from ribbonopt.viewer.report import write_report
 from ribbonopt.views import page
 from ribbonopt.views.batch import plot_outcomes, plot_scatter
 from ribbonopt.views.branch import plot_branch
 from ribbonopt.views.comparison import plot_study
-from ribbonopt.views.report import write_report
 from ribbonopt.views.style import blank, title
 
 LOOKS_WRONG = (

@@ -1,0 +1,64 @@
+"""What is looked at: a solution, a branch or a batch, at hand or in a folder, as a view."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+from ribbonopt.output.staging import recovered
+from ribbonopt.reading import is_file
+from ribbonopt.solution.solution import Solution
+from ribbonopt.studies.batch.results import Batch
+from ribbonopt.studies.continuation.branch import Branch
+from ribbonopt.studies.loading import load
+
+from .view import View
+
+
+def view_of(thing: Solution | Branch | Batch, half_width: float | None = None) -> View:
+    """Return the view of what was solved.
+
+    Parameters
+    ----------
+    thing
+        A solution, with the other equilibria that it knows; a branch; a batch.
+    half_width
+        To which all ribbons are drawn where their relative width is 1, in the units of the scene.
+        Default: their own, where the scene says it, else one with which generatrices keep apart.
+
+    Raises
+    ------
+    ModelError
+        If half_width is not positive.
+    ViewError
+        If there is nothing to be seen.
+    OutputError
+        If a point of a branch, or a saved solution, is damaged.
+    """
+    if isinstance(thing, Branch):
+        from .branches import view_of_branch
+
+        return view_of_branch(thing, half_width)
+    if isinstance(thing, Batch):
+        from .batches import view_of_batch
+
+        return view_of_batch(thing, half_width)
+    from .solutions import view_of_solution
+
+    return view_of_solution(thing, half_width)
+
+
+def saved_view(path: str | Path, half_width: float | None = None) -> View:
+    """Return the view of a folder, as `view_of`; of a result with all that its folder says.
+
+    Raises
+    ------
+    OutputError
+        If there is no result there, or its files are damaged or do not belong together.
+    """
+    thing = load(path)
+    if not isinstance(thing, Solution):
+        return view_of(thing, half_width)
+    from .solutions import view_of_result
+
+    folder = recovered(path)
+    return view_of_result(thing, folder.parent if is_file(folder) else folder, half_width)
