@@ -162,16 +162,16 @@ def test_ribbons_that_were_not_saved_are_told(here: Path, run: Run) -> None:
 
 
 def test_other_equilibria_are_exported_too(here: Path, run: Run) -> None:
-    for number in ("2", "10"):
-        target = here / "one" / "equilibria" / number
-        target.mkdir(parents=True)
-        for name in SAVED:
-            shutil.copy(here / "one" / name, target)
-    status, out, _ = run("export", "one", "--format", "obj")
+    for ribbon, number in ((1, "2"), (2, "10")):
+        shutil.copytree(here / "all/solutions" / str(ribbon), here / "one/equilibria" / number)
+    status, out, _ = run("export", "one", "--format", "json")
     assert status == 0
     files = [Path(line) for line in out.splitlines()]
-    assert [path.name for path in files] == ["half.obj", "half-2.obj", "half-3.obj"]
-    assert "equilibrium 3" in files[2].read_text()[:200]
+    assert [path.name for path in files] == ["half.json", "half-2.json", "half-3.json"]
+    told = [json.loads(path.read_text()) for path in files]
+    assert told[2]["about"]["ribbon"] == "half, equilibrium 3"
+    epsilon = [found["summary"]["law"]["epsilon"] for found in told[1:]]
+    assert epsilon == [0.1, 0.08]  # by their numbers
 
 
 def test_a_failed_solve_is_exported_and_told(here: Path, run: Run) -> None:

@@ -3,6 +3,7 @@
 import itertools
 import json
 import struct
+import xml.etree.ElementTree as ET
 from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
@@ -104,6 +105,44 @@ def test_meshes(solved: Solved, helix: Path, ending: str) -> None:
     assert found.is_winding_consistent and found.euler_number == 1
     # By r' = d3 and b' = 0 the surface of a helix is flat: 2 w L.
     assert found.area == pytest.approx(2 * HALF_WIDTH, rel=2e-3)
+
+
+def test_normals_of_stl_are_those_of_its_triangles(helix: Path) -> None:
+    kind = np.dtype([("normal", "<f4", 3), ("corners", "<f4", (3, 3)), ("attribute", "<u2")])
+    data = (helix / "helix.stl").read_bytes()
+    assert not data.startswith(b"solid") and len(data) == 84 + 50 * int.from_bytes(
+        data[80:84], "little"
+    )
+    found = np.frombuffer(data, kind, offset=84)
+    a, b, c = (found["corners"][:, i].astype(float) for i in range(3))
+    faces = np.cross(b - a, c - a)
+    faces /= np.linalg.norm(faces, axis=1, keepdims=True)
+    np.testing.assert_allclose(found["normal"], faces, atol=1e-3)
+
+
+def test_vtp_is_xml_and_its_data_are_marked(helix: Path) -> None:
+    root = ET.parse(helix / "helix.vtp").getroot()
+    (data,) = root.findall("AppendedData")
+    assert data.get("encoding") == "base64" and (data.text or "").lstrip().startswith("_")
+
+
+def test_ribbons_of_no_known_width_are_as_wide_as_each_other(
+    solved: Solved, tmp_path: Path
+) -> None:
+    several = solved("helix"), solved("moebius_half")  # of lengths 1 and 1/2
+    alone = [shape_of(solution, complete=False).half_width for solution in several]
+    assert alone[0] > 1.5 * alone[1]
+    paths = export(several, tmp_path, ["npz"], complete=False)
+    widths = [float(np.load(path)["half_width"].max()) for path in paths]
+    assert widths == pytest.approx([min(alone)] * 2)
+    # Colours mean the same on both.
+    scenes = [glb(path)[0] for path in export(several, tmp_path, ["glb"], complete=False)]
+    told = [scene["scenes"][0]["extras"]["color_largest"] for scene in scenes]
+    largest = [float(np.abs(np.load(path)["u2"]).max()) for path in paths]
+    assert told == [max(largest)] * 2 and largest[0] != largest[1]
+    # One that is known stays what it is.
+    paths = export((*several, solved("ribbon_si")), tmp_path, ["npz"], complete=False)
+    assert np.load(paths[2])["half_width"][0] == pytest.approx(0.005)
 
 
 def test_fields_of_ply(solved: Solved, helix: Path) -> None:
