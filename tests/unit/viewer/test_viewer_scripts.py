@@ -7,7 +7,7 @@ from pathlib import Path
 
 import numpy as np
 import pytest
-from browser import BROWSER, WANTED, Browser
+from chromium import BROWSER, WANTED, Browser
 
 from ribbonopt import load_scene, solve
 from ribbonopt.viewer.looking import view_of
