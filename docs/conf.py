@@ -26,7 +26,7 @@ extensions = [
     "linked",
     "generated",
 ]
-exclude_patterns = ["_build", "results", "examples", "notebooks", "generated/examples/*.ipynb"]
+exclude_patterns = ["_build", "results", "examples", "notebooks", "**/sg_execution_times.rst"]
 nitpicky = True
 # In signatures: what is not public, or of other packages. A public name that is not there fails.
 nitpick_ignore_regex = [("py:(class|data|obj)", r"(?!ribbonopt\.\w+$).*")]

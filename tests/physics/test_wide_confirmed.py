@@ -36,7 +36,9 @@ def test_it_is_confirmed(bent: Solution) -> None:
     assert confirm(bent) < TOLERANCE / 100
 
 
-@pytest.mark.parametrize("name", ["n", "m", "r", "own.eta", "own.p"])
+@pytest.mark.parametrize(
+    "name", ["own.p", "own.eta", *(pytest.param(name, marks=pytest.mark.sweep) for name in "nmr")]
+)
 def test_what_is_a_little_off_is_seen(bent: Solution, name: str) -> None:
     """By a millionth of its size, everywhere in one half."""
     scale = float(np.abs(bent.trajectory.outputs(np.linspace(0, 1, 33))[name]).max())
@@ -100,7 +102,10 @@ def test_a_clamp_with_an_inflection(edge: str, natural: Natural | None) -> None:
         assert found.energy == pytest.approx(CLAMPS[f"S, edges {edge}"].energy, rel=TOLERANCE)
 
 
-@pytest.mark.parametrize("width", ["0.01", "0.2/pi", "0.3"])
+@pytest.mark.parametrize(
+    "width",
+    ["0.2/pi", *(pytest.param(width, marks=pytest.mark.sweep) for width in ("0.01", "0.3"))],
+)
 def test_half_a_moebius_band(width: str) -> None:
     known = HALVES[width]
     boundary = Boundary(loop=Loop(1, "half"))

@@ -76,7 +76,8 @@ function makeApp() {
     let before = false; // what is printed is light
     const isDark = () => document.documentElement.classList.contains("dark");
     addEventListener("beforeprint", () => ((before = isDark()), dark(false)));
-    addEventListener("afterprint", () => dark(before));
+    // Firefox has the colours of paper until all who are told of the end have heard of it.
+    addEventListener("afterprint", () => setTimeout(() => dark(before)));
     get("theme").onclick = () => dark(!isDark());
     const known = FIELDS.filter(([name]) => !name || view.ranges[name]);
     for (const [name, text] of known) get("field").add(new Option(text, name));
@@ -90,9 +91,11 @@ function makeApp() {
       show(+get("slider").value);
     };
     get("play").onclick = () => play(!playing);
-    const strides = { ArrowLeft: -1, ArrowRight: 1, PageUp: -10, PageDown: 10, Home: -1e9, End: 1e9 };
-    document.addEventListener("keydown", ({ key, target }) => {
-      if (target !== document.body || !strides[key] || view.shapes.length < 2) return;
+    const strides = { ArrowLeft: -1, ArrowRight: 1 }; // Home and End scroll, or move the slider
+    document.addEventListener("keydown", ({ key, target, altKey, ctrlKey, metaKey }) => {
+      if (!strides[key] || view.shapes.length < 2) return;
+      if (target.closest("input, select, canvas, svg, .scroll")) return; // which have uses for them
+      if (altKey || ctrlKey || metaKey) return; // Alt and an arrow lead to another page
       play(false);
       show(Math.min(Math.max(shape + strides[key], 0), view.shapes.length - 1));
     });
@@ -123,7 +126,12 @@ function makeApp() {
         tell(i);
         return get("stage").scrollIntoView({ block: "nearest" });
       }
-      get("caption").textContent = `row ${row + 1}: its shape is not on this page`;
+      const { names, rows, verified } = view.table;
+      const [number, status] = ["number", "status"].map((name) => rows[row][names.indexOf(name)]);
+      const seen = view.shapes[shape] ? `; seen is ${view.shapes[shape].caption}` : "";
+      get("caption").textContent = `ribbon ${number}, ${status}: its shape is not on this page${seen}`;
+      get("caption").className = verified[row] ? "" : "bad";
+      get("facts").replaceChildren();
     });
   }
 

@@ -15,6 +15,7 @@ from typing import Any
 
 BROWSERS = ("chromium", "chromium-browser", "google-chrome")
 BROWSER = next(filter(None, map(shutil.which, BROWSERS)), "")
+WANTED = os.environ.get("RIBBONOPT_BROWSERS") == "on"  # a missing one is a failure
 OPTIONS = ("--headless=new", "--no-sandbox", "--hide-scrollbars", "--disable-dev-shm-usage")
 WEBGL = ("--use-angle=swiftshader", "--enable-unsafe-swiftshader")
 NO_WEBGL = ("--disable-gpu", "--disable-3d-apis")
