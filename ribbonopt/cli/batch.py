@@ -171,12 +171,12 @@ def _tell(options: argparse.Namespace, folder: BatchFolder, seconds: float) -> i
     first = min(failed, key=lambda row: int(row["number"]))
     complain(
         f"{folder.study.name}: {len(failed)} of {len(folder.rows)} ribbons failed; the "
-        f"first is number {first['number']}: {_why(first)}"
+        f"first is number {first['number']}: {why_failed(first)}"
     )
     return NOT_CONVERGED
 
 
-def _why(row: Mapping[str, Any]) -> str:
+def why_failed(row: Mapping[str, Any]) -> str:
     """Return how a ribbon failed, its status said once."""
     status, message = str(row["status"]), str(row["message"])
     return message if message.startswith(f"{status}: ") else f"{status}: {message}"

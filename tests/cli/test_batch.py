@@ -14,6 +14,7 @@ import pytest
 from batches import STUDY, without_times, written
 from half_studies import SCENE
 
+from ribbonopt.cli.batch import why_failed
 from ribbonopt.pipeline.prepared import solve
 from ribbonopt.scene import load_scene
 from ribbonopt.studies.batch.batch import run_batch
@@ -62,6 +63,14 @@ def test_rows_are_those_of_single_solves(study: Path) -> None:
         alone = solve(load_scene(scene, [f"law.epsilon={row['law.epsilon']}", "tolerance=1e-11"]))
         assert [row["n0y"], row["n0z"]] == pytest.approx(alone.n0[1:].tolist(), rel=1e-7)
         assert row["energy"] == pytest.approx(alone.energy, rel=1e-7)
+
+
+@pytest.mark.parametrize(
+    ("message", "said"),
+    [("unreachable: too far", "unreachable: too far"), ("too far", "unreachable: too far")],
+)
+def test_a_failure_is_said_once(message: str, said: str) -> None:
+    assert why_failed({"status": "unreachable", "message": message}) == said
 
 
 def test_a_bad_scene_spoils_its_own_row(run: Run, study: Path, tmp_path: Path) -> None:

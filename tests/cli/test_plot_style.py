@@ -116,7 +116,10 @@ def test_what_makes_no_sense_is_refused(
 
 
 def test_points_that_a_branch_has_not_are_refused(run: Run, column: Path, tmp_path: Path) -> None:
-    for text, said in (("99", "found 99, expected points of the branch, 0 to"), ("a", "found 'a'")):
+    for text, said in (
+        ("99", "found 99, expected points of the branch, 0 to"),
+        ("a", "found 'a'; expected a whole number from 0"),
+    ):
         status, _, err = run("plot", column, "--inset", text, "--out", "none")
         assert status == 2 and f"--inset: {said}" in err
     assert not (tmp_path / "none").exists()
