@@ -66,10 +66,15 @@ def place_in(path: Path, formats: Sequence[str]) -> tuple[Path, str | None, tupl
     Raises
     ------
     ModelError
-        If other formats are given for such a file.
+        If other formats are given for such a file, or none and it has another ending.
     """
     ending, formats = path.suffix[1:].lower(), tuple(dict.fromkeys(formats))
     if ending not in FORMATS:
+        if ending and not formats and not path.is_dir():
+            raise ModelError(
+                f"out: found the ending .{shortened(one_line(ending), 20)}, expected one of "
+                f"{', '.join(FORMATS)}; or a folder of that name, and its formats by `format`"
+            )
         return path, None, formats
     if formats not in ((), (ending,)):
         shown = shortened(one_line(", ".join(formats)), 60)

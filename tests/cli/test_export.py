@@ -229,6 +229,7 @@ BAD = {
     "a vector": (["one", "--color", "n"], "--color: found 'n'"),
     "many points": (["one", "--rows", "50000", "--across", "99"], "--rows: found 50,000 rows"),
     "two formats in a file": (["one", "--out", "a.stl", "--format", "stl,obj"], "the file a.stl"),
+    "unknown ending": (["one", "--out", "a.step"], "--out: found the ending .step"),
     "into a file": (["one", "--out", "one/summary.json/x"], "summary.json"),
     "no path": (["one", "--out", ""], "--out: found ''"),
 }
