@@ -74,10 +74,15 @@ def follow(options: argparse.Namespace) -> int:
 def draw(result: Path, out: Path, pairs: list[tuple[str, str]], asked: Wanted) -> list[Path]:
     """Draw the figures of a branch folder again and return where."""
     from ribbonopt.studies.continuation.continuation import Continuation
-    from ribbonopt.studies.continuation.files import load_branch
+    from ribbonopt.studies.continuation.files import load_branch, rows_of
     from ribbonopt.studies.continuation.recorded import Recorder
 
     scene, lines = load_branch(result)
+    if not rows_of(lines):
+        raise SceneError(
+            f"{result}: the branch has no points, so there is nothing to draw; "
+            "`ribbonopt continue --resume` goes on with it"
+        )
     pairs = _columns(pairs, Recorder(scene))  # before anything is built
     return draw_branch(Continuation(scene), lines, pairs, out, result, asked)
 

@@ -288,7 +288,10 @@ def test_other_equilibria_at_hand_are_exported_too(here: Path) -> None:
     assert [path.name for path in paths] == ["half.stl", "half-2.stl"]
 
 
-def test_an_empty_branch_has_nothing_to_export(here: Path, run: Run) -> None:
+@pytest.mark.parametrize("verb", ["export", "plot", "view"])
+def test_of_an_empty_branch_nothing_is_made(here: Path, run: Run, verb: str) -> None:
     (here / "branch" / "branch.jsonl").write_text("")
-    status, out, err = run("export", "branch")
-    assert (status, out) == (2, "") and "nothing to export" in err
+    before = sorted(here.rglob("*"))
+    status, out, err = run(verb, "branch")
+    assert (status, out) == (2, "") and "nothing to" in err
+    assert sorted(here.rglob("*")) == before
