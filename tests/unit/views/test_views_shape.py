@@ -64,7 +64,8 @@ def test_moments_do_the_work_of_the_energy_on_images(solved: Solved) -> None:
 def test_the_energy_along_is_that_of_all(solved: Solved, name: str, pieces: int) -> None:
     found = solved(name)
     shape = shape_of(found)
-    assert np.trapezoid(shape.energy, shape.s) == pytest.approx(pieces * found.energy, rel=1e-3)
+    middle = (shape.energy[1:] + shape.energy[:-1]) / 2
+    assert middle @ np.diff(shape.s) == pytest.approx(pieces * found.energy, rel=1e-3)
 
 
 def test_a_law_without_an_energy_has_none(solved: Solved) -> None:
