@@ -211,7 +211,7 @@ def test_quiet_still_tells_failures(run: Run, tmp_path: Path) -> None:
 
 
 def test_plot_of_no_result(run: Run, tmp_path: Path) -> None:
-    assert "not a result of ribbonopt" in refused(run("plot", tmp_path), tmp_path)
+    assert "without a result of ribbonopt" in refused(run("plot", tmp_path), tmp_path)
 
 
 def test_missing_guess(run: Run, tmp_path: Path) -> None:
