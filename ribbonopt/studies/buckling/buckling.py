@@ -24,7 +24,7 @@ from ribbonopt.mechanics.laws.catalogue import relation_of
 from ribbonopt.mechanics.laws.law import ConstitutiveLaw
 from ribbonopt.pipeline.prepared import Prepared, prepare
 from ribbonopt.problem import Posed, Ribbon, formulate
-from ribbonopt.scene import Scene, Variational
+from ribbonopt.scene import Scene, Variational, validate_scene
 from ribbonopt.scene.lens import value_at, with_value
 from ribbonopt.solution.solution import Solution
 
@@ -172,7 +172,8 @@ class _States:
 
     def at(self, value: float) -> Array | None:
         """Start, constants and parameters (nx + nc + nt,) of the straight state, or None."""
-        scene = with_value(self.straight.scene, self.parameter, value)
+        # Beyond the range that is asked for a number may be none that a scene can have.
+        scene = validate_scene(with_value(self.straight.scene, self.parameter, value))
         found = self.prepared.solve(scene, guess=self.straight, fallback=False)
         if not found.verified and self._rod is not None:
             found = self._rod.solve(twin_scene(scene), guess=self.straight, fallback=False)
