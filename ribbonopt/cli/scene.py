@@ -17,7 +17,6 @@ from .common import (
     refuse_idle_verbose,
     say_left_out,
 )
-from .plot import draw_solution
 from .terminal import complain, say, say_json, say_line
 
 if TYPE_CHECKING:
@@ -46,7 +45,11 @@ def solve(options: argparse.Namespace) -> int:
         except OutputError:  # such as of a disk that is full by now
             _tell(options, solution, import_seconds, None)
             raise
-        status = drawn(lambda: draw_solution(solution, written)) if options.plot else 0
+        status = 0
+        if options.plot:
+            from .plot import draw_solution
+
+            status = drawn(lambda: draw_solution(solution, written))
     return _tell(options, solution, import_seconds, written) or status
 
 

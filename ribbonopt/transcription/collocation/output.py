@@ -12,6 +12,7 @@ from __future__ import annotations
 
 from dataclasses import replace
 from functools import cached_property
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -23,8 +24,10 @@ from ribbonopt.transcription.tableaus import Inside
 
 from .blocks import ElementBlocks
 from .phase_equations import PhaseEquations
-from .refined import Refined, states_at_many
 from .substeps import after_substeps
+
+if TYPE_CHECKING:
+    from .refined import Refined
 
 STIFF = 3.0  # exponent of an element, from which on neighbouring solutions part too fast
 
@@ -87,11 +90,15 @@ class DenseOutput:
 
     def many(self, phase: int, sigma: Array) -> Array:
         """States x (k, nx) as `states`, sooner at many places: see `refined`."""
+        from .refined import states_at_many  # for pictures and exports
+
         return states_at_many(self, phase, sigma)
 
     @cached_property
     def polynomials(self) -> Refined:
         """Polynomials of the elements that have the order of the nodes."""
+        from .refined import Refined
+
         return Refined.of(self)
 
     def approximate(self, phase: int, sigma: Array) -> Array:
