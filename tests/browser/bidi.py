@@ -3,8 +3,6 @@
 import json
 from typing import Any
 
-import pytest
-
 SECONDS = 60.0  # that an answer may take on a busy machine
 
 
@@ -16,7 +14,8 @@ class Bidi:
     """A session: `call` waits for the answer, what is told meanwhile is in `events`."""
 
     def __init__(self, address: str) -> None:
-        websocket = pytest.importorskip("websocket", reason="no websocket-client")
+        import websocket  # `browsers.require` has looked for it
+
         # Firefox refuses calls that say they come from a page.
         self._socket = websocket.create_connection(address, timeout=SECONDS, suppress_origin=True)
         self._count = 0
