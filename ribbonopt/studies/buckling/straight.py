@@ -109,9 +109,9 @@ class StraightStates:
         # Beyond the range that is asked for a number may be none that a scene can have.
         scene = self.place(value) if beside else validate_scene(self.place(value))
         found = self.prepared.solve(scene, guess=self.straight, fallback=False)
-        if not found.verified and self._rod is not None:
+        if not self._is_straight(found) and self._rod is not None:
             found = self._rod.solve(twin_scene(scene), guess=self.straight, fallback=False)
-        if not found.verified or share_without_moment(found, self.ribbon.law) < 1 - SHORTEST:
+        if not self._is_straight(found):
             return None
         least = self.least(value)
         ends = found.fields(np.array([0.0, 1.0]))
@@ -120,6 +120,10 @@ class StraightStates:
         for i, name in enumerate(self.ribbon.constants):
             c[i] = reactions.get(name, c[i])
         return np.concatenate([x[0], c, least.values])
+
+    def _is_straight(self, found: Solution) -> bool:
+        law = self.ribbon.law
+        return found.verified and share_without_moment(found, law) >= 1 - SHORTEST
 
     def reactions(self, solution: Solution) -> dict[str, float]:
         """Unknown constants of the stations of a solution, by name."""
