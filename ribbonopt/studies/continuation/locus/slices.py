@@ -16,7 +16,7 @@ from ..walk.points import FOLD
 from .chart import Chart, Sample
 
 REACH = 0.5  # arclength across, within which a special point is looked for
-FIRST = 0.01  # arclength between the first two places
+FIRST = 0.001  # arclength between the first two places
 APART = 1e-4  # arclength between places that a polynomial goes through
 SETTLED = 1e-9  # change of the place of a fold, in arclength: there parameters change by its square
 ROUNDS = 12
