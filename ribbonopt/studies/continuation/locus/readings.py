@@ -22,6 +22,7 @@ import numpy as np
 from ribbonopt.arrays import Array
 from ribbonopt.classes import dataclass
 from ribbonopt.solution.solution import Solution
+from ribbonopt.solution.trajectory import Trajectory
 
 from ..walk.points import BRANCH_POINT, FOLD, Point
 from .chart import Chart
@@ -56,15 +57,16 @@ class Readings:
         self.chart: Chart = equations.chart(origin.solution, origin.unknowns, *self.sides)
         self.determinants = replace(self.chart, kind=BRANCH_POINT, _scale=[])
         self.way: Array | None = None
-        self.known: dict[int, Reading] = {}
+        self.known: dict[Trajectory, Reading] = {}
 
     def at(self, solution: Solution, unknowns: Array) -> Reading:
         """Return the readings at a point of the locus (n + 2,); LinAlgError where singular."""
-        if id(unknowns) not in self.known:
+        key = solution.trajectory
+        if key not in self.known:
             fold = self.equations.kind == FOLD
             read = self._of_folds(unknowns) if fold else self._of_crossings(solution, unknowns)
-            self.known[id(unknowns)] = read
-        return self.known[id(unknowns)]
+            self.known[key] = read
+        return self.known[key]
 
     def _of_folds(self, y: Array) -> Reading:
         here = self.chart.read(y)
