@@ -51,7 +51,10 @@ def plot(options: argparse.Namespace) -> int:
         solution = load_solution(result)
 
         def draw(folder: Path) -> list[Path]:
-            return draw_solution(solution, folder, asked.style)
+            return [
+                *draw_solution(solution, folder, asked.style),
+                *_draw_modes(solution, result, folder, asked.style),
+            ]
 
     with pictures_in(options.out or result) as folder:
         paths = draw(folder)
@@ -66,5 +69,19 @@ def draw_solution(solution: Solution, folder: Path, style: Style | None = None) 
     from ribbonopt.views.paper_style import PLAIN
 
     paths, left_out = draw_figures(solution, folder, style=style or PLAIN)
+    say_left_out(left_out)
+    return paths
+
+
+def _draw_modes(solution: Solution, result: Path, folder: Path, style: Style) -> list[Path]:
+    """Draw the modes that stand beside a solution, if there are any."""
+    from ribbonopt.output.modes_files import load_modes
+
+    modes = load_modes(result, solution)
+    if modes is None:
+        return []
+    from ribbonopt.views.modes import save_modes_figure
+
+    paths, left_out = save_modes_figure(solution, modes, folder, style)
     say_left_out(left_out)
     return paths

@@ -1,0 +1,49 @@
+"""The report of modes of small vibrations: a table, what does not count, and what grows."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from ribbonopt.checks.modes import Modes
+from ribbonopt.plain import Row
+
+from .digits import upwards
+from .modes_rows import HERTZ, frequency_of, words_of
+
+TITLE = "small vibrations"
+#: how frequencies are counted; negative ones are rates
+HEADS = {HERTZ: "frequency [Hz]"}
+
+
+def told(name: str, modes: Modes, rows: Sequence[Row], planar: bool = False) -> str:
+    """Return the report of modes of a ribbon by its name, with `rows_of` them.
+
+    `planar` says that only motion in its plane was asked for.
+    """
+    numbers = [frequency_of(row) for row in rows]
+    bars = ["not known" if row["error"] is None else upwards(row["error"]) for row in rows]
+    head = HEADS.get(modes.unit, "omega")
+    wide = max(map(len, (head, *numbers)), default=0)
+    which = " in its plane" if planar else ""
+    lines = [f"{name}: {_counted(rows)} of {TITLE}{which}{_units(modes.unit)}"]
+    lines.append(f"  {'':>3}  {head:<{wide}}  rel. error")
+    for row, number, bar in zip(rows, numbers, bars, strict=True):
+        lines.append(f"  {row['number']:>3}  {number:<{wide}}  {bar:<10}  {words_of(row)}".rstrip())
+    lines += [f"  of zero frequency, not counted: {', '.join(modes.zero)}"] if modes.zero else []
+    return "\n".join([*lines, *_grows(modes)])
+
+
+def _counted(rows: Sequence[Row]) -> str:
+    return f"{len(rows)} mode{'' if len(rows) == 1 else 's'}"
+
+
+def _units(unit: str) -> str:
+    return "" if unit == HERTZ else f", omega in units of {unit}"
+
+
+def _grows(modes: Modes) -> list[str]:
+    """Say how many modes grow, of all, not only of those in the table."""
+    if not modes.negative:
+        return []
+    one = modes.negative == 1
+    return [f"  unstable: {modes.negative} mode{'' if one else 's'} grow{'s' if one else ''}"]
