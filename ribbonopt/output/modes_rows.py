@@ -9,7 +9,7 @@ from ribbonopt.checks.parity import parities
 from ribbonopt.plain import Row
 from ribbonopt.solution.solution import Solution
 
-from .digits import digits, upwards
+from .digits import SMALL, digits, upwards
 
 HERTZ = "Hz"
 IN, ACROSS = "in plane", "out of plane"
@@ -54,25 +54,30 @@ def plane_of(row: Row) -> str:
     return ACROSS if share <= WHOLLY else f"{100 * share:.0f} % {IN}"
 
 
-def frequency_of(row: Row, least: float = 0.0) -> str:
-    """Return the size of a frequency to the last digit that its error leaves.
+def value_of(row: Row, unit: str, least: float = 0.0) -> str:
+    """Return a frequency, or the rate at which a mode grows, with Hz or 1/s where it is in SI.
 
-    `least` is a relative error below which more digits are of no use.
+    It is written to the last digit that its error leaves; `least` is a relative error below which
+    more digits are of no use.
     """
-    value, error = abs(row["frequency"]), row["error"]
+    cycles = 2 * math.pi if unit == HERTZ and row["grows"] else 1.0
+    value, error = cycles * abs(row["frequency"]), row["error"]
     if error is None:
-        return f"{value:.6g}"
-    error = max(error, least)
-    text = digits(value, error * value, 0 < value < 1e-3)
-    return text if float(text) else f"0 ± {upwards(error * value)}"
+        number = f"{value:.6g}"
+    else:
+        error = max(error, least) * value
+        number = digits(value, error, 0 < value < SMALL)
+    if row["grows"]:
+        return f"rate {number}{' /s' if unit == HERTZ else ''}"
+    return f"{number}{' Hz' if unit == HERTZ else ''}"
 
 
-def short_unit(unit: str) -> str:
-    """Return what stands behind a number: nothing in units of its own, which are said once."""
-    return f" {HERTZ}" if unit == HERTZ else ""
+def bar_of(row: Row) -> str:
+    """Return the bound of the relative error."""
+    return "not known" if row["error"] is None else upwards(row["error"])
 
 
 def words_of(row: Row) -> str:
     """Say of a mode what is known besides its frequency, in one line; may be empty."""
-    grows = "grows, the number is its rate" if row["grows"] else ""
-    return ", ".join(filter(None, (plane_of(row), row["symmetry"], grows)))
+    grows = "grows" if row["grows"] else ""
+    return ", ".join(filter(None, (grows, plane_of(row), row["symmetry"])))

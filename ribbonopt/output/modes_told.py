@@ -7,12 +7,9 @@ from collections.abc import Sequence
 from ribbonopt.checks.modes import Modes
 from ribbonopt.plain import Row
 
-from .digits import upwards
-from .modes_rows import HERTZ, frequency_of, words_of
+from .modes_rows import HERTZ, bar_of, value_of, words_of
 
 TITLE = "small vibrations"
-#: how frequencies are counted; negative ones are rates
-HEADS = {HERTZ: "frequency [Hz]"}
 
 
 def told(name: str, modes: Modes, rows: Sequence[Row], planar: bool = False) -> str:
@@ -20,15 +17,15 @@ def told(name: str, modes: Modes, rows: Sequence[Row], planar: bool = False) -> 
 
     `planar` says that only motion in its plane was asked for.
     """
-    numbers = [frequency_of(row) for row in rows]
-    bars = ["not known" if row["error"] is None else upwards(row["error"]) for row in rows]
-    head = HEADS.get(modes.unit, "omega")
+    numbers = [value_of(row, modes.unit) for row in rows]
+    head = "frequency" if modes.unit == HERTZ else "omega"
     wide = max(map(len, (head, *numbers)), default=0)
     which = " in its plane" if planar else ""
     lines = [f"{name}: {_counted(rows)} of {TITLE}{which}{_units(modes.unit)}"]
     lines.append(f"  {'':>3}  {head:<{wide}}  rel. error")
-    for row, number, bar in zip(rows, numbers, bars, strict=True):
-        lines.append(f"  {row['number']:>3}  {number:<{wide}}  {bar:<10}  {words_of(row)}".rstrip())
+    for row, number in zip(rows, numbers, strict=True):
+        line = f"  {row['number']:>3}  {number:<{wide}}  {bar_of(row):<10}  {words_of(row)}"
+        lines.append(line.rstrip())
     lines += [f"  of zero frequency, not counted: {', '.join(modes.zero)}"] if modes.zero else []
     return "\n".join([*lines, *_grows(modes)])
 

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from ribbonopt.errors import ViewError
 from ribbonopt.output.staging import recovered
 from ribbonopt.reading import is_file
 from ribbonopt.solution.solution import Solution
@@ -47,8 +48,10 @@ def view_of(thing: Solution | Branch | Batch, half_width: float | None = None) -
     return view_of_solution(thing, half_width)
 
 
-def saved_view(path: str | Path, half_width: float | None = None) -> View:
+def saved_view(path: str | Path, half_width: float | None = None, modes: bool = False) -> View:
     """Return the view of a folder, as `view_of`; of a result with all that its folder says.
+
+    `modes` asks for small vibrations of a result, which are shown anyway where they stand there.
 
     Raises
     ------
@@ -57,8 +60,10 @@ def saved_view(path: str | Path, half_width: float | None = None) -> View:
     """
     thing = load(path)
     if not isinstance(thing, Solution):
+        if modes:
+            raise ViewError(f"{path}: is a branch or a batch; modes are seen of a single result")
         return view_of(thing, half_width)
     from .solutions import view_of_result
 
     folder = recovered(path)
-    return view_of_result(thing, folder.parent if is_file(folder) else folder, half_width)
+    return view_of_result(thing, folder.parent if is_file(folder) else folder, half_width, modes)

@@ -11,7 +11,7 @@ import numpy as np
 
 from ribbonopt.checks.modes import Modes
 from ribbonopt.errors import ViewError
-from ribbonopt.output.modes_rows import HERTZ, frequency_of, plane_of, rows_of
+from ribbonopt.output.modes_rows import HERTZ, plane_of, rows_of, value_of
 from ribbonopt.plain import Row
 from ribbonopt.solution.solution import Solution
 from ribbonopt.text import drawn
@@ -30,6 +30,7 @@ from .tint import check_field
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
 
+OMEGA = r"\omega"
 MOST = 24  # modes on a sheet
 ACROSS, NARROW_ACROSS = 4, 2  # panels side by side
 ROWS = 121  # of a ribbon: there are many
@@ -140,11 +141,11 @@ def _box(drawings: Sequence[Drawing]) -> Box:
 
 def _caption(row: Row, unit: str, width: float) -> str:
     """Return what stands under a mode, in lines of a width (inches): frequency, where it moves."""
-    number = frequency_of(row, ENOUGH)
+    value = value_of(row, unit, ENOUGH)
     if row["grows"]:
-        value = f"grows, rate {number}{'/s' if unit == HERTZ else ''}"
+        value = f"grows, {value}"
     else:
-        value = f"$f$ = {number} Hz" if unit == HERTZ else rf"$\omega$ = {number}"
+        value = f"${'f' if unit == HERTZ else OMEGA}$ = {value}"
     words = ", ".join(filter(None, (plane_of(row), row["symmetry"])))
     told = [f"{row['number']}   {value}", *([wrapped(words, width, sized(8.5))] if words else [])]
     return "\n".join(told)
