@@ -73,7 +73,8 @@ def test_what_nobody_declared_is_still_left_alone(
 
 def test_standard_exports_and_pictures_are_known_everywhere() -> None:
     exports: tuple[Export, ...] = (*STANDARD, Pictures())
-    assert {name for export in exports for name in export.files} | {"equilibria", PAGE} == OWN_FILES
+    files = {name for export in exports for name in export.files}
+    assert files | {"equilibria", PAGE, *MODES_FILES} == OWN_FILES
 
 
 def test_two_exports_cannot_write_one_file(solved: Solved, toy: Any, tmp_path: Path) -> None:
