@@ -39,4 +39,6 @@ def made_modes(solution: Solution, count: int = 4, unit: str = "sqrt(Dw/(rho L^4
         rotation=np.array(turned),
         unit=unit,
         negative=1,
+        told="of waves",
+        bounds=1e-9 * values**2,
     )

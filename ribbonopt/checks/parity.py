@@ -15,34 +15,45 @@ from ribbonopt.arrays import Array
 from ribbonopt.solution.solution import Solution
 
 from .modes import Modes
+from .topology import closure
 
 SYMMETRIC, ANTISYMMETRIC = "symmetric", "antisymmetric"
 SAME = 1e-4  # of the extent: farthest from its image that a shape may be
 FLAT = 1e-9  # of the largest squared extent: the shape does not fill that direction
 CLEAR = 0.02  # of the largest displacement: farthest from its image that a mode may be
 STILL = 1e-6  # largest displacement over largest rotation, in lengths: nothing but turns
+BEYOND = 1e-9  # of the length: modes that reach farther are of more than what was solved
 SAMPLES = 201
 
 
 def parities(solution: Solution, modes: Modes) -> tuple[str, ...]:
     """Return for each mode "symmetric", "antisymmetric", or "" where it is neither.
 
-    Also "" for all of a shape that nothing carries to itself, and of more than what was solved: a
-    closed band, which has no ends.
+    Also "" for all of a shape that nothing carries to itself. A closed band is reversed about where
+    it was begun.
     """
-    none = ("",) * len(modes.squared)
-    start, end = map(float, solution.scene.interval)
-    length = end - start
-    if modes.s[-1] > end + 1e-9 * length:
-        return none
-    s = np.linspace(start, end, SAMPLES)
-    carried = _reversing(solution.outputs(s)["r"])
-    if carried is None:
-        return none
+    r = _line(solution, modes)
+    carried = None if r is None else _reversing(r)
+    if r is None or carried is None:
+        return ("",) * len(modes.squared)
+    s = np.linspace(modes.s[0], modes.s[-1], len(r))
+    length = float(modes.s[-1] - modes.s[0])
     return tuple(
         _parity(_at(s, modes.s, d), _at(s, modes.s, t), carried, length)
         for d, t in zip(modes.displacement, modes.rotation, strict=True)
     )
+
+
+def _line(solution: Solution, modes: Modes) -> Array | None:
+    """Return evenly spaced points (k, 3) of what modes are of; None where they are not known."""
+    start, end = map(float, solution.scene.interval)
+    if modes.s[-1] <= end + BEYOND * (end - start):
+        return np.asarray(solution.outputs(np.linspace(start, end, SAMPLES))["r"])
+    band = closure(solution)
+    if band is None:
+        return None
+    r = band.line(SAMPLES - 1)
+    return np.concatenate([r, r[:1]])
 
 
 def _reversing(r: Array) -> Array | None:

@@ -14,6 +14,7 @@ from .terminal import say_line
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from ribbonopt.checks.modes import Modes
     from ribbonopt.solution.solution import Solution
     from ribbonopt.views.paper_style import Style
 
@@ -48,13 +49,14 @@ def plot(options: argparse.Namespace) -> int:
         )
     else:
         asked.refuse(f"{result} is no branch, along which ribbons are drawn", "inset", "animate")
+        from ribbonopt.output.modes_files import load_modes
+
         solution = load_solution(result)
+        modes = load_modes(result, solution)
 
         def draw(folder: Path) -> list[Path]:
-            return [
-                *draw_solution(solution, folder, asked.style),
-                *_draw_modes(solution, result, folder, asked.style),
-            ]
+            paths = draw_solution(solution, folder, asked.style)
+            return paths + ([] if modes is None else _modes(solution, modes, folder, asked.style))
 
     with pictures_in(options.out or result) as folder:
         paths = draw(folder)
@@ -73,13 +75,8 @@ def draw_solution(solution: Solution, folder: Path, style: Style | None = None) 
     return paths
 
 
-def _draw_modes(solution: Solution, result: Path, folder: Path, style: Style) -> list[Path]:
-    """Draw the modes that stand beside a solution, if there are any."""
-    from ribbonopt.output.modes_files import load_modes
-
-    modes = load_modes(result, solution)
-    if modes is None:
-        return []
+def _modes(solution: Solution, modes: Modes, folder: Path, style: Style) -> list[Path]:
+    """Draw the modes that stand beside a solution."""
     from ribbonopt.views.modes import save_modes_figure
 
     paths, left_out = save_modes_figure(solution, modes, folder, style)

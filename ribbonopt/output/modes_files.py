@@ -31,7 +31,7 @@ from .table import write_table
 
 SAVED = Kind("modes of ribbonopt", most=10 * MEGA, remedy="compute them again (ribbonopt modes)")
 MOST = 1000  # modes of a ribbon
-ARRAYS = {"squared": 1, "frequencies": 1, "errors": 1, "in_plane": 1, "s": 1}
+ARRAYS = {"squared": 1, "bounds": 1, "frequencies": 1, "errors": 1, "in_plane": 1, "s": 1}
 SHAPES = {"displacement": 3, "rotation": 3}
 WITHIN = 1e-9  # of the length: farthest beyond the ends that an arclength may be
 
@@ -43,10 +43,10 @@ class SavedModes:
     unit: str
     negative: Annotated[int, Bounds(ge=0)]
     zero: tuple[str, ...]
-    planar: bool = False
+    told: str = ""
 
 
-def plain_of(solution: Solution, modes: Modes, planar: bool = False) -> PlainRow:
+def plain_of(solution: Solution, modes: Modes) -> PlainRow:
     """Return modes as plain values: what `modes.json` and `ribbonopt modes --json` say."""
     return {
         "name": solution.scene.name,
@@ -54,7 +54,7 @@ def plain_of(solution: Solution, modes: Modes, planar: bool = False) -> PlainRow
         "verified": solution.verified,
         "message": solution.message,
         "unit": modes.unit,
-        "planar": planar,
+        "told": modes.told,
         "negative": modes.negative,
         "zero": list(modes.zero),
         "modes": finite(rows_of(solution, modes)),
@@ -63,7 +63,7 @@ def plain_of(solution: Solution, modes: Modes, planar: bool = False) -> PlainRow
     }
 
 
-def save_modes(solution: Solution, modes: Modes, folder: Path, planar: bool = False) -> list[Path]:
+def save_modes(solution: Solution, modes: Modes, folder: Path) -> list[Path]:
     """Write modes into an existing folder, that of their solution, and return where.
 
     A picture of older modes there is removed.
@@ -77,15 +77,13 @@ def save_modes(solution: Solution, modes: Modes, folder: Path, planar: bool = Fa
         The equilibrium and its modes.
     folder
         Where; files of these names are replaced, the one that others read last.
-    planar
-        Whether only motion in the plane was asked for.
 
     Raises
     ------
     OutputError
         If they cannot be written.
     """
-    plain = plain_of(solution, modes, planar)
+    plain = plain_of(solution, modes)
     names = (MODES_TABLE, MODES_NPZ, MODES_JSON)
     arrays = {name: getattr(modes, name) for name in (*ARRAYS, *SHAPES)}
     try:
@@ -111,8 +109,8 @@ def load_modes(folder: Path, solution: Solution) -> Modes | None:
     """
     if not os.path.lexists(folder / MODES_JSON):
         return None
-    path = folder / MODES_NPZ
-    saved = checked(SavedModes, read_json(folder / MODES_JSON, SAVED), str(path), SAVED)
+    told, path = folder / MODES_JSON, folder / MODES_NPZ
+    saved = checked(SavedModes, read_json(told, SAVED), str(told), SAVED)
     rows = [Row(name, axes=axes) for name, axes in (ARRAYS | SHAPES).items()]
     try:
         found = arrays_of(path, rows)
@@ -130,6 +128,8 @@ def load_modes(folder: Path, solution: Solution) -> Modes | None:
         rotation=found["rotation"],
         unit=saved.unit,
         negative=saved.negative,
+        told=saved.told,
+        bounds=found["bounds"],
     )
 
 
@@ -139,7 +139,7 @@ def _refuse_misfits(found: dict[str, Array], solution: Solution) -> None:
     start, end = solution.scene.interval
     if count > MOST:
         raise ValueError(f"squared: found {count} modes, expected at most {MOST}")
-    for name in ("frequencies", "errors", "in_plane"):
+    for name in ("bounds", "frequencies", "errors", "in_plane"):
         if len(found[name]) != count:
             raise ValueError(f"{name}: expected one for each mode")
     for name in SHAPES:

@@ -12,15 +12,12 @@ from .modes_rows import HERTZ, bar_of, value_of, words_of
 TITLE = "small vibrations"
 
 
-def told(name: str, modes: Modes, rows: Sequence[Row], planar: bool = False) -> str:
-    """Return the report of modes of a ribbon by its name, with `rows_of` them.
-
-    `planar` says that only motion in its plane was asked for.
-    """
+def told(name: str, modes: Modes, rows: Sequence[Row]) -> str:
+    """Return the report of modes of a ribbon by its name, with `rows_of` them."""
     numbers = [value_of(row, modes.unit) for row in rows]
     head = "frequency" if modes.unit == HERTZ else "omega"
     wide = max(map(len, (head, *numbers)), default=0)
-    which = " in its plane" if planar else ""
+    which = f" ({modes.told})" if modes.told else ""
     lines = [f"{name}: {_counted(rows)} of {TITLE}{which}{_units(modes.unit)}"]
     lines.append(f"  {'':>3}  {head:<{wide}}  rel. error")
     for row, number in zip(rows, numbers, strict=True):

@@ -153,7 +153,7 @@ def _caption(row: Row, unit: str, width: float) -> str:
 
 def _title(figure: Figure, subject: Subject, modes: Modes) -> None:
     figure.suptitle(
-        f"{drawn(subject.name, TITLE)}: small vibrations",
+        f"{drawn(subject.name, TITLE)}: small vibrations{f' ({modes.told})' if modes.told else ''}",
         x=0.01,
         ha="left",
         fontsize=sized(11),

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from ribbonopt.errors import OutputError
-from ribbonopt.output.declared import MANIFEST, PAGE, declare, foreign_in
+from ribbonopt.output.declared import MANIFEST, MODES_FILES, PAGE, declare, foreign_in
 from ribbonopt.output.exports import STANDARD, Export
 from ribbonopt.output.results import load_solution, save_solution
 from ribbonopt.output.staging import OWN_FILES, staged_result

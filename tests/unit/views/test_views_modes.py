@@ -67,8 +67,8 @@ def test_a_panel_for_each_mode() -> None:
     solution = solved("snap")
     figure = plot_modes(solution, made_modes(solution))
     words = [axes.get_xlabel() for axes in figure.axes]
-    assert words[0].split("\n")[0] == "1   grows, rate 3.25000"
-    assert words[1].split("\n")[0] == r"2   $\omega$ = 22.3733"
+    assert words[0].split("\n")[0] == "1   grows, rate 3.2500"
+    assert words[1].split("\n")[0] == r"2   $\omega$ = 22.373"
     assert [" ".join(text.split("\n")[1:]) for text in words] == [
         "in plane, symmetric",
         "out of plane, symmetric",
@@ -88,8 +88,8 @@ def test_in_si_frequencies_are_in_hertz_and_rates_in_seconds() -> None:
     solution = solved("snap")
     figure = plot_modes(solution, made_modes(solution, 2, "Hz"))
     first, second = (axes.get_xlabel().split("\n")[0] for axes in figure.axes)
-    assert first == "1   grows, rate 20.4204 /s"  # 2 pi 3.25
-    assert second == "2   $f$ = 22.3733 Hz"
+    assert first == "1   grows, rate 20.420 /s"  # 2 pi 3.25
+    assert second == "2   $f$ = 22.373 Hz"
 
 
 def test_what_cannot_be_drawn_is_told() -> None:
