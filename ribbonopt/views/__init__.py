@@ -12,6 +12,7 @@ if TYPE_CHECKING:
     from .animation import save_animation
     from .branch import plot_branch
     from .files import Pictures, plot_solution, save_figures
+    from .modes import plot_modes
     from .paper_style import Style
     from .plane import plot_plane
     from .ribbon import plot_ribbon
@@ -23,6 +24,7 @@ __all__ = [
     "Style",
     "plot_batch",
     "plot_branch",
+    "plot_modes",
     "plot_plane",
     "plot_ribbon",
     "plot_solution",
@@ -36,6 +38,7 @@ _HOMES = {
     "Style": "paper_style",
     "plot_batch": "scatter",
     "plot_branch": "branch",
+    "plot_modes": "modes",
     "plot_plane": "plane",
     "plot_ribbon": "ribbon",
     "plot_solution": "files",
