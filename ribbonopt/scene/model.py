@@ -16,6 +16,7 @@ from . import limits
 from .along import Along
 from .continuation import ContinuationStage
 from .ends import Boundary, Loop
+from .equilibria import Equilibria
 from .frames import LabVector, Triple
 from .guesses import Guess, Numbers3
 from .in_short import in_short
@@ -162,6 +163,9 @@ class Scene:
     inertia
         Of sections that turn, for natural frequencies: `ribbon` has that of a strip of the width of
         the `ribbon`, w^2/12 about normal and tangent; without it none. Example: `{d3: 0.01}`
+    equilibria
+        That `solve` looks for all equilibria, unstable ones too, along branches through their
+        folds. Example: `all` or `{along: [parameters.angle], below: 20}`
     """
 
     name: str
@@ -194,5 +198,6 @@ class Scene:
     symmetric: bool | Literal["d1", "d2", "-d1", "-d2"] = False
     labels: dict[str, str] = field(default_factory=dict)
     inertia: AnyInertia | None = None
+    equilibria: Literal["all"] | Equilibria | None = None
 
     __repr__ = in_short  # `dump_scene` says all of it
