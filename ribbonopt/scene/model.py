@@ -21,6 +21,7 @@ from .guesses import Guess, Numbers3
 from .in_short import in_short
 from .laws import Law
 from .loads import Loads
+from .maps import MapPlan
 from .membrane import AnyMembrane
 from .natural import Natural
 from .schema.bounds import Bounds
@@ -158,6 +159,10 @@ class Scene:
     labels
         What numbers are called beside the axes of figures, by their columns; formulas stand between
         $. Example: `{energy: $E$, middle: height}`
+    map
+        What `ribbonopt map` draws: loci of folds and branch points in the plane of two numbers, and
+        how many shapes there are in each region.
+        Example: `{parameters: {parameters.angle: [0, 60], parameters.distance: [0.05, 0.4]}}`
     """
 
     name: str
@@ -189,5 +194,6 @@ class Scene:
     planar: bool = False
     symmetric: bool | Literal["d1", "d2", "-d1", "-d2"] = False
     labels: dict[str, str] = field(default_factory=dict)
+    map: MapPlan | None = None
 
     __repr__ = in_short  # `dump_scene` says all of it

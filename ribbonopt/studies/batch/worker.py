@@ -100,7 +100,7 @@ class Worker:
         """Return the structure of a scene, built once."""
         structure = posed.structure
         if structure not in self._built:
-            self._built[structure] = prepare(replace(posed.given, continuation=None))
+            self._built[structure] = prepare(replace(posed.given, continuation=None, map=None))
         return self._built[structure]
 
     def _row(self, ribbon: dict[str, Any], answer: Callable[[Scene, Row], None]) -> Row:
