@@ -31,6 +31,7 @@ MODULES = {
     "bench": "comparison",
     "stress": "stress",
     "continue": "branch",
+    "map": "map",
     "batch": "batch",
     "verify": "verification",
 }

@@ -30,6 +30,7 @@ BATCH_PICTURES = (
     "report.html",
     *(f"{name}.{f}" for name in ("outcomes", "scatter", "special") for f in FORMATS),
 )
+MAP_PICTURES = tuple(f"map.{f}" for f in FORMATS)
 
 #: what `ribbonopt.viewer` writes beside any of them
 PAGE = "view.html"

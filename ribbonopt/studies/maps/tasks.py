@@ -1,0 +1,121 @@
+"""What workers do for a map: follow the branches on a line, follow a locus, count shapes.
+
+Each takes the scene of a job and gives what its row says beside its inputs. What is found is written
+to the job's folder, which is there as a whole or not at all.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from contextlib import closing
+from dataclasses import replace
+from pathlib import Path
+
+from ribbonopt.classes import dataclass
+from ribbonopt.output.results import save_solution
+from ribbonopt.output.staging import staged_result
+from ribbonopt.pipeline.prepared import Prepared
+from ribbonopt.plain import Row
+from ribbonopt.scene import Scene
+from ribbonopt.solution.solution import Solution
+from ribbonopt.studies.batch.branches import OWN
+from ribbonopt.studies.continuation.continuation import Continuation
+from ribbonopt.studies.continuation.files import BranchFolder
+from ribbonopt.studies.continuation.walk.points import POINT
+
+from .counted import all_of, counted
+from .jobs import LINE, LOCUS, SHAPES
+from .seeds import branches_of, is_known
+
+MOST = 200  # branches of a line, shapes at a point: numbers are names of their folders
+NUMBERED = frozenset(str(number) for number in range(1, MOST + 1))
+DONE: Row = {"status": "converged", "verified": True, "message": ""}
+Prepare = Callable[[Scene], Prepared]
+
+
+@dataclass(frozen=True)
+class Place:
+    """The folder of a job: that of the map, its own name in it, seconds to wait for a dead worker."""
+
+    root: Path
+    name: str
+    wait: float
+
+    @property
+    def path(self) -> Path:
+        """The folder."""
+        return self.root / self.name
+
+
+def follow_line(scene: Scene, prepare: Prepare, place: Place, inputs: Row) -> Row:
+    """Follow the branches of all equilibria at the beginning of a line.
+
+    Those that another one has led to are not followed again. Its row says of all special points
+    where they are, in which folder, and the number of their points there.
+    """
+    along = inputs["along"]
+    given = {key: value for key, value in inputs.items() if key != "along"}
+    bare = replace(scene, continuation=None)
+    prepared, rows, told = prepare(bare), list[list[Row]](), list[str]()
+    specials: list[Row] = []
+    seeds = all_of(bare, prepared)
+    begin = scene.continuation.from_  # type: ignore[union-attr]
+    with staged_result(place.path, NUMBERED, wait=place.wait, durable=False) as staged:
+        for seed in seeds[:MOST]:
+            if is_known(seed, rows, along, begin):
+                continue
+            name = str(len(told) + 1)
+            found, ending = _followed(scene, prepared, staged.folder / name, seed)
+            rows += branches_of(found)
+            told.append(ending)
+            where = f"{place.name}/{name}"
+            specials += [
+                {**given, **row, "folder": where, "point": row["number"]}
+                for row in found
+                if row["kind"] != POINT
+            ]
+        staged.commit()
+    return {**DONE, "branches": len(told), "seeds": len(seeds), "endings": told,
+            "specials": specials}
+
+
+def follow_locus(scene: Scene, prepare: Prepare, place: Place, inputs: Row) -> Row:
+    """Follow a locus both ways; its row says where all its points are, way by way."""
+    prepared = prepare(replace(scene, continuation=None))
+    with staged_result(place.path, OWN, wait=place.wait, durable=False) as staged:
+        found, ending = _followed(scene, prepared, staged.folder)
+        staged.commit()
+    return {**DONE, "ending": ending, "points": found}
+
+
+def count_shapes(scene: Scene, prepare: Prepare, place: Place, inputs: Row) -> Row:
+    """Look for all equilibria at a point, and save each of them."""
+    found = counted(scene, prepare(scene))
+    with staged_result(place.path, NUMBERED, wait=place.wait, durable=False) as staged:
+        for number, solution in enumerate(found.solutions[:MOST], start=1):
+            folder = staged.folder / str(number)
+            folder.mkdir()
+            save_solution(solution, folder)
+        staged.commit()
+    return {**DONE, "count": found.count, "stable": found.stable, "shapes": list(found.rows),
+            "told": found.told}
+
+
+TASKS: dict[str, Callable[[Scene, Prepare, Place, Row], Row]] = {
+    LINE: follow_line,
+    LOCUS: follow_locus,
+    SHAPES: count_shapes,
+}
+
+
+def _followed(
+    scene: Scene, prepared: Prepared, folder: Path, near: Solution | None = None
+) -> tuple[list[Row], str]:
+    """Follow what a scene continues into a folder; return the rows, and how it has ended."""
+    folder.mkdir(exist_ok=True)
+    continuation = Continuation(scene, prepared)
+    continuation.near = near
+    with closing(BranchFolder(folder, scene, resume=False)) as files:
+        for _ in files.follow(continuation):
+            pass
+        return files.rows, continuation.ending.reason
