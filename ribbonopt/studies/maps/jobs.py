@@ -18,6 +18,8 @@ from ribbonopt.studies.batch.study import Source, StudyRibbon
 LINES, LOCI, POINTS = "branches", "loci", "points"
 FOLDERS = (LINES, LOCI, POINTS)
 LINE, LOCUS, SHAPES = "line", "locus", "shapes"
+BEYOND = 3.0  # times the way from the point before to a special one: where a branch would go
+EDGE = 1e-9  # of a range: what is on its end
 
 
 @dataclass(frozen=True)
@@ -65,6 +67,8 @@ def line(scene: Scene, plan: MapPlan, number: int, along: str, value: float) -> 
 def locus(scene: Scene, plan: MapPlan, number: int, begin: Row) -> Job:
     """Return the locus through a special point, both ways to the border of the map.
 
+    It begins with the branch from the regular point before the special one up to this.
+
     Parameters
     ----------
     scene, plan
@@ -72,18 +76,30 @@ def locus(scene: Scene, plan: MapPlan, number: int, begin: Row) -> Job:
     number
         Of the locus.
     begin
-        What a line's row says of the point: its kind, its values, and the branch that it is on.
+        What a line's row says of the point: its kind, its values, the number along which the branch
+        goes that it is on, its folder, and which point is before.
     """
-    stage = ContinuationStage(
-        parameter=(plan.x, plan.y),
-        of=begin["kind"],
-        between=plan.parameters[plan.x],
-        to=plan.parameters[plan.y],
-        largest=plan.largest * (plan.ranges[1][1] - plan.ranges[1][0]),
+    along = begin["along"]
+    other = plan.y if along == plan.x else plan.x
+    low, high = plan.parameters[other]
+    there, value, near = begin[other], begin[along], begin["near"]
+    branch = ContinuationStage(
+        parameter=along,
+        from_=near["value"],
+        to=value + BEYOND * (value - near["value"]),
+        stop=(begin["kind"],),
     )
-    there = with_value(with_value(_bare(scene), plan.x, begin[plan.x]), plan.y, begin[plan.y])
-    inputs = {key: begin[key] for key in ("kind", "folder", "point")}
-    return Job(f"{LOCI}/{number}", LOCUS, replace(there, continuation=stage), inputs)
+    inside = [end for end in (low, high) if abs(end - there) > EDGE * (high - low)]
+    followed = ContinuationStage(
+        parameter=(along, other),
+        of=begin["kind"],
+        between=plan.parameters[along],
+        to=(inside[0], inside[1]) if len(inside) > 1 else inside[0],
+        largest=plan.largest * (high - low),
+    )
+    bare = with_value(with_value(_bare(scene), along, value), other, there)
+    inputs = {"kind": begin["kind"], "folder": begin["folder"], "point": near["point"]}
+    return Job(f"{LOCI}/{number}", LOCUS, replace(bare, continuation=(branch, followed)), inputs)
 
 
 def shapes(scene: Scene, plan: MapPlan, number: int, x: float, y: float) -> Job:

@@ -46,7 +46,7 @@ class Region:
     @property
     def narrow(self) -> bool:
         """Whether it is too narrow for a point that is surely inside."""
-        return self.clear < NARROW
+        return bool(self.clear < NARROW)
 
 
 def regions_of(lines: Sequence[Array]) -> list[Region]:

@@ -49,6 +49,7 @@ class SavedMark:
 
     kind: str
     at: Pair
+    error: float | None = None
 
 
 @dataclass(frozen=True)
@@ -61,6 +62,7 @@ class SavedLocus:
     curve: tuple[Pair, ...] = ()
     special: tuple[SavedMark, ...] = ()
     negative: Count | None = None
+    error: float | None = None
     folder: str = ""
     ending: str = ""
 
@@ -72,6 +74,9 @@ class SavedShape:
     energy: float | None
     negative: Count | None = None
     stable: bool | None = None
+    images: Count | None = None
+    symmetry: str | None = None
+    error: float | None = None
 
 
 @dataclass(frozen=True)
@@ -87,6 +92,7 @@ class SavedPoint:
     stable: Count | None = None
     shapes: tuple[SavedShape, ...] = ()
     told: str = ""
+    message: str = ""
 
 
 @dataclass(frozen=True)
@@ -99,6 +105,9 @@ class SavedRegion:
     count: Count | None = None
     stable: Count | None = None
     narrow: bool = False
+    area: float = 0.0
+    clear: float = 0.0
+    beside: tuple[Count, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -109,8 +118,10 @@ class SavedLine:
     value: float
     verified: bool
     folder: str = ""
+    branches: Count = 0
     special: Count = 0
     message: str = ""
+    endings: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)

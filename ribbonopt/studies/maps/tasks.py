@@ -6,7 +6,7 @@ to the job's folder, which is there as a whole or not at all.
 
 from __future__ import annotations
 
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from contextlib import closing
 from dataclasses import replace
 from pathlib import Path
@@ -19,6 +19,7 @@ from ribbonopt.plain import Row
 from ribbonopt.scene import Scene
 from ribbonopt.solution.solution import Solution
 from ribbonopt.studies.batch.branches import OWN
+from ribbonopt.studies.continuation.branch import Branch
 from ribbonopt.studies.continuation.continuation import Continuation
 from ribbonopt.studies.continuation.files import BranchFolder
 from ribbonopt.studies.continuation.walk.points import POINT
@@ -54,7 +55,6 @@ def follow_line(scene: Scene, prepare: Prepare, place: Place, inputs: Row) -> Ro
     where they are, in which folder, and the number of their points there.
     """
     along = inputs["along"]
-    given = {key: value for key, value in inputs.items() if key != "along"}
     bare = replace(scene, continuation=None)
     prepared, rows, told = prepare(bare), list[list[Row]](), list[str]()
     specials: list[Row] = []
@@ -69,9 +69,10 @@ def follow_line(scene: Scene, prepare: Prepare, place: Place, inputs: Row) -> Ro
             rows += branches_of(found)
             told.append(ending)
             where = f"{place.name}/{name}"
+            where = {**inputs, "folder": f"{place.name}/{name}"}
             specials += [
-                {**given, **row, "folder": where, "point": row["number"]}
-                for row in found
+                {**where, **row, "near": _beside(found, i, along)}
+                for i, row in enumerate(found)
                 if row["kind"] != POINT
             ]
         staged.commit()
@@ -82,10 +83,14 @@ def follow_line(scene: Scene, prepare: Prepare, place: Place, inputs: Row) -> Ro
 def follow_locus(scene: Scene, prepare: Prepare, place: Place, inputs: Row) -> Row:
     """Follow a locus both ways; its row says where all its points are, way by way."""
     prepared = prepare(replace(scene, continuation=None))
+    near = Branch.load(place.root / inputs["folder"])[inputs["point"]]
     with staged_result(place.path, OWN, wait=place.wait, durable=False) as staged:
-        found, ending = _followed(scene, prepared, staged.folder)
+        found, ending = _followed(scene, prepared, staged.folder, near)
         staged.commit()
-    return {**DONE, "ending": ending, "points": found}
+    points = [row for row in found if row["stage"]]
+    if not points:
+        return {**DONE, "status": "not_followed", "verified": False, "message": ending}
+    return {**DONE, "ending": ending, "points": points}
 
 
 def count_shapes(scene: Scene, prepare: Prepare, place: Place, inputs: Row) -> Row:
@@ -99,6 +104,15 @@ def count_shapes(scene: Scene, prepare: Prepare, place: Place, inputs: Row) -> R
         staged.commit()
     return {**DONE, "count": found.count, "stable": found.stable, "shapes": list(found.rows),
             "told": found.told}
+
+
+def _beside(rows: Sequence[Row], i: int, along: str) -> Row:
+    """Return the number of the regular point next to the special point i on its branch, and where."""
+    same = ("stage", "branch")
+    for other in (*reversed(rows[:i]), *rows[i + 1 :]):
+        if other["kind"] == POINT and all(other[key] == rows[i][key] for key in same):
+            return {"point": other["number"], "value": other[along]}
+    return {"point": rows[i]["origin"] or 0, "value": rows[i][along]}
 
 
 TASKS: dict[str, Callable[[Scene, Prepare, Place, Row], Row]] = {

@@ -16,6 +16,7 @@ from .jobs import LINES, LOCI
 from .loci import Locus, value_of
 from .survey import Survey
 
+SHAPE = ("energy", "negative", "stable", "images", "symmetry", "error")
 CONVERGED, NOTHING, FAILED = "converged", "nothing_found", "no_branch"
 
 
@@ -127,7 +128,7 @@ def _point(number: int, row: Row, survey: Survey) -> Row:
         "verified": row["verified"],
         "message": row["message"],
         "folder": row["folder"],
-        "shapes": row.get("shapes", []),
+        "shapes": [{key: shape.get(key) for key in SHAPE} for shape in row.get("shapes", ())],
         **said,
     }
 
