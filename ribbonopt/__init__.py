@@ -2,7 +2,7 @@
 
 `load_scene` reads a scene, `solve` finds its equilibrium, a `Solution` is sampled, saved, plotted
 or used as the next guess; `Continuation`, `run_batch` and `compare` solve many. `load` reads back
-whatever was written: a `Solution`, a `Branch`, a `Batch` or a `Map`. Names are imported when first used.
+whatever was written: a `Solution`, `Branch`, `Batch` or `Map`. Names are imported when first used.
 """
 
 from __future__ import annotations

@@ -15,7 +15,7 @@ _PORTS = (f"{port}{number}" for port in ("com", "lpt") for number in "0123456789
 #: what Windows takes for a device, whatever follows a dot
 _DEVICES = frozenset(("con", "prn", "aux", "nul", "conin$", "conout$", *_PORTS))
 #: figures of results, branches and batches, as .png, .svg or .pdf
-_FIGURES = ("strains", "plane", "ribbon", "branch", "ribbons", "outcomes", "scatter", "special", "map")
+_FIGURES = ("strains", "plane", "ribbon", "branch", "ribbons", "outcomes", "scatter", "special")
 #: what our own folders hold: a folder of results so named would be taken for a part of a result
 RESERVED_NAMES = frozenset(
     (
@@ -30,7 +30,8 @@ RESERVED_NAMES = frozenset(
         *("laws.csv", "laws.json", "laws.png", "special.csv", "special.png"),
         *("verification.csv", "verification.json", "verification.md"),
         *("stress.csv", "stress.json", "stress.png", "view.html"),
-        *("map.json", "map.csv", "map.png", "jobs.jsonl", "branches", "loci", "points"),
+        *("map.json", "map.csv", "map.png", "map.svg", "map.pdf", "jobs.jsonl"),
+        *("branches", "loci", "points"),
     )
 )
 _EXECUTED = frozenset("=+-@")

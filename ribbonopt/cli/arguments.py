@@ -26,7 +26,7 @@ VERBS = {
     ),
     "map": (
         "draw where a scene's shapes come and go as two numbers vary, and how many there are",
-        options.map,
+        options.mapped,
     ),
     "batch": ("solve all ribbons of a study, on all cores", options.batch),
     "verify": ("compute numbers with sources again, and say which are confirmed", options.verify),

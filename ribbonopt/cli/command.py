@@ -35,6 +35,8 @@ MODULES = {
     "batch": "batch",
     "verify": "verification",
 }
+#: what functions are called of verbs that are words of Python's own
+OTHERWISE = {"continue": "follow", "map": "mapped"}
 
 
 def run_command(arguments: Sequence[str] | None) -> int:
@@ -84,6 +86,5 @@ def _fail(options: argparse.Namespace, error: str, status: str, code: int) -> in
 def _verb(name: str) -> Callable[[argparse.Namespace], int]:
     """Return what a verb runs; only its own module is imported."""
     module = import_module(f"ribbonopt.cli.{MODULES[name]}")
-    # `continue` is no name of a Python function.
-    verb: Callable[[argparse.Namespace], int] = getattr(module, name.replace("continue", "follow"))
+    verb: Callable[[argparse.Namespace], int] = getattr(module, OTHERWISE.get(name, name))
     return verb

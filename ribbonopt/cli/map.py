@@ -23,7 +23,7 @@ if TYPE_CHECKING:
     from .drawing import Wanted
 
 
-def map(options: argparse.Namespace) -> int:
+def mapped(options: argparse.Namespace) -> int:
     """Draw the map of a scene."""
     jobs = None if options.jobs is None else count("--jobs", options.jobs, JOBS)
     scene, _ = load(options)

@@ -48,8 +48,8 @@ def _locus(locus: Row, x: str, y: str) -> str:
     kinds = Counter(mark["kind"] for mark in locus["special"])
     named = "".join(f", {kind} {count}" for kind, count in kinds.items())
     return (
-        f"  locus {locus['number']}, {locus['kind']}: {len(points)} points from ({x0:.6g}, {y0:.6g}) "
-        f"to ({x1:.6g}, {y1:.6g}){named}{bar}"
+        f"  locus {locus['number']}, {locus['kind']}: {len(points)} points from "
+        f"({x0:.6g}, {y0:.6g}) to ({x1:.6g}, {y1:.6g}){named}{bar}"
     )
 
 

@@ -77,7 +77,7 @@ def follow(verb: argparse.ArgumentParser) -> None:
     )
 
 
-def map(verb: argparse.ArgumentParser) -> None:
+def mapped(verb: argparse.ArgumentParser) -> None:
     """Options of `map`."""
     _scene(verb)
     verb.add_argument("--jobs", metavar="N", help="worker processes (default: one for each core)")

@@ -1,4 +1,4 @@
-"""One loader for all that is written: a result, a branch, a batch or a map, told apart by their files."""
+"""One loader for all that is written: results, branches, batches and maps, told apart by their files."""
 
 from __future__ import annotations
 
@@ -80,7 +80,7 @@ def load(path: str | Path, scene: Scene | None = None) -> Solution | Branch | Ba
 
 
 def folder_of(path: str | Path) -> Path:
-    """Return the folder of a result, a branch, a batch or a map, given by itself or by a file in it.
+    """Return the folder of a result, branch, batch or map, given by itself or by a file in it.
 
     Raises
     ------

@@ -4,17 +4,19 @@ from __future__ import annotations
 
 from pathlib import Path
 
+from ribbonopt.errors import ViewError
 from ribbonopt.output.staging import recovered
 from ribbonopt.reading import is_file
 from ribbonopt.solution.solution import Solution
 from ribbonopt.studies.batch.results import Batch
 from ribbonopt.studies.continuation.branch import Branch
 from ribbonopt.studies.loading import load
+from ribbonopt.studies.maps.map import Map
 
 from .view import View
 
 
-def view_of(thing: Solution | Branch | Batch, half_width: float | None = None) -> View:
+def view_of(thing: Solution | Branch | Batch | Map, half_width: float | None = None) -> View:
     """Return the view of what was solved.
 
     Parameters
@@ -30,7 +32,7 @@ def view_of(thing: Solution | Branch | Batch, half_width: float | None = None) -
     ModelError
         If half_width is not positive.
     ViewError
-        If there is nothing to be seen.
+        If there is nothing to be seen, or it is a map, which is a plane figure.
     OutputError
         If a point of a branch, or a saved solution, is damaged.
     """
@@ -42,6 +44,8 @@ def view_of(thing: Solution | Branch | Batch, half_width: float | None = None) -
         from .batches import view_of_batch
 
         return view_of_batch(thing, half_width)
+    if isinstance(thing, Map):
+        raise ViewError(thing.held)
     from .solutions import view_of_solution
 
     return view_of_solution(thing, half_width)

@@ -1,4 +1,4 @@
-"""The figure of a map: regions by how many shapes are stable there, loci, and the shapes themselves.
+"""The figure of a map: regions by how many shapes are stable there, loci, and the shapes.
 
 Colours grow darker with the number of stable shapes; folds are solid lines, what other branches
 cross is dashed. The stable shapes at the innermost point of a region stand about it, or as near as
@@ -28,8 +28,8 @@ if TYPE_CHECKING:
 
 HEIGHT = 5.6  # inches
 #: of regions with 0, 1, 2, ... stable shapes; the last one stands for more as well
-STABLE = ("#f7f7f7", "#e3ecf6", "#bdd4ea", "#92b8db", "#6898c8", "#4578ae", "#2d5a8e")
-UNKNOWN = {"fc": "white", "hatch": "////", "ec": "#bbbbbb"}
+STABLE = ("#f7f7f7", "#dfeaf5", "#b0cde8", "#85b0d8", "#5f93c4", "#4076ab", "#2d5a8e")
+UNKNOWN: dict[str, Any] = {"fc": "white", "hatch": "////", "ec": "#bbbbbb"}
 LINES: dict[str, dict[str, Any]] = {
     "fold": {"color": INK, "ls": "-", "lw": 1.8},
     "branch point": {"color": TWIST, "ls": (0, (4, 1.8)), "lw": 1.8},
@@ -113,8 +113,9 @@ def _region(axes: Axes, region: Row) -> None:
     from matplotlib.path import Path as Outline
 
     rings = [np.array([*ring, ring[0]]) for ring in region["rings"]]
-    codes = [[Outline.MOVETO, *[Outline.LINETO] * (len(ring) - 2), Outline.CLOSEPOLY]
-             for ring in rings]
+    codes = [
+        [Outline.MOVETO, *[Outline.LINETO] * (len(ring) - 2), Outline.CLOSEPOLY] for ring in rings
+    ]
     path = Outline(np.concatenate(rings), np.concatenate(codes))
     look = _fill_of(region["stable"])
     axes.add_patch(PathPatch(path, lw=0, zorder=1, **look))

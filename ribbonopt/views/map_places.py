@@ -28,22 +28,23 @@ def places_of(marks: Array, sizes: Sequence[Array], taken: Array) -> list[Array]
         Points (m, 2), close together along lines.
     """
     found: list[tuple[Array, Array]] = []
-    for mark, size in zip(marks, sizes, strict=True):
+    for number, (mark, size) in enumerate(zip(marks, sizes, strict=True)):
         corners = _corners(size)
         # About the point itself, where there is room.
         corners = np.concatenate([np.clip(mark - size / 2, APART, 1 - APART - size)[None], corners])
         near = np.clip(mark, corners, corners + size)
         cost = np.hypot(*(near - mark).T) + 0.3 * np.hypot(*(corners + size / 2 - mark).T)
         cost[1:] += 0.02 * ELSEWHERE
-        on = ((taken > corners[:, None]) & (taken < corners[:, None] + size)).all(axis=2).sum(axis=1)
+        on = (
+            ((taken > corners[:, None]) & (taken < corners[:, None] + size)).all(axis=2).sum(axis=1)
+        )
         cost += np.where(on > 0, CROSSED + MORE * on, 0.0)
         for corner, other in found:
             apart = (corners >= corner + other + APART) | (corner >= corners + size + APART)
             cost += 1e3 * ~apart.any(axis=1)
-        for other in marks:  # no picture hides the point that another one is of
-            if other is not mark:
-                hidden = ((other > corners) & (other < corners + size)).all(axis=1)
-                cost += 0.3 * hidden
+        for k in range(len(marks)):  # no picture hides the point that another one is of
+            if k != number:
+                cost += 0.3 * ((marks[k] > corners) & (marks[k] < corners + size)).all(axis=1)
         found.append((corners[int(cost.argmin())], size))
     return [corner for corner, _ in found]
 

@@ -68,7 +68,8 @@ def _words(axes: Axes, point: Row, corner: Array, size: Array) -> None:
     stable, count = point["stable"], point["count"]
     text = f"{stable} of {count} stable" if count > 1 else "1 stable" if stable else "1, unstable"
     axes.text(
-        *(corner + np.array([size[0] / 2, WORDS / 2])),
+        float(corner[0] + size[0] / 2),
+        float(corner[1] + WORDS / 2),
         text,
         transform=axes.transAxes,
         ha="center",

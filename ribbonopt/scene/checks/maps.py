@@ -56,8 +56,9 @@ def _numbers(scene: Scene, plan: MapPlan) -> Iterator[Problem]:
         if not low < high:
             message = "expected a range from a smaller to a larger number; write for example "
             example = [high, low] if high < low else [low, low + 1]
-            yield Problem((*where, path), f'{message}"[{example[0]:g}, {example[1]:g}]"',
-                          written((low, high)))
+            yield Problem(
+                (*where, path), f'{message}"[{example[0]:g}, {example[1]:g}]"', written((low, high))
+            )
 
 
 def _places(plan: MapPlan) -> Iterator[Problem]:

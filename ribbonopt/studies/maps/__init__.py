@@ -1,1 +1,1 @@
-"""Maps: a rectangle of two parameters, cut by loci into regions, in each of which shapes are counted."""
+"""Maps: a rectangle of two parameters that loci cut into regions, and the shapes in each."""

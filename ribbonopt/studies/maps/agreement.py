@@ -35,7 +35,9 @@ def disagreement(kind: str, negative: int | None, here: Row, there: Row) -> str:
     for below in range(negative):
         if one.get(below, 0) != other.get(below, 0):
             word = "stable shapes" if below == 0 else f"shapes with {below} negative directions"
-            return f"{one.get(below, 0)} and {other.get(below, 0)} {word}, which nothing there changes"
+            return (
+                f"{one.get(below, 0)} and {other.get(below, 0)} {word}, which nothing there changes"
+            )
     change = one.get(negative, 0) - other.get(negative, 0)
     if kind == FOLD and negative == 0 and change == 0:
         return f"{one.get(0, 0)} stable shapes on both sides of a fold of stable ones"

@@ -45,7 +45,7 @@ def counted(scene: Scene, prepared: Prepared) -> Counted:
     negative = [negative_directions(one) for one in found]
     rows = tuple(
         {"energy": one.energy, "negative": n, "stable": n == 0, "error": error_of(one), "images": 1}
-        for one, n in zip(found, negative)
+        for one, n in zip(found, negative, strict=True)
     )
     return Counted(tuple(found), rows, len(found), sum(n == 0 for n in negative), "twelve starts")
 

@@ -1,4 +1,4 @@
-"""Where polylines of a plane meet: they are split there, so that what is left meets at its ends only.
+"""Polylines of a plane, split where they meet, so that what is left meets at its ends only.
 
 Lengths are those of the plane in which the rectangle of the map is the unit square.
 """

@@ -1,4 +1,4 @@
-"""The faces of a net in the plane: what its edges enclose, with the holes that others make in it."""
+"""The faces of a net in the plane: what its edges enclose, with the holes that others make."""
 
 from __future__ import annotations
 
@@ -84,7 +84,8 @@ def faces_of(net: Net) -> Faces:
             continue
         part = parts[net.edges[cycles[k][0] // 2, 0]]
         around = [
-            o for o in inner
+            o
+            for o in inner
             if parts[net.edges[cycles[o][0] // 2, 0]] != part
             and _inside(rings[k][:1], Face(rings[o]).sides)[0]
         ]
@@ -154,7 +155,7 @@ def _area(ring: Array) -> float:
 
 
 def _inside(points: Array, sides: Array) -> NDArrayBool:
-    """Return whether points (n, 2) lie inside rings of sides (m, 2, 2): an odd number of crossings."""
+    """Return whether points (n, 2) lie inside rings of sides (m, 2, 2), an odd number of them."""
     x, y = points[:, :1], points[:, 1:]
     (ax, ay), (bx, by) = sides[:, 0].T, sides[:, 1].T
     spans = (ay > y) != (by > y)

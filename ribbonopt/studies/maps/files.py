@@ -127,8 +127,8 @@ class MapFolder:
         place = self.folder / SCENE
         if not os.path.exists(place) or read_text(place, SAVED) != text:
             raise OutputError(
-                f"{self.folder}: holds a map of another scene; resume with the scene (and --set) it "
-                "was begun with, or choose another folder"
+                f"{self.folder}: holds a map of another scene; resume with the scene (and --set) "
+                "it was begun with, or choose another folder"
             )
 
     def _full(self, error: OSError) -> OutputError:

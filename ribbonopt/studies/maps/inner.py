@@ -1,4 +1,4 @@
-"""The innermost point of a face, from which its border is farthest, and points far from that one."""
+"""The innermost point of a face, from which its border is farthest, and others far from it."""
 
 from __future__ import annotations
 

@@ -38,13 +38,14 @@ def smooth(points: Array, corners: Collection[int] = ()) -> Array:
     if last < 2:
         return _straight(points)
     cuts = sorted({0, *(i for i in corners if 0 < i < last), last})
-    parts = [_curve(points[a : b + 1], _closed(points) and len(cuts) == 2)
-             for a, b in pairwise(cuts)]
+    parts = [
+        _curve(points[a : b + 1], _closed(points) and len(cuts) == 2) for a, b in pairwise(cuts)
+    ]
     return np.concatenate([parts[0], *(part[1:] for part in parts[1:])])
 
 
 def joined(lines: Sequence[Array]) -> list[Array]:
-    """Return lines (k, 2) and the border first, each led on from its ends to what is within reach."""
+    """Return the border and lines (k, 2), each led on from its ends to what is within reach."""
     all_ = [BORDER, *lines]
     found = [BORDER]
     for own, line in enumerate(lines, start=1):

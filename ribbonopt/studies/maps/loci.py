@@ -1,4 +1,4 @@
-"""Loci in the plane of a map: where they go, and whether a special point is on one that is known."""
+"""Loci in the plane of a map: where they go, and whether a special point is on a known one."""
 
 from __future__ import annotations
 

@@ -1,7 +1,7 @@
 """A map that was drawn: loci, regions and counts as plain data, branches and shapes on demand.
 
-    found = ribbonopt.load("results/NAME-map")
-    found.plot()
+found = ribbonopt.load("results/NAME-map")
+found.plot()
 """
 
 from __future__ import annotations
@@ -76,6 +76,18 @@ class Map:
         """The loci, each as the branch that it is."""
         return [Branch.load(self.folder / locus["folder"]) for locus in self.data["loci"]]
 
+    @property
+    def held(self) -> str:
+        """What it holds that can be looked at by itself, in words for who asks for the whole."""
+        names = [f"{line['folder']}/1" for line in self.data["lines"]][:1]
+        names += [each["folder"] for each in self.data["loci"]][:1]
+        names += [f"{each['folder']}/1" for each in self.data["points"]][:1]
+        some = ", ".join(one_line(str(self.folder / name)) for name in names)
+        return (
+            f"{one_line(str(self.folder))}: is a map, which is drawn by ribbonopt plot; choose a "
+            f"branch, a locus or a shape in it, such as {some}"
+        )
+
     def shapes(self, point: int) -> list[Solution]:
         """Return the equilibria at a counted point, by its number from 1; those saved."""
         found = {each["number"]: each for each in self.data["points"]}
@@ -95,7 +107,9 @@ class Map:
         for point in firsts.values():
             stable = [i for i, shape in enumerate(point["shapes"], start=1) if shape["stable"]]
             place = self.folder / point["folder"]
-            found[point["number"]] = [load_solution(place / str(i), built=self._built) for i in stable]
+            found[point["number"]] = [
+                load_solution(place / str(i), built=self._built) for i in stable
+            ]
         return found
 
     def plot(self, style: object | None = None) -> Figure:

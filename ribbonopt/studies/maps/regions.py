@@ -35,7 +35,7 @@ class Region:
     clear : float
         How far that is from the border.
     beside : dict
-        Its neighbours by number, each with the lines that lie between, and how long these are there.
+        Its neighbours by number, each with the lines between, and how long these are there.
     """
 
     face: Face
@@ -58,7 +58,8 @@ def regions_of(lines: Sequence[Array]) -> list[Region]:
     found = faces_of(net)
     points = [innermost(face) for face in found.faces]
     inside = [
-        i for i, (face, (point, _)) in enumerate(zip(found.faces, points, strict=True))
+        i
+        for i, (face, (point, _)) in enumerate(zip(found.faces, points, strict=True))
         if ((point >= 0) & (point <= 1)).all() and face.area > NOTHING
     ]
     inside.sort(key=lambda i: -found.faces[i].area)
@@ -73,6 +74,4 @@ def regions_of(lines: Sequence[Array]) -> list[Region]:
         for one, other in ((a, b), (b, a)):
             shared = beside[one].setdefault(other, {})
             shared[int(owner) - 1] = shared.get(int(owner) - 1, 0.0) + float(length)
-    return [
-        Region(found.faces[face], *points[face], beside[i]) for i, face in enumerate(inside)
-    ]
+    return [Region(found.faces[face], *points[face], beside[i]) for i, face in enumerate(inside)]

@@ -1,7 +1,7 @@
 """A map from beginning to end: jobs on workers, rows kept as they come, the map written.
 
-    with closing(MapFolder("results/NAME-map", scene, resume=False)) as folder:
-        run_map(scene, folder)
+with closing(MapFolder("results/NAME-map", scene, resume=False)) as folder:
+    run_map(scene, folder)
 """
 
 from __future__ import annotations

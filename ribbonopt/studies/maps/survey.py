@@ -55,7 +55,9 @@ class Survey:
         self._follow_lines()
         for row in self.lines:
             self._follow_loci(row)
-        self.regions.extend(regions_of([locus.curve for locus in self.loci if len(locus.points) > 1]))
+        self.regions.extend(
+            regions_of([locus.curve for locus in self.loci if len(locus.points) > 1])
+        )
         self._count()
         self._agree()
 
@@ -176,7 +178,7 @@ class Survey:
                 self.doubts.append(_lost("count", job.inputs, self.plan, row))
 
     def _region_at(self, place: Array) -> int:
-        """Return the region that a point of the square is in; the largest where it is on a border."""
+        """Return the region that a point of the square is in; the largest if it is on a border."""
         holds = (bool(region.face.contains(place[None])[0]) for region in self.regions)
         return next((i for i, inside in enumerate(holds) if inside), 0)
 

@@ -1,7 +1,7 @@
 """What workers do for a map: follow the branches on a line, follow a locus, count shapes.
 
-Each takes the scene of a job and gives what its row says beside its inputs. What is found is written
-to the job's folder, which is there as a whole or not at all.
+Each takes the scene of a job and gives what its row says beside its inputs. What is found is
+written to the job's folder, which is there as a whole or not at all.
 """
 
 from __future__ import annotations
@@ -17,6 +17,7 @@ from ribbonopt.output.staging import staged_result
 from ribbonopt.pipeline.prepared import Prepared
 from ribbonopt.plain import Row
 from ribbonopt.scene import Scene
+from ribbonopt.scene.stages import stages_of
 from ribbonopt.solution.solution import Solution
 from ribbonopt.studies.batch.branches import OWN
 from ribbonopt.studies.continuation.branch import Branch
@@ -36,7 +37,7 @@ Prepare = Callable[[Scene], Prepared]
 
 @dataclass(frozen=True)
 class Place:
-    """The folder of a job: that of the map, its own name in it, seconds to wait for a dead worker."""
+    """The folder of a job: that of the map, its name in it, seconds to wait for a dead worker."""
 
     root: Path
     name: str
@@ -59,7 +60,7 @@ def follow_line(scene: Scene, prepare: Prepare, place: Place, inputs: Row) -> Ro
     prepared, rows, told = prepare(bare), list[list[Row]](), list[str]()
     specials: list[Row] = []
     seeds = all_of(bare, prepared)
-    begin = scene.continuation.from_  # type: ignore[union-attr]
+    begin = stages_of(scene)[0].from_ or 0.0
     with staged_result(place.path, NUMBERED, wait=place.wait, durable=False) as staged:
         for seed in seeds[:MOST]:
             if is_known(seed, rows, along, begin):
@@ -69,15 +70,20 @@ def follow_line(scene: Scene, prepare: Prepare, place: Place, inputs: Row) -> Ro
             rows += branches_of(found)
             told.append(ending)
             where = f"{place.name}/{name}"
-            where = {**inputs, "folder": f"{place.name}/{name}"}
+            said: Row = {**inputs, "folder": f"{place.name}/{name}"}
             specials += [
-                {**where, **row, "near": _beside(found, i, along)}
+                {**said, **row, "near": _beside(found, i, along)}
                 for i, row in enumerate(found)
                 if row["kind"] != POINT
             ]
         staged.commit()
-    return {**DONE, "branches": len(told), "seeds": len(seeds), "endings": told,
-            "specials": specials}
+    return {
+        **DONE,
+        "branches": len(told),
+        "seeds": len(seeds),
+        "endings": told,
+        "specials": specials,
+    }
 
 
 def follow_locus(scene: Scene, prepare: Prepare, place: Place, inputs: Row) -> Row:
@@ -102,12 +108,17 @@ def count_shapes(scene: Scene, prepare: Prepare, place: Place, inputs: Row) -> R
             folder.mkdir()
             save_solution(solution, folder)
         staged.commit()
-    return {**DONE, "count": found.count, "stable": found.stable, "shapes": list(found.rows),
-            "told": found.told}
+    return {
+        **DONE,
+        "count": found.count,
+        "stable": found.stable,
+        "shapes": list(found.rows),
+        "told": found.told,
+    }
 
 
 def _beside(rows: Sequence[Row], i: int, along: str) -> Row:
-    """Return the number of the regular point next to the special point i on its branch, and where."""
+    """Return the regular point next to the special point i on its branch: number and value."""
     same = ("stage", "branch")
     for other in (*reversed(rows[:i]), *rows[i + 1 :]):
         if other["kind"] == POINT and all(other[key] == rows[i][key] for key in same):
