@@ -23,6 +23,7 @@ from .in_short import in_short
 from .inertia import AnyInertia
 from .laws import Law
 from .loads import Loads
+from .maps import MapPlan
 from .membrane import AnyMembrane
 from .natural import Natural
 from .schema.bounds import Bounds
@@ -166,6 +167,10 @@ class Scene:
     equilibria
         That `solve` looks for all equilibria, unstable ones too, along branches through their
         folds. Example: `all` or `{along: [parameters.angle], below: 20}`
+    map
+        What `ribbonopt map` draws: loci of folds and branch points in the plane of two numbers, and
+        how many shapes there are in each region.
+        Example: `{parameters: {parameters.angle: [0, 60], parameters.distance: [0.05, 0.4]}}`
     """
 
     name: str
@@ -199,5 +204,6 @@ class Scene:
     labels: dict[str, str] = field(default_factory=dict)
     inertia: AnyInertia | None = None
     equilibria: Literal["all"] | Equilibria | None = None
+    map: MapPlan | None = None
 
     __repr__ = in_short  # `dump_scene` says all of it

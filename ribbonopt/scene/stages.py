@@ -57,9 +57,10 @@ def extent_of(stage: ContinuationStage) -> tuple[float, float]:
 
 
 def followed_stages(scene: Scene) -> Iterator[tuple[KeyPath, ContinuationStage]]:
-    """Yield the stages as they are followed, each with where it stands: two for some loci."""
-    for path, stage in located_stages(scene):
-        if stage.is_locus and stage.of and stage.between and stage.branch is None:
+    """Yield the stages as they are followed, each with where it stands: two for a locus alone."""
+    for number, (path, stage) in enumerate(located_stages(scene)):
+        alone = number == 0 and stage.branch is None
+        if stage.is_locus and stage.of and stage.between and alone:
             yield path, branch_of(stage, stage.of, stage.between)
         yield path, stage
 
