@@ -19,6 +19,7 @@ from .ends import Boundary, Loop
 from .frames import LabVector, Triple
 from .guesses import Guess, Numbers3
 from .in_short import in_short
+from .inertia import AnyInertia
 from .laws import Law
 from .loads import Loads
 from .membrane import AnyMembrane
@@ -158,6 +159,9 @@ class Scene:
     labels
         What numbers are called beside the axes of figures, by their columns; formulas stand between
         $. Example: `{energy: $E$, middle: height}`
+    inertia
+        Of sections that turn, for natural frequencies: `ribbon` has that of a strip of the width of
+        the `ribbon`, w^2/12 about normal and tangent; without it none. Example: `{d3: 0.01}`
     """
 
     name: str
@@ -189,5 +193,6 @@ class Scene:
     planar: bool = False
     symmetric: bool | Literal["d1", "d2", "-d1", "-d2"] = False
     labels: dict[str, str] = field(default_factory=dict)
+    inertia: AnyInertia | None = None
 
     __repr__ = in_short  # `dump_scene` says all of it

@@ -72,3 +72,16 @@ class Point(Generic[S]):
         where = f"{moved} = {self.row[moved]:.10g}" if moved else f"position {self.position:.10g}"
         place = f"{self.number} of stage {self.stage}, branch {self.branch}"
         return f"<Point {place}: {self.kind}, {where}>"
+
+
+@dataclass(frozen=True, eq=False)
+class Special(Generic[S]):
+    """What was found between two points.
+
+    Special points by arclength, what was not resolved, and how many test functions have changed
+    their sign: two at a pitchfork that is met from its side.
+    """
+
+    points: list[Point[S]]
+    unresolved: tuple[str, ...] = ()
+    changes: int = 0
