@@ -135,6 +135,11 @@ class Chart:
         w, positions = self.line.split(unknowns)
         return local(self.line, self.across, w, positions, (Row(self.line, self.along, 0.0),))
 
+    @property
+    def scale(self) -> float:
+        """Logarithm of the determinant that counts as one, of which one was read."""
+        return self._scale[0]
+
     def _test(self, found: Local, first: Array, second: Array) -> float:
         if self.kind == FOLD:
             area = first[-2] * second[-1] - first[-1] * second[-2]

@@ -107,7 +107,7 @@ class LocusEquations:
         """Find the special point at an l2."""
         ahead = np.zeros_like(self.metric.sizes)
         ahead[-1] = self.metric.sizes[-1]
-        return self.located(origin, ahead, guess, guess, 0.0)
+        return self.located(origin, ahead, guess, guess, 0.0, exact=True)
 
     def correct_along(
         self,
@@ -122,13 +122,25 @@ class LocusEquations:
         return self.located(origin.solution, along, origin.unknowns, guess, arc)
 
     def located(
-        self, origin: Solution, along: Array, start: Array, guess: Array, arc: float
+        self,
+        origin: Solution,
+        along: Array,
+        start: Array,
+        guess: Array,
+        arc: float,
+        *,
+        exact: bool = False,
     ) -> Trial[Solution]:
-        """Find the special point on a slice, `along` (m,) of which is `arc` from a start."""
+        """Find the special point on a slice, `along` (m,) of which is `arc` from a start.
+
+        `exact` says that the slice is the l2 of the guess.
+        """
         try:
             laid = self.laid(origin)
             chart = self.chart(origin, start, along, self.reduced(origin, laid.across))
-            found = found_on(chart, arc, guess)
+            found = found_on(chart, arc, guess, laid.across)
+            if exact:
+                found.y[-1] = guess[-1]  # to the last digit
             solution = self.restored(origin, found.y)
             solution.trajectory.found[Laid] = self._laid(solution, chart, found)
         except (Lost, np.linalg.LinAlgError) as failure:

@@ -53,8 +53,10 @@ class Lost(Exception):
     """There is no special point on a slice; says why."""
 
 
-def found_on(chart: Chart, s: float, guess: Array) -> Found:
+def found_on(chart: Chart, s: float, guess: Array, way: Array) -> Found:
     """Return the special point on the slice at s, near a guess (n + 2,).
+
+    `way` (n + 2,) goes across, in which t grows by one; nothing but guesses depends on it.
 
     Raises
     ------
@@ -63,22 +65,23 @@ def found_on(chart: Chart, s: float, guess: Array) -> Found:
     LinAlgError
         If the surface is not found, or singular.
     """
-    one = _Slice(chart, s, guess)
+    one = _Slice(chart, s, guess, way)
     return one.fold() if chart.kind == FOLD else one.crossing()
 
 
 class _Slice:
     """One slice: what is known of it, by the place across."""
 
-    def __init__(self, chart: Chart, s: float, guess: Array) -> None:
-        self.chart, self.s, self.guess = chart, s, guess
+    def __init__(self, chart: Chart, s: float, guess: Array, way: Array) -> None:
+        self.chart, self.s, self.guess, self.way = chart, s, guess, way
         self.middle = chart.place(guess)[1]
         self.known: dict[float, Sample] = {}
 
     def at(self, t: float) -> Sample:
         """Return the surface at a place."""
         if t not in self.known:
-            guess = self.unknowns(t) if self.known else self.guess
+            first = self.guess + (t - self.middle) * self.way
+            guess = self.unknowns(t) if self.known else first
             self.known[t] = self.chart.sample(guess, self.s, t)
         return self.known[t]
 
