@@ -81,7 +81,7 @@ def _figure(
         rows,
         tuple(pairs or _usual(rows, continuation.recorder)),
         title=scene.name,
-        log=[stage.parameter for stage in continuation.stages if stage.scale == "log"],
+        log=[stage.moved for stage in continuation.stages if stage.scale == "log"],
         jumps=[row["number"] for row in rows if JUMPED in row.get("note", "")],
         si=scene.ribbon is not None,
         labels={**scene.labels, **labels},

@@ -32,19 +32,48 @@ def stages_of(scene: Scene) -> tuple[ContinuationStage, ...]:
     """Return the stages of a scene with every `from_` filled in, in the units of the scene.
 
     A stage begins at its own `from_` or first value, or else where an earlier stage left its
-    parameter, or else at the scene's own value.
+    parameter, or else at the scene's own value. A locus that is followed from a branch of its own
+    is two stages: that branch, up to its special point, and the locus.
 
     Raises
     ------
     SceneError
         If a parameter is no number of the scene.
     """
-    stages = []
-    for _, stage in located_stages(scene):
+    stages: list[ContinuationStage] = []
+    for _, stage in followed_stages(scene):
         begin, end = begin_of(stage, scene), end_of(stage)
-        stages.append(replace(stage, from_=begin))
-        scene = scene if end is None else with_value(scene, stage.parameter, end)
+        between = stage.between or (extent_of(stages[-1]) if stage.is_locus and stages else None)
+        stages.append(replace(stage, from_=begin, between=between))
+        scene = scene if end is None else with_value(scene, stage.moved, end)
     return tuple(stages)
+
+
+def extent_of(stage: ContinuationStage) -> tuple[float, float]:
+    """Return the least and the largest value that a stage goes to, whose `from_` is given."""
+    assert stage.from_ is not None
+    places = stage.from_, *ends_of(stage)
+    return min(places), max(places)
+
+
+def followed_stages(scene: Scene) -> Iterator[tuple[KeyPath, ContinuationStage]]:
+    """Yield the stages as they are followed, each with where it stands: two for a locus alone."""
+    for number, (path, stage) in enumerate(located_stages(scene)):
+        alone = number == 0 and stage.branch is None
+        if stage.is_locus and stage.of and stage.between and alone:
+            yield path, branch_of(stage, stage.of, stage.between)
+        yield path, stage
+
+
+def branch_of(
+    locus: ContinuationStage, kind: str, between: tuple[float, float]
+) -> ContinuationStage:
+    """Return the stage up to the special point that a locus begins with."""
+    stop = kind if locus.number == 1 else f"{locus.number} {kind}s"
+    begin, end = between
+    return ContinuationStage(
+        locus.paths[0], to=end, from_=begin, stop=(stop,), stability=locus.stability
+    )
 
 
 def located_stages(scene: Scene) -> Iterator[tuple[KeyPath, ContinuationStage]]:
@@ -60,7 +89,7 @@ def begin_of(stage: ContinuationStage, scene: Scene) -> float:
     """Return where a stage begins in a scene to which earlier stages have led."""
     if stage.from_ is None and stage.values:
         return stage.values[0]
-    own = value_at(scene, stage.parameter)
+    own = value_at(scene, stage.moved)
     return own if stage.from_ is None else stage.from_
 
 

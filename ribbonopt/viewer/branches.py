@@ -85,7 +85,7 @@ def figure_of(branch: Branch) -> BranchFigure:
         branch.rows,
         tuple((VALUE, name) for name in list(formulas)[:1]),
         title=branch.scene.name,
-        log=[stage.parameter for stage in stages if stage.scale == "log"],
+        log=[stage.moved for stage in stages if stage.scale == "log"],
         jumps=[row["number"] for row in branch.rows if JUMPED in (row.get("note") or "")],
         si=branch.scene.ribbon is not None,
     )

@@ -48,7 +48,7 @@ def check_continuation(scene: Scene, check: Check | None) -> list[Problem]:
     now, check = scene, None if problems else check
     for path, stage in located_stages(scene):
         found = list(_form(stage, scene, path))
-        if fault := fault_of(now, stage.parameter):
+        if fault := fault_of(now, stage.moved):
             found.append(Problem((*path, "parameter"), fault))
         elif not found:
             found = list(_way(stage, now, path))
@@ -56,7 +56,7 @@ def check_continuation(scene: Scene, check: Check | None) -> list[Problem]:
                 found = list(_bad_ends(stage, now, path, check))
         end = end_of(stage)
         if not found and end is not None:
-            now = with_value(now, stage.parameter, end)
+            now = with_value(now, stage.moved, end)
         problems += found
     return problems
 
@@ -121,11 +121,11 @@ def _way(stage: ContinuationStage, scene: Scene, path: KeyPath) -> Iterator[Prob
         yield Problem((*path, "from"), message, f"{begin:g}")
     if isinstance(stage.to, tuple):
         if not min(stage.to) < begin < max(stage.to):
-            message = f"of which one is to be below and one above where {stage.parameter} begins, "
+            message = f"of which one is to be below and one above where {stage.moved} begins, "
             message += f"{begin:g}; for one direction write one number"
             yield Problem((*path, "to"), message, written(stage.to))
     elif not stage.values and begin in ends:
-        message = f"which is where {stage.parameter} begins; expected another value, or remove the"
+        message = f"which is where {stage.moved} begins; expected another value, or remove the"
         yield Problem((*path, "to"), f"{message} stage", f"{begin:g}")
     named = {"values": min(stage.values)} if stage.values else {"from": begin, "to": min(ends)}
     for key, value in named.items():
@@ -148,7 +148,7 @@ def _bad_ends(
     for key, value in ends.items():
         if value is None:
             continue  # the scene's own value, or where another stage ended
-        trial = replace(with_value(scene, stage.parameter, value), continuation=None)
+        trial = replace(with_value(scene, stage.moved, value), continuation=None, map=None)
         try:
             problems = check(validate(Scene, trial))
         except InvalidSceneError as error:

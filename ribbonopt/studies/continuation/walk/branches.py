@@ -98,6 +98,7 @@ class Branch(Generic[S]):
         self.first: Point[S] | None = None
         self.last: Point[S] | None = None
         self.branch_points: list[Point[S]] = []
+        self.special: Point[S] | None = None  # beyond the last point
         kinds = (POINT, *SPECIAL)
         points = [point for kind in kinds for point in common.history.points(*self.key, kind)]
         for point in sorted(points, key=lambda point: point.number):
@@ -154,8 +155,10 @@ class Branch(Generic[S]):
         self.common.atlas.note(self.trace, point)
         self.kinds[point.kind] += 1
         if point.kind == POINT:
-            self.first, self.last = self.first or point, point
-        elif point.kind in CROSSINGS:
+            self.first, self.last, self.special = self.first or point, point, None
+            return
+        self.special = point
+        if point.kind in CROSSINGS:
             self.branch_points.append(point)
 
     def _arrived(self, point: Point[S]) -> bool:

@@ -16,9 +16,8 @@ from ribbonopt.arrays import Array
 
 from .beside import strays
 from .course import Course, joined, leaving
-from .points import FOLD, POINT, Point, S
+from .points import FOLD, POINT, Point, S, Special
 from .protocol import Equations, Passage, Range, Trial
-from .special import Special, special_points
 from .strides import Prediction, Stride
 from .tangents import headed, moved, renewed
 
@@ -202,7 +201,7 @@ class Stepper(Generic[S]):
         """Return what is special between two points of one layout, in the range."""
         if not self.range.special:
             return Special([])
-        found = special_points(self.equations, point, following)
+        found = self.equations.special(point, following)
         heading = np.sign(goal - point.position)
         beyond = [p for p in found.points if heading * (p.position - goal) > 0]
         if any(p.kind == FOLD for p in beyond):
