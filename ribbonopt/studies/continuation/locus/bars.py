@@ -42,7 +42,7 @@ def barred(equations: LocusEquations, trial: Trial[Solution]) -> Trial[Solution]
         l1 = float(trial.unknowns[-2])
         if tolerance is None or equations.surface.relative_of(error, l1) <= tolerance:
             break
-        again = _on_finer_mesh(equations, trial)
+        again = on_finer_mesh(equations, trial)
         if not again.converged:
             break
         trial = again
@@ -120,7 +120,7 @@ class _Better:
         return local(self.line, self.row, w, positions, self.further)
 
 
-def _on_finer_mesh(equations: LocusEquations, trial: Trial[Solution]) -> Trial[Solution]:
+def on_finer_mesh(equations: LocusEquations, trial: Trial[Solution]) -> Trial[Solution]:
     """Find a point again on halved elements."""
     solution, laid = trial.solution, equations.laid(trial.solution)
     mesh = Mesh(tuple(np.repeat(widths / 2, 2) for widths in solution.mesh.phases))

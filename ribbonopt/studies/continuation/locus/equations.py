@@ -30,6 +30,7 @@ from ..walk.special import Special
 from .bars import barred
 from .chart import Chart
 from .laid import Laid
+from .special import special_of
 from .slices import Found, Lost, found_on
 from .surface import Surface
 
@@ -179,7 +180,7 @@ class LocusEquations:
 
     def special(self, a: Point[Solution], b: Point[Solution]) -> Special[Solution]:
         """Return what is special between two points of one layout."""
-        return Special([])
+        return special_of(self, a, b)
 
     def crossings(self, a: Point[Solution], b: Point[Solution]) -> list[Point[Solution]]:
         """Return nothing: `special` tells all."""
