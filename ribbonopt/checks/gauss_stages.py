@@ -68,12 +68,15 @@ class GaussStages:
     error: float
 
 
-def gauss_stages(solution: Solution, ribbon: Ribbon, theta: Array) -> GaussStages:
+def gauss_stages(
+    solution: Solution, ribbon: Ribbon, theta: Array, *, again: bool = False
+) -> GaussStages:
     """Return a solution at its own stages where they are those of a Gauss scheme, else at others.
 
     At its own stages it is an equilibrium of the discrete energy too, to rounding, whatever its
     mesh: there the estimated error tells how near it is to the true one. At others it is not, and
-    the gradient of the energy tells. `theta` are the numbers of the ribbon.
+    the gradient of the energy tells. `theta` are the numbers of the ribbon. `again` is for a second
+    opinion: at a degree less, or in elements half as wide where there is none.
     """
     trajectory, degree = solution.trajectory, solution.dense.blocks.degree
     widths, parts = np.diff(trajectory.nodes), 1
@@ -82,12 +85,15 @@ def gauss_stages(solution: Solution, ribbon: Ribbon, theta: Array) -> GaussStage
         places = _places(widths, degree)
         if np.abs(own - places).max() < SAME:
             error = _known_error(solution)
-    if error is not None:
+    if error is None:
+        parts = -(-LEAST_ELEMENTS // len(widths))
+        degree = min(degree, max(4, STAGES // (parts * len(widths))), HIGHEST_DEGREE)
+    if again:
+        parts, degree = (parts, degree - 1) if degree > 1 else (2 * parts, degree)
+    if error is not None and not again:
         along: Mapping[str, Array] = trajectory.at_stages
     else:
-        parts = -(-LEAST_ELEMENTS // len(widths))
         widths = np.repeat(widths / parts, parts)
-        degree = min(degree, max(4, STAGES // len(widths)), HIGHEST_DEGREE)
         places = _places(widths, degree)
         along = trajectory.outputs(places)
     lengths = np.array(trajectory.dense.blocks.layout.elements)

@@ -1,0 +1,45 @@
+"""Inertia and time of small vibrations in the units of a scene."""
+
+from __future__ import annotations
+
+import numpy as np
+
+from ribbonopt.mechanics.widths import own_width
+from ribbonopt.scene.inertia import Inertia
+from ribbonopt.solution.solution import Solution
+
+from .kinetic import Gyration
+
+DIMENSIONLESS = "sqrt(Dw/(rho L^4))"
+STRIP = 12.0  # squared width over squared radius of gyration, about the normal and the tangent
+
+
+def gyration_of(solution: Solution, inertia: Inertia | None) -> Gyration | str:
+    """Return the squared radii of gyration of a solution's sections, L = 1, or why not."""
+    scene = solution.scene
+    asked = scene.inertia if inertia is None else inertia
+    if asked is None:
+        return Gyration()
+    length = solution.units.length
+    if isinstance(asked, Inertia):
+        return Gyration(asked.d1 / length**2, asked.d3 / length**2)
+    width = own_width(scene)
+    if width is None:
+        return "inertia: ribbon takes its numbers from the width of the `ribbon`, which is not said"
+    strip = (width / length) ** 2 / STRIP
+    return Gyration(strip, strip)
+
+
+def unit_of_time(solution: Solution) -> float | str:
+    """Return one over the unit of omega, in s of a scene in SI, or why it is not known.
+
+    Inside, frequencies are in units sqrt(Dw / (rho L^4)), Dw = L = 1 and rho = 1 of a section of
+    the ribbon's own width.
+    """
+    units, ribbon = solution.units, solution.scene.ribbon
+    mass = 1.0
+    if ribbon is not None:
+        if ribbon.density is None:
+            return "frequencies in Hz need the mass of the ribbon (ribbon.density)"
+        mass = ribbon.density * ribbon.width * ribbon.thickness
+    return float(np.sqrt(mass / units.force)) * units.length
