@@ -12,6 +12,7 @@ closed one, if H is definite: an isola centre; else two branches cross there.
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -31,7 +32,7 @@ if TYPE_CHECKING:
     from .equations import LocusEquations
 
 ROUND = 0.5  # least cosine of the angle that the direction in the plane turns by in one step
-ASIDE = 0.03  # arclength on both sides of a special point, between which it is found again
+ASIDE = 0.25  # of a step: on both sides of a special point, between which it is found again
 BESIDE = 1e-3  # half the arclength that second derivatives of l2 are taken over
 MEETS = {
     DETERMINANT: "a locus of branch points is met",
@@ -45,9 +46,21 @@ DIRECTION = "direction of the locus"
 class Root:
     """Where a test function vanishes between two points."""
 
+    equations: LocusEquations
     beside: Beside[Solution]
-    readings: Readings
     arc: float
+    name: str
+
+    @cached_property
+    def unknowns(self) -> Array:
+        """Unknowns (n + 2,) there: of the locus, or interpolated where that is singular."""
+        beside, guess = self.beside, self.beside.unknowns(self.arc)
+        if self.equations.kind == FOLD and self.name != DETERMINANT:
+            a = beside.a
+            trial = self.equations.correct_along(a, a.tangent, self.arc, guess, ENOUGH)
+            if trial.converged:
+                return trial.unknowns
+        return guess
 
 
 def special_of(
@@ -73,7 +86,7 @@ def special_of(
         return Special([])
     unresolved = tuple(name for name, arc in roots.items() if arc is None)
     found = sorted((arc, name) for name, arc in roots.items() if arc is not None)
-    points = [_point(equations, Root(beside, readings, arc), name) for arc, name in found]
+    points = [_point(Root(equations, beside, arc, name)) for arc, name in found]
     return Special(points, unresolved, len(names))
 
 
@@ -82,14 +95,14 @@ def _root(beside: Beside[Solution], readings: Readings, name: str) -> float | No
     return beside.root(lambda probe: readings.at(probe.solution, probe.unknowns).values[name])
 
 
-def _point(equations: LocusEquations, root: Root, name: str) -> Point[Solution]:
+def _point(root: Root) -> Point[Solution]:
     """Return the special point at a root, with its kind and its error."""
-    place = root.beside.unknowns(root.arc)
+    equations, name, place = root.equations, root.name, root.unknowns
     error, note = None, MEETS.get(name, "")
-    finer = _finer(equations, root, name)
+    finer = _finer(root)
     if finer is not None:
-        moved = np.abs(finer.beside.unknowns(finer.arc)[-2:] - place[-2:])
-        root, place = finer, finer.beside.unknowns(finer.arc)
+        moved = np.abs(finer.unknowns[-2:] - place[-2:])
+        root, place = finer, finer.unknowns
         error = max(SAFETY * float(moved[0]), ROUNDING * abs(float(place[-2])))
     a = root.beside.a
     solution, tangent = equations.restored(a.solution, place), root.beside.tangent(root.arc)
@@ -124,10 +137,10 @@ def _level(equations: LocusEquations, point: Point[Solution]) -> str:
     return ISOLA if ss * tt - st * ts > 0 else CROSSING
 
 
-def _finer(equations: LocusEquations, root: Root, name: str) -> Root | None:
+def _finer(root: Root) -> Root | None:
     """Return the root between two points of the locus on a mesh twice as fine."""
-    beside, a = root.beside, root.beside.a
-    aside = min(ASIDE, beside.reach(root.arc))
+    equations, name, beside, a = root.equations, root.name, root.beside, root.beside.a
+    aside = min(ASIDE * beside.whole, beside.reach(root.arc))
     sides: list[Point[Solution]] = []
     try:
         for arc in (root.arc - aside, root.arc + aside):
@@ -150,4 +163,4 @@ def _finer(equations: LocusEquations, root: Root, name: str) -> Root | None:
         arc_again = _root(again, readings, name) if first * last < 0 else None
     except np.linalg.LinAlgError:
         return None
-    return None if arc_again is None else Root(again, readings, arc_again)
+    return None if arc_again is None else Root(equations, again, arc_again, name)
