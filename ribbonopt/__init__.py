@@ -2,7 +2,7 @@
 
 `load_scene` reads a scene, `solve` finds its equilibrium, a `Solution` is sampled, saved, plotted
 or used as the next guess; `Continuation`, `run_batch` and `compare` solve many. `load` reads back
-whatever was written: a `Solution`, a `Branch` or a `Batch`. Names are imported when first used.
+whatever was written: a `Solution`, `Branch`, `Batch` or `Map`. Names are imported when first used.
 """
 
 from __future__ import annotations
@@ -29,6 +29,7 @@ if TYPE_CHECKING:
     from .studies.continuation.continuation import Continuation
     from .studies.continuation.files import load_branch
     from .studies.loading import load
+    from .studies.maps.map import Map
     from .views import plot_plane, plot_ribbon, plot_strains, save_figures
 
 __version__ = version.VERSION
@@ -37,6 +38,7 @@ __all__ = [
     "Batch",
     "Branch",
     "Continuation",
+    "Map",
     "Scene",
     "Solution",
     "__version__",
@@ -67,6 +69,7 @@ _HOMES = {
     "Batch": "studies.batch.results",
     "Branch": "studies.continuation.branch",
     "Continuation": "studies.continuation.continuation",
+    "Map": "studies.maps.map",
     "Scene": "scene",
     "Solution": "solution.solution",
     "buckling_loads": "studies.buckling.buckling",

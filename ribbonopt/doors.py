@@ -69,6 +69,15 @@ def batch_drawn(
     return figure
 
 
+def map_drawn(
+    data: Mapping[str, Any], shapes: Mapping[int, Sequence[object]], style: object | None
+) -> Figure:
+    """Return the figure of a map, with the shapes at its counted points."""
+    draw, style = door("views", "plot_map"), style or door("views", "Style")()
+    figure: Figure = draw(data, shapes, style=style)
+    return figure
+
+
 def frame_along(solution: object, s: object | None) -> DataFrame:
     """Return a table of a solution along s."""
     table: DataFrame = door("output.frames", "frame_along")(solution, s)

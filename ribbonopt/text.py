@@ -34,6 +34,8 @@ RESERVED_NAMES = frozenset(
         *("laws.csv", "laws.json", "laws.png", "special.csv", "special.png"),
         *("verification.csv", "verification.json", "verification.md"),
         *("stress.csv", "stress.json", "stress.png", "view.html"),
+        *("map.json", "map.csv", "map.png", "map.svg", "map.pdf", "jobs.jsonl"),
+        *("branches", "loci", "points"),
     )
 )
 _EXECUTED = frozenset("=+-@")

@@ -28,6 +28,10 @@ VERBS = {
         "follow a scene's equilibria as a parameter moves (its `continuation`)",
         options.follow,
     ),
+    "map": (
+        "draw where a scene's shapes come and go as two numbers vary, and how many there are",
+        options.mapped,
+    ),
     "batch": ("solve all ribbons of a study, on all cores", options.batch),
     "verify": ("compute numbers with sources again, and say which are confirmed", options.verify),
     "schema": ("print the JSON schema of scenes or studies, for editors", options.schema),

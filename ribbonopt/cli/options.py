@@ -77,6 +77,14 @@ def follow(verb: argparse.ArgumentParser) -> None:
     )
 
 
+def mapped(verb: argparse.ArgumentParser) -> None:
+    """Options of `map`."""
+    _scene(verb)
+    verb.add_argument("--jobs", metavar="N", help="worker processes (default: one for each core)")
+    verb.add_argument("--out", metavar="DIR", help="folder of the map (default: results/NAME-map)")
+    verb.add_argument("--resume", action="store_true", help="go on with the map in the folder")
+
+
 def batch(verb: argparse.ArgumentParser) -> None:
     """Options of `batch`."""
     verb.add_argument(

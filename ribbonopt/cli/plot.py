@@ -1,4 +1,4 @@
-"""Verb `plot`: pictures of a saved result, branch or batch."""
+"""Verb `plot`: pictures of a saved result, branch, batch or map."""
 
 from __future__ import annotations
 
@@ -42,6 +42,16 @@ def plot(options: argparse.Namespace) -> int:
 
         def draw(folder: Path) -> list[Path]:
             return draw_batch(result, folder, pairs, asked)
+
+    elif is_file(result / "map.json"):
+        from .map import draw as draw_map
+
+        refuse_pairs = pairs and f"--plot: {result} is a map, which has no columns to be drawn"
+        if refuse_pairs:
+            raise SceneError(refuse_pairs)
+
+        def draw(folder: Path) -> list[Path]:
+            return draw_map(result, folder, asked)
 
     elif pairs:
         raise SceneError(

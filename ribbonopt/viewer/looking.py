@@ -12,12 +12,15 @@ from ribbonopt.solution.solution import Solution
 from ribbonopt.studies.batch.results import Batch
 from ribbonopt.studies.continuation.branch import Branch
 from ribbonopt.studies.loading import load
+from ribbonopt.studies.maps.map import Map
 
 from .view import View
 
 
 def view_of(
-    thing: Solution | Branch | Batch, half_width: float | None = None, modes: Modes | None = None
+    thing: Solution | Branch | Batch | Map,
+    half_width: float | None = None,
+    modes: Modes | None = None,
 ) -> View:
     """Return the view of what was solved.
 
@@ -36,7 +39,8 @@ def view_of(
     ModelError
         If half_width is not positive.
     ViewError
-        If there is nothing to be seen, or a branch or a batch is to have modes.
+        If there is nothing to be seen, or a branch or a batch is to have modes; or it is a map,
+        which is a plane figure.
     OutputError
         If a point of a branch, or a saved solution, is damaged.
     """
@@ -50,6 +54,8 @@ def view_of(
         from .batches import view_of_batch
 
         return view_of_batch(thing, half_width)
+    if isinstance(thing, Map):
+        raise ViewError(thing.held)
     from .solutions import view_of_solution
 
     return view_of_solution(thing, half_width, modes)

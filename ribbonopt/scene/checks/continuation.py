@@ -148,7 +148,7 @@ def _bad_ends(
     for key, value in ends.items():
         if value is None:
             continue  # the scene's own value, or where another stage ended
-        trial = replace(with_value(scene, stage.moved, value), continuation=None)
+        trial = replace(with_value(scene, stage.moved, value), continuation=None, map=None)
         try:
             problems = check(validate(Scene, trial))
         except InvalidSceneError as error:

@@ -119,6 +119,10 @@ def check(scene: Scene, like: Sound | None = None) -> list[Problem]:
         from .continuation import check_continuation
 
         problems += check_continuation(scene, None if problems else check)
+    if scene.map is not None:
+        from .maps import check_map  # few scenes are mapped
+
+        problems += check_map(scene, scene.map, None if problems else check)
     return problems
 
 
