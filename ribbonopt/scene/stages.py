@@ -58,10 +58,14 @@ def extent_of(stage: ContinuationStage) -> tuple[float, float]:
 
 def followed_stages(scene: Scene) -> Iterator[tuple[KeyPath, ContinuationStage]]:
     """Yield the stages as they are followed, each with where it stands: two for some loci."""
+    before = None
     for path, stage in located_stages(scene):
-        if stage.is_locus and stage.of and stage.between and stage.branch is None:
+        # What the stage before has moved is where it has stopped.
+        begun = stage.branch is not None or before == stage.paths[0]
+        if stage.is_locus and stage.of and stage.between and not begun:
             yield path, branch_of(stage, stage.of, stage.between)
         yield path, stage
+        before = stage.moved
 
 
 def branch_of(
