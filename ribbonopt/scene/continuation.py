@@ -57,6 +57,10 @@ class ContinuationStage:
         Whether negative directions are counted where the scene is conservative; `eigenvalue` if the
         smallest eigenvalue of the second variation is recorded besides, as `softest`.
         Example: `eigenvalue`
+    modes
+        How many natural frequencies are recorded at every point that is not special, lowest first,
+        as `frequency1` and so on, and their squares omega^2 as `squared1`, which go through zero at
+        folds and branch points. Example: `3`
     """
 
     parameter: str
@@ -72,6 +76,7 @@ class ContinuationStage:
     special: bool = True
     switch: bool | Annotated[int, Bounds(ge=0, most=limits.BRANCHES)] = False
     stability: bool | Literal["eigenvalue"] = True
+    modes: Annotated[int, Bounds(ge=0, most=limits.MODES)] = 0
 
     @property
     def measured(self) -> bool:
