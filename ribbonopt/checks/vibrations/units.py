@@ -5,13 +5,12 @@ from __future__ import annotations
 import numpy as np
 
 from ribbonopt.mechanics.widths import own_width
-from ribbonopt.scene.inertia import Inertia
+from ribbonopt.scene.inertia import Inertia, of_width
 from ribbonopt.solution.solution import Solution
 
 from .kinetic import Gyration
 
 DIMENSIONLESS = "sqrt(Dw/(rho L^4))"
-STRIP = 12.0  # squared width over squared radius of gyration, about the normal and the tangent
 
 
 def gyration_of(solution: Solution, inertia: Inertia | None) -> Gyration | str:
@@ -21,13 +20,12 @@ def gyration_of(solution: Solution, inertia: Inertia | None) -> Gyration | str:
     if asked is None:
         return Gyration()
     length = solution.units.length
-    if isinstance(asked, Inertia):
-        return Gyration(asked.d1 / length**2, asked.d3 / length**2)
-    width = own_width(scene)
-    if width is None:
-        return "inertia: ribbon takes its numbers from the width of the `ribbon`, which is not said"
-    strip = (width / length) ** 2 / STRIP
-    return Gyration(strip, strip)
+    if not isinstance(asked, Inertia):
+        width = own_width(scene)
+        if width is None:
+            return "inertia: ribbon takes the width of the `ribbon`, which is not said"
+        asked = of_width(width)
+    return Gyration(asked.d1 / length**2, asked.d3 / length**2)
 
 
 def unit_of_time(solution: Solution) -> float | str:
