@@ -61,7 +61,7 @@ def error_of(equations: LocusEquations, trial: Trial[Solution], laid: Laid) -> f
     e = e / np.linalg.norm(e)
     off = abs(e[1] * step[0] / spans[0] - e[0] * step[1] / spans[1])
     error = SAFETY * spans[0] * off / max(abs(e[1]), STEEPEST)
-    return float(max(error, ROUNDING * abs(trial.unknowns[-2])))
+    return float(max(error + laid.doubt, ROUNDING * abs(trial.unknowns[-2])))
 
 
 def _moved(equations: LocusEquations, trial: Trial[Solution], laid: Laid) -> Array:

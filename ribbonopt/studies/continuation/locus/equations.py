@@ -176,7 +176,7 @@ class LocusEquations:
         part = metric.product(n, t)
         across, n = across - part * tangent, n - part * t
         size = metric.length(n)
-        return Laid(tangent, across / size, found.slope, found.sides)
+        return Laid(tangent, across / size, found.slope, found.sides, doubt=found.doubt)
 
     def special(self, a: Point[Solution], b: Point[Solution]) -> Special[Solution]:
         """Return what is special between two points of one layout."""
