@@ -24,7 +24,7 @@ from ribbonopt.solution.solution import Solution
 
 from ..walk.beside import ENOUGH, Beside, Probe
 from ..walk.points import CROSSING, CUSP, DOUBLE, FOLD, ISOLA, TURN, Point, Special
-from .bars import ROUNDING, SAFETY, on_finer_mesh
+from .bars import ROUNDING, SAFETY, halved
 from .laid import Laid
 from .readings import AREA, DETERMINANT, SLOPE, SPEED, Readings
 from .readings import TURN as TURNS
@@ -186,28 +186,32 @@ def _level(equations: LocusEquations, point: Point[Solution]) -> str:
 
 def _finer(root: Root) -> Root | None:
     """Return the root between two points of the locus on a mesh twice as fine."""
-    equations, name, beside, a = root.equations, root.name, root.beside, root.beside.a
+    equations, beside = root.equations, root.beside
     aside = min(ASIDE * beside.whole, beside.reach(root.arc))
-    sides: list[Point[Solution]] = []
     try:
-        for arc in (root.arc - aside, root.arc + aside):
-            trial = equations.correct_along(a, a.tangent, arc, beside.unknowns(arc), ENOUGH)
-            trial = on_finer_mesh(equations, trial) if trial.converged else trial
-            if not trial.converged:
-                return None
-            tangent = equations.laid(trial.solution).tangent
-            ahead = equations.reduced(trial.solution, tangent)
-            if equations.metric.product(ahead, beside.along) < 0:
-                tangent = -tangent
-            length = equations.metric.length(ahead)
-            sides.append(
-                replace(
-                    a, solution=trial.solution, unknowns=trial.unknowns, tangent=tangent / length
-                )
-            )
+        sides = [_on_halves(equations, beside, root.arc + off) for off in (-aside, aside)]
         readings, again = Readings(equations, sides[0]), Beside(equations, *sides)
-        first, last = (readings.at(p.solution, p.unknowns).values[name] for p in sides)
-        arc_again = _root(again, readings, name) if first * last < 0 else None
+        first, last = (readings.at(p.solution, p.unknowns).values[root.name] for p in sides)
+        arc = _root(again, readings, root.name) if first * last < 0 else None
     except np.linalg.LinAlgError:
         return None
-    return None if arc_again is None else Root(equations, again, arc_again, name)
+    return None if arc is None else Root(equations, again, arc, root.name)
+
+
+def _on_halves(
+    equations: LocusEquations, beside: Beside[Solution], arc: float
+) -> Point[Solution]:
+    """Return the point of a locus at an arclength on halved elements; LinAlgError for none."""
+    a = beside.a
+    trial = equations.correct_along(a, a.tangent, arc, beside.unknowns(arc), ENOUGH)
+    if trial.converged:
+        finer, y = halved(equations, trial)
+        begin = replace(a, solution=finer, unknowns=y)
+        trial = equations.correct_along(begin, equations.laid(finer).tangent, 0.0, y, ENOUGH)
+    if not trial.converged:
+        raise np.linalg.LinAlgError(trial.message)
+    tangent = equations.laid(trial.solution).tangent
+    ahead = equations.reduced(trial.solution, tangent)
+    sign = 1.0 if equations.metric.product(ahead, beside.along) >= 0 else -1.0
+    tangent = sign * tangent / equations.metric.length(ahead)
+    return replace(a, solution=trial.solution, unknowns=trial.unknowns, tangent=tangent)
