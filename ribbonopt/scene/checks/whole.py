@@ -100,6 +100,10 @@ def check(scene: Scene, like: Sound | None = None) -> list[Problem]:
         from .membrane import check_membrane  # as above
 
         problems += check_membrane(scene, scene.membrane)
+    if scene.inertia is not None:
+        from .inertia import check_inertia  # as above
+
+        problems += check_inertia(scene, scene.inertia)
     if scene.loads.points or scene.supports:
         from .stations import check_stations  # few scenes have any
 
