@@ -160,8 +160,9 @@ class Scene:
         What numbers are called beside the axes of figures, by their columns; formulas stand between
         $. Example: `{energy: $E$, middle: height}`
     equilibria
-        That `solve` looks for all equilibria, unstable ones too, along branches through their
-        folds. Example: `all` or `{along: [parameters.angle], below: 20}`
+        That `solve` and batches look for all equilibria, unstable ones too, along branches through
+        their folds; `continue` and comparisons leave it aside.
+        Example: `all` or `{along: [parameters.angle], below: 20}`
     """
 
     name: str
