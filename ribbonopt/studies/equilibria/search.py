@@ -34,6 +34,10 @@ MET = 1e-4  # arclength between two estimates of one point where branches cross
 Tell = Callable[[str], None]
 
 
+def quiet(_: str) -> None:
+    """Tell nothing."""
+
+
 @dataclass(eq=False)
 class Node:
     """An equilibrium of the scene, and which halves of branches that leave it are followed.
