@@ -16,6 +16,7 @@ from . import limits
 from .along import Along
 from .continuation import ContinuationStage
 from .ends import Boundary, Loop
+from .equilibria import Equilibria
 from .frames import LabVector, Triple
 from .guesses import Guess, Numbers3
 from .in_short import in_short
@@ -159,6 +160,9 @@ class Scene:
     labels
         What numbers are called beside the axes of figures, by their columns; formulas stand between
         $. Example: `{energy: $E$, middle: height}`
+    equilibria
+        That `solve` looks for all equilibria, unstable ones too, along branches through their
+        folds. Example: `all` or `{along: [parameters.angle], below: 20}`
     map
         What `ribbonopt map` draws: loci of folds and branch points in the plane of two numbers, and
         how many shapes there are in each region.
@@ -194,6 +198,7 @@ class Scene:
     planar: bool = False
     symmetric: bool | Literal["d1", "d2", "-d1", "-d2"] = False
     labels: dict[str, str] = field(default_factory=dict)
+    equilibria: Literal["all"] | Equilibria | None = None
     map: MapPlan | None = None
 
     __repr__ = in_short  # `dump_scene` says all of it
