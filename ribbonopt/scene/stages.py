@@ -57,12 +57,15 @@ def extent_of(stage: ContinuationStage) -> tuple[float, float]:
 
 
 def followed_stages(scene: Scene) -> Iterator[tuple[KeyPath, ContinuationStage]]:
-    """Yield the stages as they are followed, each with where it stands: two for a locus alone."""
-    for number, (path, stage) in enumerate(located_stages(scene)):
-        alone = number == 0 and stage.branch is None
-        if stage.is_locus and stage.of and stage.between and alone:
+    """Yield the stages as they are followed, each with where it stands: two for some loci."""
+    before = None
+    for path, stage in located_stages(scene):
+        # What the stage before has moved is where it has stopped.
+        begun = stage.branch is not None or before == stage.paths[0]
+        if stage.is_locus and stage.of and stage.between and not begun:
             yield path, branch_of(stage, stage.of, stage.between)
         yield path, stage
+        before = stage.moved
 
 
 def branch_of(

@@ -42,7 +42,7 @@ def barred(equations: LocusEquations, trial: Trial[Solution]) -> Trial[Solution]
         l1 = float(trial.unknowns[-2])
         if tolerance is None or equations.surface.relative_of(error, l1) <= tolerance:
             break
-        again = _on_finer_mesh(equations, trial)
+        again = on_finer_mesh(equations, trial)
         if not again.converged:
             break
         trial = again
@@ -61,7 +61,7 @@ def error_of(equations: LocusEquations, trial: Trial[Solution], laid: Laid) -> f
     e = e / np.linalg.norm(e)
     off = abs(e[1] * step[0] / spans[0] - e[0] * step[1] / spans[1])
     error = SAFETY * spans[0] * off / max(abs(e[1]), STEEPEST)
-    return float(max(error, ROUNDING * abs(trial.unknowns[-2])))
+    return float(max(error + laid.doubt, ROUNDING * abs(trial.unknowns[-2])))
 
 
 def _moved(equations: LocusEquations, trial: Trial[Solution], laid: Laid) -> Array:
@@ -120,7 +120,7 @@ class _Better:
         return local(self.line, self.row, w, positions, self.further)
 
 
-def _on_finer_mesh(equations: LocusEquations, trial: Trial[Solution]) -> Trial[Solution]:
+def on_finer_mesh(equations: LocusEquations, trial: Trial[Solution]) -> Trial[Solution]:
     """Find a point again on halved elements."""
     solution, laid = trial.solution, equations.laid(trial.solution)
     mesh = Mesh(tuple(np.repeat(widths / 2, 2) for widths in solution.mesh.phases))

@@ -20,7 +20,7 @@ import numpy as np
 from ribbonopt.arrays import Array
 from ribbonopt.classes import dataclass
 from ribbonopt.solvers.extended import ExtendedSystem, Line
-from ribbonopt.solvers.local import Local, local
+from ribbonopt.solvers.local import Local, local, local_near
 from ribbonopt.solvers.newton import NewtonSolver
 from ribbonopt.transcription import NLP
 
@@ -121,19 +121,27 @@ class Chart:
 
     def sample(self, guess: Array, s: float, t: float) -> Sample:
         """Return the surface at a place; LinAlgError if it is not found, or singular there."""
-        return self.read(self.corrected(guess, s, t), t)
+        y = self.corrected(guess, s, t)
+        w, positions = self.line.split(y)
+        found, _ = local_near(self.line, self.across, w, positions, self._further)
+        # Factors were kept until the last step was small enough; these are of this very place.
+        return self._sample(found, y + found.step, t)
 
     def read(self, unknowns: Array, t: float = 0.0) -> Sample:
         """Return tangents and test function of what may be next to the surface."""
-        found = self._local(unknowns)
+        w, positions = self.line.split(unknowns)
+        found = local(self.line, self.across, w, positions, self._further)
+        return self._sample(found, unknowns, t)
+
+    @property
+    def _further(self) -> tuple[Row, ...]:
+        return (Row(self.line, self.along, 0.0),)
+
+    def _sample(self, found: Local, unknowns: Array, t: float) -> Sample:
         rows = np.zeros(len(found.residuals.conditions))
         rows[-2] = 1.0
         first, second = found.solve(rows), found.direction
         return Sample(t, unknowns, first, second, self._test(found, first, second))
-
-    def _local(self, unknowns: Array) -> Local:
-        w, positions = self.line.split(unknowns)
-        return local(self.line, self.across, w, positions, (Row(self.line, self.along, 0.0),))
 
     @property
     def scale(self) -> float:

@@ -30,6 +30,7 @@ from ..walk.special import Special
 from .bars import barred
 from .chart import Chart
 from .laid import Laid
+from .special import special_of
 from .slices import Found, Lost, found_on
 from .surface import Surface
 
@@ -175,11 +176,11 @@ class LocusEquations:
         part = metric.product(n, t)
         across, n = across - part * tangent, n - part * t
         size = metric.length(n)
-        return Laid(tangent, across / size, found.slope, found.sides)
+        return Laid(tangent, across / size, found.slope, found.sides, doubt=found.doubt)
 
     def special(self, a: Point[Solution], b: Point[Solution]) -> Special[Solution]:
         """Return what is special between two points of one layout."""
-        return Special([])
+        return special_of(self, a, b)
 
     def crossings(self, a: Point[Solution], b: Point[Solution]) -> list[Point[Solution]]:
         """Return nothing: `special` tells all."""

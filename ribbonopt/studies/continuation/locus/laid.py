@@ -22,6 +22,8 @@ class Laid:
         Equilibria on both sides of the locus, across; None where that is not known.
     error : float or None
         Bound of the error of l1; None where it is not known.
+    doubt : float
+        What of that error no finer scheme tells, as it comes from interpolation.
     negative : int or None
         Negative directions beside; None where they are not counted.
     """
@@ -31,4 +33,5 @@ class Laid:
     slope: float = 1.0
     sides: tuple[Array, Array] | None = None
     error: float | None = None
+    doubt: float = 0.0
     negative: int | None = None

@@ -16,15 +16,19 @@ from ..walk.points import FOLD
 from .chart import Chart, Sample
 
 REACH = 0.5  # arclength across, within which a special point is looked for
-FIRST = 0.01  # arclength between the first two places
+FIRST = 0.001  # arclength between the first two places: folds may be narrow on the surface
 APART = 1e-4  # arclength between places that a polynomial goes through
 SETTLED = 1e-9  # change of the place of a fold, in arclength: there parameters change by its square
 ROUNDS = 12
-NARROW = 0.006  # spacing of the places beside a branch point
+NARROW = 0.0025  # spacing of the places beside a branch point; halved while these are too far
+NARROWEST = 6e-4
 OFFSETS = (-3, -2, -1, 1, 2, 3)  # of these, in spacings
 CENTRED = 0.6  # of the spacing: how far the root may be from the middle
 REUSED = 0.25  # of the spacing: places that are this near are not read twice
-KNOTS = 4  # that unknowns are interpolated from
+KNOTS = 4  # that guesses are interpolated from
+DOUBT = 1e-10  # of what counts as one: change of a parameter by the outermost places, at most
+DIFFERENCES = 4e-10  # relative error of tangents, as derivatives by parameters are differences
+TRUSTED = 0.05  # of that change: error of what all places say, whose order is higher by two or four
 OFF = 0.3  # most distance of a point from its guess, of the arclength to the nearest known one
 
 
@@ -40,6 +44,8 @@ class Found:
         Derivative of the test function across.
     sides : pair of (n + 2,) arrays
         Points of the surface on both sides.
+    doubt : float
+        Error that the interpolation may leave in l1.
     """
 
     y: Array
@@ -47,6 +53,7 @@ class Found:
     second: Array
     slope: float
     sides: tuple[Array, Array]
+    doubt: float = 0.0
 
 
 class Lost(Exception):
@@ -85,9 +92,9 @@ class _Slice:
             self.known[t] = self.chart.sample(guess, self.s, t)
         return self.known[t]
 
-    def unknowns(self, t: float) -> Array:
+    def unknowns(self, t: float, count: int = KNOTS) -> Array:
         """Interpolate the unknowns (n + 2,) by points and tangents next to a place (Hermite)."""
-        knots = sorted(self.known.values(), key=lambda one: abs(one.t - t))[:KNOTS]
+        knots = sorted(self.known.values(), key=lambda one: abs(one.t - t))[:count]
         places = np.array([one.t for one in knots])
         found = np.zeros_like(knots[0].y)
         for i, one in enumerate(knots):
@@ -140,13 +147,26 @@ class _Slice:
             if root is None or abs(root - self.middle) > REACH:
                 raise Lost("no branch point was found near by")
             change, t = root - t, root
-            if abs(change) <= CENTRED * h:
-                break
-        else:
-            raise Lost("no branch point was found near by")
-        y = self.unknowns(t)
-        first, second = (_interpolated(values, t, name) for name in ("first", "second"))
-        return Found(y, first, second, slope, (values[0].y, values[-1].y))
+            if abs(change) > CENTRED * h:
+                continue
+            y, doubt = self._between(values, t)
+            if doubt <= DOUBT or h / 2 < NARROWEST:
+                first, second = (_interpolated(values, t, name) for name in ("first", "second"))
+                sides = values[0].y, values[-1].y
+                steep = max(abs(float(one.second[-2])) for one in values)
+                doubt = TRUSTED * doubt * self.chart.spans[0] + DIFFERENCES * h * steep
+                return Found(y, first, second, slope, sides, doubt)
+            h /= 2
+        raise Lost("no branch point was found near by")
+
+    def _between(self, values: list[Sample], t: float) -> tuple[Array, float]:
+        """Return the unknowns at a root, and what the outermost places change of the parameters."""
+        y, coarser = self.unknowns(t, len(values)), self.unknowns(t, len(values) - 2)
+        inner, _ = _root(values[1:-1], t)
+        off = np.abs(y - coarser)[-2:]
+        if inner is not None:
+            off += abs(inner - t) * np.abs(_interpolated(values, t, "second")[-2:])
+        return y, float((off / np.array(self.chart.spans)).max())
 
     def _near(self, t: float, within: float) -> Sample:
         nearest = min(self.known, key=lambda place: abs(place - t))

@@ -13,6 +13,10 @@ KINK = "kink"  # branches meet at an angle where the equations change, as phases
 # Where other branches cross; at the last two without a derivative.
 CROSSINGS = (BRANCH_POINT, BUCKLING, KINK)
 SPECIAL = (FOLD, *CROSSINGS)
+# On loci: where the fold's curve in the plane of the parameters has a point; where folds at one l2
+# meet, and the branches there are a single point, or cross; where two loci meet; where one turns.
+CUSP, ISOLA, CROSSING, DOUBLE, TURN = "cusp", "isola centre", "crossing", "double point", "turn"
+TURNING = (FOLD, CUSP, ISOLA, CROSSING, TURN)  # the position turns there
 
 S = TypeVar("S")  # what a solution is, is the business of the equations
 

@@ -1,0 +1,153 @@
+"""Special points of a locus: cusps, isola centres, crossings, double points and turns.
+
+They are where a test function of `readings` changes its sign from one point to the next, located
+like those of branches: from a distance, by the root of a polynomial; then once more on a mesh
+twice as fine, which tells the error of both parameters.
+
+Where a locus of folds turns in l2 the surface of equilibria is level in l2. So with the second
+derivatives H of l2 on it there is, at a given l2 on one side, no branch and on the other a small
+closed one, if H is definite: an isola centre; else two branches cross there.
+"""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from ribbonopt.arrays import Array
+from ribbonopt.classes import dataclass
+from ribbonopt.solution.solution import Solution
+
+from ..walk.beside import ENOUGH, Beside
+from ..walk.points import CROSSING, CUSP, DOUBLE, FOLD, ISOLA, TURN, Point, Special
+from .bars import ROUNDING, SAFETY, on_finer_mesh
+from .laid import Laid
+from .readings import AREA, DETERMINANT, SLOPE, SPEED, Readings
+from .readings import TURN as TURNS
+
+if TYPE_CHECKING:
+    from .equations import LocusEquations
+
+ROUND = 0.5  # least cosine of the angle that the direction in the plane turns by in one step
+ASIDE = 0.03  # arclength on both sides of a special point, between which it is found again
+BESIDE = 1e-3  # half the arclength that second derivatives of l2 are taken over
+MEETS = {
+    DETERMINANT: "a locus of branch points is met",
+    AREA: "a locus of folds is met",
+    SLOPE: "another locus of branch points is met",
+}
+DIRECTION = "direction of the locus"
+
+
+@dataclass(frozen=True, eq=False)
+class Root:
+    """Where a test function vanishes between two points."""
+
+    beside: Beside[Solution]
+    readings: Readings
+    arc: float
+
+
+def special_of(
+    equations: LocusEquations, a: Point[Solution], b: Point[Solution]
+) -> Special[Solution]:
+    """Return what is special between two points of a locus, of one layout.
+
+    A test function that changes its sign without a root that is found is named in `unresolved`.
+    """
+    if len(a.unknowns) != len(b.unknowns):
+        return Special([])
+    try:
+        readings = Readings(equations, a)
+        first, last = (readings.at(p.solution, p.unknowns) for p in (a, b))
+        names = [name for name, value in first.values.items() if value * last.values[name] < 0]
+        if abs(float(first.way @ last.way)) < ROUND:
+            return Special([], (DIRECTION,), 1)
+        if not names:
+            return Special([])
+        beside = Beside(equations, a, b)
+        roots = {name: _root(beside, readings, name) for name in names}
+    except np.linalg.LinAlgError:
+        return Special([])
+    unresolved = tuple(name for name, arc in roots.items() if arc is None)
+    found = sorted((arc, name) for name, arc in roots.items() if arc is not None)
+    points = [_point(equations, Root(beside, readings, arc), name) for arc, name in found]
+    return Special(points, unresolved, len(names))
+
+
+def _root(beside: Beside[Solution], readings: Readings, name: str) -> float | None:
+    """Return the arclength where a test function vanishes, None where it is not found."""
+    return beside.root(lambda probe: readings.at(probe.solution, probe.unknowns).values[name])
+
+
+def _point(equations: LocusEquations, root: Root, name: str) -> Point[Solution]:
+    """Return the special point at a root, with its kind and its error."""
+    place = root.beside.unknowns(root.arc)
+    error, note = None, MEETS.get(name, "")
+    finer = _finer(equations, root, name)
+    if finer is not None:
+        moved = np.abs(finer.beside.unknowns(finer.arc)[-2:] - place[-2:])
+        root, place = finer, finer.beside.unknowns(finer.arc)
+        error = max(SAFETY * float(moved[0]), ROUNDING * abs(float(place[-2])))
+    a = root.beside.a
+    solution, tangent = equations.restored(a.solution, place), root.beside.tangent(root.arc)
+    nearest = min(root.beside.known.values(), key=lambda probe: abs(probe.arc - root.arc))
+    laid = equations.laid(nearest.solution)
+    solution.trajectory.found[Laid] = Laid(tangent, laid.across, laid.slope, error=error)
+    kind = DOUBLE if name in MEETS else CUSP if name == SPEED else TURN
+    if kind == TURN and equations.kind == FOLD:
+        kind = _level(equations, replace(a, solution=solution, unknowns=place, tangent=tangent))
+    return replace(
+        a, solution=solution, unknowns=place, tangent=tangent, kind=kind, note=note, error=error
+    )
+
+
+def _level(equations: LocusEquations, point: Point[Solution]) -> str:
+    """Return what is where l2 is level on the surface: ISOLA, CROSSING, or TURN for unknown."""
+    chart = Readings(equations, point).chart
+    try:
+        here = chart.read(point.unknowns)
+        rows = []
+        for i, tangent in enumerate((here.first, here.second)):
+            slopes = []
+            for sign in (1, -1):
+                place = [0.0, 0.0]
+                place[i] = sign * BESIDE
+                there = chart.sample(point.unknowns + sign * BESIDE * tangent, *place)
+                slopes.append(np.array([there.first[-1], there.second[-1]]))
+            rows.append((slopes[0] - slopes[1]) / (2 * BESIDE))
+    except np.linalg.LinAlgError:
+        return TURN
+    (ss, st), (ts, tt) = rows
+    return ISOLA if ss * tt - st * ts > 0 else CROSSING
+
+
+def _finer(equations: LocusEquations, root: Root, name: str) -> Root | None:
+    """Return the root between two points of the locus on a mesh twice as fine."""
+    beside, a = root.beside, root.beside.a
+    aside = min(ASIDE, beside.reach(root.arc))
+    sides: list[Point[Solution]] = []
+    try:
+        for arc in (root.arc - aside, root.arc + aside):
+            trial = equations.correct_along(a, a.tangent, arc, beside.unknowns(arc), ENOUGH)
+            trial = on_finer_mesh(equations, trial) if trial.converged else trial
+            if not trial.converged:
+                return None
+            tangent = equations.laid(trial.solution).tangent
+            ahead = equations.reduced(trial.solution, tangent)
+            if equations.metric.product(ahead, beside.along) < 0:
+                tangent = -tangent
+            length = equations.metric.length(ahead)
+            sides.append(
+                replace(
+                    a, solution=trial.solution, unknowns=trial.unknowns, tangent=tangent / length
+                )
+            )
+        readings, again = Readings(equations, sides[0]), Beside(equations, *sides)
+        first, last = (readings.at(p.solution, p.unknowns).values[name] for p in sides)
+        arc_again = _root(again, readings, name) if first * last < 0 else None
+    except np.linalg.LinAlgError:
+        return None
+    return None if arc_again is None else Root(again, readings, arc_again)
