@@ -108,13 +108,7 @@ def count_shapes(scene: Scene, prepare: Prepare, place: Place, inputs: Row) -> R
             folder.mkdir()
             save_solution(solution, folder)
         staged.commit()
-    return {
-        **DONE,
-        "count": found.count,
-        "stable": found.stable,
-        "shapes": list(found.rows),
-        "told": found.told,
-    }
+    return {**DONE, **row}
 
 
 def _beside(rows: Sequence[Row], i: int, along: str) -> Row:

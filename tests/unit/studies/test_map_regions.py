@@ -158,6 +158,6 @@ def test_smooth_curves_hold_their_points() -> None:
 def test_counts_across_a_locus(
     kind: str, negative: int | None, here: list[int], there: list[int], fits: bool
 ) -> None:
-    rows = [{"shapes": [{"negative": n, "images": 1} for n in found]} for found in (here, there)]
+    rows = [{"shapes": [{"negative": n} for n in found]} for found in (here, there)]
     assert (disagreement(kind, negative, *rows) == "") is fits
     assert (disagreement(kind, negative, *rows[::-1]) == "") is fits
