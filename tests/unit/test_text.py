@@ -8,7 +8,7 @@ import pytest
 from hostile import ALL, FORMULAS, MARKUP, NAMES_KEPT, NAMES_REFUSED, acting, texts
 
 from ribbonopt.cli.export import FOLDER
-from ribbonopt.output.declared import BATCH_PICTURES, BRANCH_PICTURES, MANIFEST
+from ribbonopt.output.declared import BATCH_PICTURES, BRANCH_PICTURES, MAP_PICTURES, MANIFEST
 from ribbonopt.output.staging import OWN_FILES
 from ribbonopt.scene.text.yamltext import read
 from ribbonopt.studies.batch.cells import as_cell, of_cell
@@ -91,6 +91,7 @@ def test_what_our_folders_hold_is_reserved() -> None:
     ours |= {"rows.jsonl", "table.csv", "study.json", "branch.jsonl", "branch.csv"}
     ours |= {*files_of("comparison"), *files_of("benchmark"), "special.csv"}
     ours |= {FOLDER, "laws.csv", "laws.json", "laws.png", *VERIFIED, *STRESSED}
+    ours |= {*MAP_PICTURES, *FOLDERS, "map.json", "map.csv", "jobs.jsonl"}
     assert ours == RESERVED_NAMES
     assert all(name_fault(name.upper()) for name in ours)
 
