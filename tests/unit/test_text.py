@@ -8,7 +8,7 @@ import pytest
 from hostile import ALL, FORMULAS, MARKUP, NAMES_KEPT, NAMES_REFUSED, acting, texts
 
 from ribbonopt.cli.export import FOLDER
-from ribbonopt.output.declared import BATCH_PICTURES, BRANCH_PICTURES, MAP_PICTURES, MANIFEST
+from ribbonopt.output.declared import BATCH_PICTURES, BRANCH_PICTURES, MANIFEST, MAP_PICTURES
 from ribbonopt.output.staging import OWN_FILES
 from ribbonopt.scene.text.yamltext import read
 from ribbonopt.studies.batch.cells import as_cell, of_cell

@@ -155,7 +155,11 @@ def _bad_ends(
     else:
         ends |= {("to",): stage.to}
     trials = [
-        ((*path, *key), value, replace(with_value(scene, stage.moved, value), continuation=None, map=None))
+        (
+            (*path, *key),
+            value,
+            replace(with_value(scene, stage.moved, value), continuation=None, map=None),
+        )
         for key, value in ends.items()
         if value is not None  # else the scene's own value, or where another stage ended
     ]
