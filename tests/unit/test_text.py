@@ -13,6 +13,7 @@ from ribbonopt.output.staging import OWN_FILES
 from ribbonopt.scene.text.yamltext import read
 from ribbonopt.studies.batch.cells import as_cell, of_cell
 from ribbonopt.studies.comparison.files import files_of
+from ribbonopt.studies.maps.jobs import FOLDERS
 from ribbonopt.studies.stress.files import FILES as STRESSED
 from ribbonopt.studies.verification.files import FILES as VERIFIED
 from ribbonopt.text import (
