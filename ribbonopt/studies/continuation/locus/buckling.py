@@ -219,7 +219,7 @@ class BucklingEquations:
         scene, surface = solution.scene, self.surface
         l2 = surface.position(value_at(scene, surface.name))
         place = np.array([value_at(scene, surface.other), l2])
-        found = self.plane.found(self.plane.across(place, np.array([1.0, 0.0])))
+        found = self.plane.found(np.array([[l1, l2] for l1 in surface.between]))
         if not found:
             raise np.linalg.LinAlgError(LOST)
         return min(found, key=lambda one: self.metric.length(one.place - place))

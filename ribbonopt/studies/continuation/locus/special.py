@@ -11,6 +11,7 @@ closed one, if H is definite: an isola centre; else two branches cross there.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -21,18 +22,19 @@ from ribbonopt.arrays import Array
 from ribbonopt.classes import dataclass
 from ribbonopt.solution.solution import Solution
 
-from ..walk.beside import ENOUGH, Beside
+from ..walk.beside import ENOUGH, Beside, Probe
 from ..walk.points import CROSSING, CUSP, DOUBLE, FOLD, ISOLA, TURN, Point, Special
-from .bars import ROUNDING, SAFETY, on_finer_mesh
+from .bars import ROUNDING, SAFETY, halved
 from .laid import Laid
 from .readings import AREA, DETERMINANT, SLOPE, SPEED, Readings
-from .readings import TURN as TURNS
 
 if TYPE_CHECKING:
     from .equations import LocusEquations
 
 ROUND = 0.5  # least cosine of the angle that the direction in the plane turns by in one step
 ASIDE = 0.25  # of a step: on both sides of a special point, between which it is found again
+ROUNDS, KNOTS = 20, 4  # of secants; points that they go through
+SETTLED = 1e-9  # change of a root, in arclength
 BESIDE = 1e-3  # half the arclength that second derivatives of l2 are taken over
 MEETS = {
     DETERMINANT: "a locus of branch points is met",
@@ -74,7 +76,7 @@ def special_of(
         return Special([])
     try:
         readings = Readings(equations, a)
-        first, last = (readings.at(p.solution, p.unknowns) for p in (a, b))
+        first, last = (readings.signs(p) for p in (a, b))
         names = [name for name, value in first.values.items() if value * last.values[name] < 0]
         if abs(float(first.way @ last.way)) < ROUND:
             return Special([], (DIRECTION,), 1)
@@ -91,8 +93,50 @@ def special_of(
 
 
 def _root(beside: Beside[Solution], readings: Readings, name: str) -> float | None:
-    """Return the arclength where a test function vanishes, None where it is not found."""
-    return beside.root(lambda probe: readings.at(probe.solution, probe.unknowns).values[name])
+    """Return the arclength where a test function vanishes, None where it is not found.
+
+    On a locus of folds nothing is singular there, but where another surface crosses.
+    """
+
+    def test(probe: Probe[Solution]) -> float:
+        return readings.at(probe.solution, probe.unknowns).values[name]
+
+    if readings.equations.kind == FOLD and name != DETERMINANT:
+        return _regular(beside, test)
+    return beside.root(test)
+
+
+def _regular(beside: Beside[Solution], test: Callable[[Probe[Solution]], float]) -> float | None:
+    """Return the root of a test function that can be read next to it, by secants of its inverse."""
+    values = {probe.arc: test(probe) for probe in beside.ends}
+    low, high = sorted(values)
+    if values[low] * values[high] > 0:
+        return None
+    arc = low + (high - low) * values[low] / (values[low] - values[high])
+    for _ in range(ROUNDS):
+        probe = beside.at(arc, 0.0)
+        if probe is None:
+            return None
+        values[arc] = test(probe)
+        low, high = (arc, high) if values[arc] * values[low] > 0 else (low, arc)
+        nearest = sorted(values, key=lambda place: abs(values[place]))[:KNOTS]
+        found = _inverse({place: values[place] for place in nearest})
+        if not low < found < high:
+            found = (low + high) / 2
+        if abs(found - arc) <= SETTLED:
+            return found
+        arc = found
+    return None
+
+
+def _inverse(values: Mapping[float, float]) -> float:
+    """Return where a function vanishes, by the polynomial of its inverse through some values."""
+    found = 0.0
+    for place, value in values.items():
+        others = (other for other in values.values() if other != value)
+        weight = float(np.prod([other / (other - value) for other in others]))
+        found += weight * place
+    return found
 
 
 def _point(root: Root) -> Point[Solution]:
@@ -139,28 +183,30 @@ def _level(equations: LocusEquations, point: Point[Solution]) -> str:
 
 def _finer(root: Root) -> Root | None:
     """Return the root between two points of the locus on a mesh twice as fine."""
-    equations, name, beside, a = root.equations, root.name, root.beside, root.beside.a
+    equations, beside = root.equations, root.beside
     aside = min(ASIDE * beside.whole, beside.reach(root.arc))
-    sides: list[Point[Solution]] = []
     try:
-        for arc in (root.arc - aside, root.arc + aside):
-            trial = equations.correct_along(a, a.tangent, arc, beside.unknowns(arc), ENOUGH)
-            trial = on_finer_mesh(equations, trial) if trial.converged else trial
-            if not trial.converged:
-                return None
-            tangent = equations.laid(trial.solution).tangent
-            ahead = equations.reduced(trial.solution, tangent)
-            if equations.metric.product(ahead, beside.along) < 0:
-                tangent = -tangent
-            length = equations.metric.length(ahead)
-            sides.append(
-                replace(
-                    a, solution=trial.solution, unknowns=trial.unknowns, tangent=tangent / length
-                )
-            )
+        sides = [_on_halves(equations, beside, root.arc + off) for off in (-aside, aside)]
         readings, again = Readings(equations, sides[0]), Beside(equations, *sides)
-        first, last = (readings.at(p.solution, p.unknowns).values[name] for p in sides)
-        arc_again = _root(again, readings, name) if first * last < 0 else None
+        first, last = (readings.at(p.solution, p.unknowns).values[root.name] for p in sides)
+        arc = _root(again, readings, root.name) if first * last < 0 else None
     except np.linalg.LinAlgError:
         return None
-    return None if arc_again is None else Root(equations, again, arc_again, name)
+    return None if arc is None else Root(equations, again, arc, root.name)
+
+
+def _on_halves(equations: LocusEquations, beside: Beside[Solution], arc: float) -> Point[Solution]:
+    """Return the point of a locus at an arclength on halved elements; LinAlgError for none."""
+    a = beside.a
+    trial = equations.correct_along(a, a.tangent, arc, beside.unknowns(arc), ENOUGH)
+    if trial.converged:
+        finer, y = halved(equations, trial)
+        begin = replace(a, solution=finer, unknowns=y)
+        trial = equations.correct_along(begin, equations.laid(finer).tangent, 0.0, y, ENOUGH)
+    if not trial.converged:
+        raise np.linalg.LinAlgError(trial.message)
+    tangent = equations.laid(trial.solution).tangent
+    ahead = equations.reduced(trial.solution, tangent)
+    sign = 1.0 if equations.metric.product(ahead, beside.along) >= 0 else -1.0
+    tangent = sign * tangent / equations.metric.length(ahead)
+    return replace(a, solution=trial.solution, unknowns=trial.unknowns, tangent=tangent)

@@ -46,7 +46,13 @@ class LocusStage:
     @property
     def records(self) -> LocusRecords:
         """What is recorded of its points."""
-        return LocusRecords(self.recorder, self.surface)
+        return LocusRecords(self.recorder, self.surface, self._beside)
+
+    def _beside(self, solution: Solution, unknowns: Array) -> Solution:
+        """Return a solution of unknowns (n + 2,) on the mesh and in the phases of another."""
+        search = self.prepared.search(self.surface.posed_at(*map(float, unknowns[-2:])))
+        attempt = search.on_mesh(solution.sheets, solution.mesh, solution.trajectory.ends[1:-1])
+        return attempt.restored(unknowns[:-2])
 
     @property
     def switch(self) -> int:
