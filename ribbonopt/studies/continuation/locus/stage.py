@@ -106,7 +106,8 @@ class LocusStage:
         equations = self.equations(start)
         trial = equations.correct_at(start, guess)
         if trial.converged:
-            point = Point(trial.solution, trial.unknowns, across, 0.0, 1.0)
+            tangent = equations.laid(trial.solution).tangent
+            point = Point(trial.solution, trial.unknowns, tangent, 0.0, 1.0)
             trial = equations.finished(point, trial)
         if not trial.converged:
             raise ConvergenceError(
