@@ -2,7 +2,7 @@
 
 `load_scene` reads a scene, `solve` finds its equilibrium, a `Solution` is sampled, saved, plotted
 or used as the next guess; `Continuation`, `run_batch` and `compare` solve many. `load` reads back
-whatever was written: a `Solution`, a `Branch` or a `Batch`. Names are imported when first used.
+whatever was written: a `Solution`, `Branch`, `Batch` or `Map`. Names are imported when first used.
 """
 
 from __future__ import annotations
@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from .exports import export
     from .output.results import load_solution, save_solution
     from .output.summary import summarize
-    from .pipeline.prepared import prepare, solve
+    from .pipeline.prepared import prepare
     from .scene import Scene, dump_scene, json_schema, load_scene, loads_scene
     from .solution.solution import Solution
     from .studies.batch.batch import run_batch
@@ -28,7 +28,10 @@ if TYPE_CHECKING:
     from .studies.continuation.branch import Branch
     from .studies.continuation.continuation import Continuation
     from .studies.continuation.files import load_branch
+    from .studies.equilibria import all_equilibria
     from .studies.loading import load
+    from .studies.maps.map import Map
+    from .studies.solving import solve
     from .views import plot_plane, plot_ribbon, plot_strains, save_figures
 
 __version__ = version.VERSION
@@ -37,9 +40,11 @@ __all__ = [
     "Batch",
     "Branch",
     "Continuation",
+    "Map",
     "Scene",
     "Solution",
     "__version__",
+    "all_equilibria",
     "buckling_loads",
     "compare",
     "dump_scene",
@@ -67,8 +72,10 @@ _HOMES = {
     "Batch": "studies.batch.results",
     "Branch": "studies.continuation.branch",
     "Continuation": "studies.continuation.continuation",
+    "Map": "studies.maps.map",
     "Scene": "scene",
     "Solution": "solution.solution",
+    "all_equilibria": "studies.equilibria",
     "buckling_loads": "studies.buckling.buckling",
     "compare": "studies.comparison.compare",
     "dump_scene": "scene",
@@ -88,7 +95,7 @@ _HOMES = {
     "run_batch": "studies.batch.batch",
     "save_figures": "views",
     "save_solution": "output.results",
-    "solve": "pipeline.prepared",
+    "solve": "studies.solving",
     "summarize": "output.summary",
 }
 

@@ -38,7 +38,7 @@ Kinds = list[list[list[int]]]
 
 
 @dataclass(frozen=True, eq=False)
-class _Described:
+class Described:
     """What tells one equilibrium from others."""
 
     solution: Solution
@@ -131,19 +131,20 @@ def least(solutions: Sequence[Solution], kinds: Kinds | None = None) -> Solution
     return replace(lowest, others=tuple(others))
 
 
-def distinct(solutions: Sequence[Solution]) -> Kinds:
+def distinct(solutions: Sequence[Solution], gap: float = SAME) -> Kinds:
     """Return the indices of each equilibrium's solutions, mirror images apart.
 
-    Equilibria come by increasing energy, images and their solutions in the order given.
+    Equilibria come by increasing energy, images and their solutions in the order given. `gap` is
+    the least difference, relative, of two that are not the same.
     """
-    kinds: list[list[tuple[_Described, list[int]]]] = []
+    kinds: list[list[tuple[Described, list[int]]]] = []
     for i, solution in enumerate(solutions):
-        new = _Described(solution)
-        kind = next((kind for kind in kinds if _same(kind[0][0], new, images=True)), None)
+        new = Described(solution)
+        kind = next((kind for kind in kinds if same(kind[0][0], new, images=True, gap=gap)), None)
         if kind is None:
             kinds.append([(new, [i])])
             continue
-        image = next((image for image in kind if _same(image[0], new, images=False)), None)
+        image = next((i for i in kind if same(i[0], new, images=False, gap=gap)), None)
         if image is None:
             kind.append((new, [i]))
         else:
@@ -164,10 +165,10 @@ def _variants(posed: Posed) -> Iterator[Shape]:
         yield Perturbed.at_random(base, AMPLITUDE, rng)
 
 
-def _same(a: _Described, b: _Described, *, images: bool) -> bool:
+def same(a: Described, b: Described, *, images: bool, gap: float = SAME) -> bool:
     """Whether two solutions are the same one, or mirror images where these count as that."""
-    gap = np.abs(a.invariants - b.invariants)
-    if (gap > SAME * np.maximum(np.abs(a.invariants), np.abs(a.invariants).max() * 1e-3)).any():
+    off = np.abs(a.invariants - b.invariants)
+    if (off > gap * np.maximum(np.abs(a.invariants), np.abs(a.invariants).max() * 1e-3)).any():
         return False
     if a.solution.scene.boundary.loop is not None:
         return True  # the same band may start elsewhere along itself
@@ -175,6 +176,6 @@ def _same(a: _Described, b: _Described, *, images: bool) -> bool:
     for signs in product((1, -1), repeat=3) if images else [(1, 1, 1)]:
         image = b.strains * np.array(signs)[:, None]
         for candidate in (image, image[:, ::-1]) if images else (image,):
-            if np.sqrt(np.mean((a.strains - candidate) ** 2)) <= SAME * size:
+            if np.sqrt(np.mean((a.strains - candidate) ** 2)) <= gap * size:
                 return True
     return False

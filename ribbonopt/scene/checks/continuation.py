@@ -96,6 +96,9 @@ def _form(stage: ContinuationStage, scene: Scene, path: KeyPath) -> Iterator[Pro
         if a > b:
             message = f"step sizes reversed: {small} {a:g} > {large} {b:g}; expected smallest <= "
             yield Problem((*path, small), f"{message}first <= largest, so exchange the two")
+    if stage.modes and scene.ribbon is not None and scene.ribbon.density is None:
+        message = "frequencies in Hz need the density of the ribbon, in kg/m^3; write for example "
+        yield Problem((*path, "modes"), f'{message}"density: 1390" under ribbon', f"{stage.modes}")
     for index, text in enumerate(stage.stop):
         yield from _stop(text, stage, scene, (*path, "stop", index))
 
@@ -152,7 +155,11 @@ def _bad_ends(
     else:
         ends |= {("to",): stage.to}
     trials = [
-        ((*path, *key), value, replace(with_value(scene, stage.moved, value), continuation=None))
+        (
+            (*path, *key),
+            value,
+            replace(with_value(scene, stage.moved, value), continuation=None, map=None),
+        )
         for key, value in ends.items()
         if value is not None  # else the scene's own value, or where another stage ended
     ]

@@ -222,4 +222,4 @@ class Curve:
     def _place(self) -> tuple[Scene, KeyPath]:
         """The scene without its continuation, and the steps to the parameter in it."""
         steps = steps_to(self.scene, self.stage.moved)
-        return replace(self.scene, continuation=None), steps
+        return replace(self.scene, continuation=None, map=None), steps

@@ -136,7 +136,7 @@ class Surface(Curve):
     def _places(self) -> tuple[Scene, KeyPath, KeyPath]:
         """The scene without its continuation, and the steps to both parameters in it."""
         first, second = (steps_to(self.scene, path) for path in self.stage.paths)
-        return replace(self.scene, continuation=None), first, second
+        return replace(self.scene, continuation=None, map=None), first, second
 
 
 def curve_of(scene: Scene, stage: ContinuationStage, units: Units | None = None) -> Curve:

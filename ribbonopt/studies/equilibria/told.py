@@ -1,0 +1,28 @@
+"""What a search for all equilibria says of itself: what was followed, how far, what is not known."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+from .line import Line
+from .search import Search
+
+
+def told(search: Search, lines: Sequence[Line], starts: int, above: int) -> str:
+    """Return what was searched, in a few sentences; `above` were found beyond its limit."""
+    ranges = []
+    for line in lines:
+        low, high = (line.curve.value(end) for end in (line.curve.start, line.curve.goals[-1]))
+        ranges.append(f"{line.name} ({low:.5g} to {high:.5g})")
+    along = f"along {' and '.join(ranges)}" if ranges else "along nothing, as no number moves"
+    begun = "1 start" if starts == 1 else f"{starts} starts"
+    said = [
+        f"a search below the strain energy {search.below:.6g}, from {begun}, {along}: "
+        f"{search.points} points on {search.walks} branches"
+    ]
+    said += [f"{count} {how}" for how, count in search.endings.items()]
+    if search.lost:
+        said.append(f"{search.lost} times an equilibrium was passed that was not solved for")
+    if above:
+        said.append(f"{above} more were found above that energy")
+    return "; ".join(said) + "; equilibria that no such branch meets are not found"
