@@ -162,7 +162,10 @@ def _point(root: Root) -> Point[Solution]:
     if finer is not None:
         moved = np.abs(finer.unknowns[-2:] - place[-2:])
         root, place = finer, finer.unknowns
-        error = max(SAFETY * float(moved[0]), ROUNDING * abs(float(place[-2])))
+        # Of both parameters, in units of l1.
+        first, second = equations.surface.spans
+        off = max(float(moved[0]), float(moved[1]) * first / second)
+        error = max(SAFETY * off, ROUNDING * abs(float(place[-2])))
     a = root.beside.a
     solution, tangent = equations.restored(a.solution, place), root.beside.tangent(root.arc)
     nearest = min(root.beside.known.values(), key=lambda probe: abs(probe.arc - root.arc))
