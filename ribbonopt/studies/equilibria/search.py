@@ -155,7 +155,9 @@ class Search:
                 continue
             self.points, count = self.points + 1, count + 1
             value = line.curve.value(point.position)
-            self.tell(f"{len(self.nodes)} equilibria; {self.points} points; {line.name} = {value:.5g}")
+            self.tell(
+                f"{len(self.nodes)} equilibria; {self.points} points; {line.name} = {value:.5g}"
+            )
             equations = line.equations(before.solution)
             if self._passed(line, equations, before, point, found_by):
                 self._ended("came to where another had been")
@@ -167,7 +169,9 @@ class Search:
                 self._ended("were left after as many points as allowed")
                 return
             before = point
-        self._ended("left the range" if walk.ending.reached else "were lost where no step succeeded")
+        self._ended(
+            "left the range" if walk.ending.reached else "were lost where no step succeeded"
+        )
 
     def _passed(
         self,

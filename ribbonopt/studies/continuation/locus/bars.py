@@ -138,7 +138,9 @@ def on_finer_mesh(equations: LocusEquations, trial: Trial[Solution]) -> Trial[So
     parts = []
     for part in (laid.tangent, laid.across):
         h = 1e-4
-        parts.append((moved(trial.unknowns + h * part) - moved(trial.unknowns - h * part)) / (2 * h))
+        parts.append(
+            (moved(trial.unknowns + h * part) - moved(trial.unknowns - h * part)) / (2 * h)
+        )
     finer = attempt.restored(y[:-2])
     finer.trajectory.found[Laid] = replace(laid, tangent=parts[0], across=parts[1], sides=None)
     return equations.measured(finer).correct_at(finer, y)
