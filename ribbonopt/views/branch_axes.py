@@ -20,7 +20,6 @@ if TYPE_CHECKING:
 COUNTS = ("number", "stage", "branch", "negative", "intervals", "iterations")
 MARGIN = 0.08  # of the axes, beside what is drawn: room for numbers
 LABELS = {"number": "point", "negative": "negative directions", "error": "estimated error"}
-#: SI units of the columns of every row
 UNITS = {"energy": "J", "potential": "J", "H0": "N"} | {
     name: unit
     for names, unit in zip(START_VECTORS, ("N", "N m", "1/m"), strict=True)

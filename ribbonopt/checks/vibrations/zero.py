@@ -69,8 +69,8 @@ class Neutral:
         size = (moved**2).sum(axis=0)
         rest = size - ((self.fields.T @ moved) ** 2).sum(axis=0)
         small = np.abs(found.squared) <= SMALL * found.shift
-        found: NDArray[np.bool_] = small & (size > STILL) & (rest <= OTHER * size)
-        return found
+        among: NDArray[np.bool_] = small & (size > STILL) & (rest <= OTHER * size)
+        return among
 
     def names(self, found: Spectrum, energy: Kinetic) -> tuple[str, ...]:
         """Return the names of the motions that zero modes make."""

@@ -8,7 +8,7 @@ followed once, and so are those of the branches that cross, until nothing new co
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -32,6 +32,10 @@ COARSE = 1e-4  # the same, where there is no tolerance
 MET = 1e-4  # arclength between two estimates of one point where branches cross
 
 Tell = Callable[[str], None]
+
+
+def quiet(_: str) -> None:
+    """Tell nothing."""
 
 
 @dataclass(eq=False)

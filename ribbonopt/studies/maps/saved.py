@@ -74,7 +74,8 @@ class SavedShape:
     energy: float | None
     negative: Count | None = None
     stable: bool | None = None
-    images: Count | None = None
+    in_plane: Count | None = None
+    image: Count | None = None
     symmetry: str | None = None
     error: float | None = None
 

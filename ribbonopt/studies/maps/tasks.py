@@ -101,20 +101,14 @@ def follow_locus(scene: Scene, prepare: Prepare, place: Place, inputs: Row) -> R
 
 def count_shapes(scene: Scene, prepare: Prepare, place: Place, inputs: Row) -> Row:
     """Look for all equilibria at a point, and save each of them."""
-    found = counted(scene, prepare(scene))
+    solutions, row = counted(scene, prepare(scene))
     with staged_result(place.path, NUMBERED, wait=place.wait, durable=False) as staged:
-        for number, solution in enumerate(found.solutions[:MOST], start=1):
+        for number, solution in enumerate(solutions[:MOST], start=1):
             folder = staged.folder / str(number)
             folder.mkdir()
             save_solution(solution, folder)
         staged.commit()
-    return {
-        **DONE,
-        "count": found.count,
-        "stable": found.stable,
-        "shapes": list(found.rows),
-        "told": found.told,
-    }
+    return {**DONE, **row}
 
 
 def _beside(rows: Sequence[Row], i: int, along: str) -> Row:

@@ -16,7 +16,7 @@ from .jobs import LINES, LOCI
 from .loci import Locus, value_of
 from .survey import Survey
 
-SHAPE = ("energy", "negative", "stable", "images", "symmetry", "error")
+SHAPE = ("energy", "negative", "in_plane", "stable", "image", "symmetry", "error")
 CONVERGED, NOTHING, FAILED = "converged", "nothing_found", "no_branch"
 
 

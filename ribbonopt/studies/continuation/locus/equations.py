@@ -30,8 +30,8 @@ from ..walk.special import Special
 from .bars import barred
 from .chart import Chart
 from .laid import Laid
-from .special import special_of
 from .slices import Found, Lost, found_on
+from .special import special_of
 from .surface import Surface
 
 RECENT = 8  # solutions whose metric is remembered
