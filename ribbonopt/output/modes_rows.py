@@ -8,6 +8,8 @@ import numpy as np
 
 from ribbonopt.checks.modes import Modes
 from ribbonopt.checks.parity import parities
+from ribbonopt.checks.topology import closure
+from ribbonopt.checks.vibrations.stated import SYMMETRIC
 from ribbonopt.plain import Row
 from ribbonopt.solution.solution import Solution
 
@@ -46,6 +48,16 @@ def rows_of(solution: Solution, modes: Modes) -> list[Row]:
         }
         for i, symmetry in enumerate(parities(solution, modes), start=1)
     ]
+
+
+def which_of(solution: Solution, modes: Modes) -> str:
+    """Say which modes these are, where they are not all; "" where they are."""
+    start, end = solution.scene.interval
+    if modes.told or modes.s[-1] > end + WHOLLY * (end - start):
+        return modes.told
+    # A piece of a band may be told by its conditions alone, which say nothing of symmetry.
+    band = closure(solution)
+    return SYMMETRIC if band is not None and band.pieces > 1 else ""
 
 
 def known(value: float) -> float | None:
