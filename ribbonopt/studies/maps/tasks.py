@@ -18,6 +18,7 @@ from ribbonopt.pipeline.prepared import Prepared
 from ribbonopt.plain import Row
 from ribbonopt.scene import Scene
 from ribbonopt.scene.equilibria import Equilibria
+from ribbonopt.scene.lens import with_value
 from ribbonopt.scene.stages import ends_of, stages_of
 from ribbonopt.solution.solution import Solution
 from ribbonopt.studies.batch.branches import OWN
@@ -59,7 +60,7 @@ def follow_line(scene: Scene, prepare: Prepare, place: Place, inputs: Row) -> Ro
     along = inputs["along"]
     (stage,) = stages_of(scene)
     begin, end = stage.from_ or 0.0, ends_of(stage)[-1]
-    bare = replace(scene, continuation=None)
+    bare = with_value(replace(scene, continuation=None), along, begin)
     prepared, rows, told = prepare(bare), list[list[Row]](), list[str]()
     specials: list[Row] = []
     if not isinstance(bare.equilibria, Equilibria):
