@@ -36,6 +36,11 @@ def solution_drawn(solution: object, kind: str, style: object | None) -> Figure:
     return figure
 
 
+def modes_or_reason(solution: object, count: int, planar: bool) -> Any:
+    """Return the modes of a solution or, in words, why it has none."""
+    return door("checks.modes", "modes_of")(solution, count, planar=planar)
+
+
 def branch_drawn(
     rows: Sequence[Mapping[str, Any]],
     pair: tuple[str, str],

@@ -20,6 +20,10 @@ VERBS = {
     ),
     "bench": ("time against error over degrees and meshes", options.bench),
     "stress": ("try a scene far from what it was made for, and judge every answer", options.stress),
+    "modes": (
+        "natural frequencies and shapes of small vibrations about a scene's equilibrium",
+        options_shown.modes,
+    ),
     "continue": (
         "follow a scene's equilibria as a parameter moves (its `continuation`)",
         options.follow,

@@ -27,6 +27,7 @@ MODULES = {
     "export": "export",
     "view": "view",
     "schema": "scene",
+    "modes": "modes",
     "compare": "comparison",
     "bench": "comparison",
     "stress": "stress",

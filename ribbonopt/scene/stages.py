@@ -90,7 +90,7 @@ def located_stages(scene: Scene) -> Iterator[tuple[KeyPath, ContinuationStage]]:
 
 def begin_of(stage: ContinuationStage, scene: Scene) -> float:
     """Return where a stage begins in a scene to which earlier stages have led."""
-    if stage.from_ is None and stage.values:
+    if stage.from_ is None and stage.values and not stage.is_locus:
         return stage.values[0]
     own = value_at(scene, stage.moved)
     return own if stage.from_ is None else stage.from_

@@ -13,6 +13,7 @@ if TYPE_CHECKING:
     from .branch import plot_branch
     from .files import Pictures, plot_solution, save_figures
     from .map import plot_map
+    from .modes import plot_modes
     from .paper_style import Style
     from .plane import plot_plane
     from .ribbon import plot_ribbon
@@ -25,6 +26,7 @@ __all__ = [
     "plot_batch",
     "plot_branch",
     "plot_map",
+    "plot_modes",
     "plot_plane",
     "plot_ribbon",
     "plot_solution",
@@ -39,6 +41,7 @@ _HOMES = {
     "plot_batch": "scatter",
     "plot_branch": "branch",
     "plot_map": "map",
+    "plot_modes": "modes",
     "plot_plane": "plane",
     "plot_ribbon": "ribbon",
     "plot_solution": "files",

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from collections.abc import Mapping
 from types import MappingProxyType
 from typing import TYPE_CHECKING
@@ -20,6 +21,7 @@ COUNTS = ("number", "stage", "branch", "negative", "intervals", "iterations")
 MARGIN = 0.08  # of the axes, beside what is drawn: room for numbers
 LABELS = {"number": "point", "negative": "negative directions", "error": "estimated error"}
 #: SI units of the columns of every row
+FREQUENCY = re.compile(r"(frequency|squared)\d+")
 UNITS = {"energy": "J", "potential": "J", "H0": "N"} | {
     name: unit
     for names, unit in zip(START_VECTORS, ("N", "N m", "1/m"), strict=True)
@@ -36,6 +38,8 @@ def unit_of(column: str, si: bool) -> str:
     """Return the unit of a column; "" where it has none, or none that is known."""
     if not si:
         return ""
+    if found := FREQUENCY.fullmatch(column):
+        return "Hz" if found[1] == "frequency" else "1/s²"
     parts = column.split(".")
     if parts[0] == "loads":
         return "N/m" if "force" in parts else ""

@@ -22,9 +22,7 @@ from ribbonopt.scene.lens import with_value
 from ribbonopt.solution.solution import Solution
 
 from .found import Buckling
-from .straight import StraightStates
-
-BEYOND = (1.0, 1 / 4, 1 / 16, 0.0)  # of an end of the range: how far beyond it rods are looked at
+from .straight import BEYOND, StraightStates
 
 
 def buckling_loads(scene: Scene, parameter: str, start: float, end: float) -> tuple[Buckling, ...]:

@@ -31,7 +31,7 @@ from .infinitesimal import Deflected
 from .mode import Mode
 from .modes import Search
 from .rod import RodBuckling
-from .straight import AFFINE, NEARER, SETTLED, TURNS, StraightStates
+from .straight import AFFINE, BEYOND, NEARER, SETTLED, TURNS, StraightStates
 
 REACH = 0.02  # of the sizes that count as one: half a line across the curve
 SHIFT = 1e-5  # of the sizes: half the distance that derivatives along the curve are taken over
@@ -94,9 +94,13 @@ class LoadsInPlane:
 
         By increasing way from its first end; empty where there is no straight state.
         """
-        result, way = [], line[1] - line[0]
-        loads = (one for one in self._states(line).between(0.0, 1.0) or () if 0 <= one.value <= 1)
-        for load in sorted(loads, key=lambda one: one.value):
+        states, result, way = self._states(line), [], line[1] - line[0]
+        # A rod may buckle beyond the line, as a ribbon is softer than the rod with its stiffnesses.
+        spans = ((-share, 1 + share) for share in BEYOND)
+        loads = next((found for span in spans if (found := states.between(*span)) is not None), [])
+        for load in sorted(
+            (one for one in loads if 0 <= one.value <= 1), key=lambda one: one.value
+        ):
             place = line[0] + load.value * way
             found = self.crossed(load.mode, self.across(place, way))
             result += [] if found is None else [found]

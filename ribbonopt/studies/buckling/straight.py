@@ -32,6 +32,7 @@ NEARER = 1e-3  # of the distance of two loads that an affine line is drawn throu
 SMOOTH = 0.03  # delta of the smooth law that stands for one with a kink
 SETTLED = 1e-11  # change of the load, relative to the range, that ends this
 TURNS = 8
+BEYOND = (1.0, 1 / 4, 1 / 16, 0.0)  # of an end of the range: how far beyond it rods are looked at
 
 
 @dataclass(frozen=True, eq=False)

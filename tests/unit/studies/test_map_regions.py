@@ -2,6 +2,7 @@
 
 import numpy as np
 import pytest
+
 from ribbonopt.studies.maps.agreement import disagreement
 from ribbonopt.studies.maps.inner import distances, innermost
 from ribbonopt.studies.maps.lines import PARTS, smooth

@@ -121,7 +121,13 @@ class _Better:
 
 
 def on_finer_mesh(equations: LocusEquations, trial: Trial[Solution]) -> Trial[Solution]:
-    """Find a point again on halved elements."""
+    """Find a point again on halved elements, at the same l2."""
+    finer, y = halved(equations, trial)
+    return equations.measured(finer).correct_at(finer, y)
+
+
+def halved(equations: LocusEquations, trial: Trial[Solution]) -> tuple[Solution, Array]:
+    """Return a point and its unknowns (n' + 2,) on halved elements, not corrected there."""
     solution, laid = trial.solution, equations.laid(trial.solution)
     mesh = Mesh(tuple(np.repeat(widths / 2, 2) for widths in solution.mesh.phases))
     positions = trial.unknowns[-2:]
@@ -138,7 +144,9 @@ def on_finer_mesh(equations: LocusEquations, trial: Trial[Solution]) -> Trial[So
     parts = []
     for part in (laid.tangent, laid.across):
         h = 1e-4
-        parts.append((moved(trial.unknowns + h * part) - moved(trial.unknowns - h * part)) / (2 * h))
+        parts.append(
+            (moved(trial.unknowns + h * part) - moved(trial.unknowns - h * part)) / (2 * h)
+        )
     finer = attempt.restored(y[:-2])
     finer.trajectory.found[Laid] = replace(laid, tangent=parts[0], across=parts[1], sides=None)
-    return equations.measured(finer).correct_at(finer, y)
+    return finer, y

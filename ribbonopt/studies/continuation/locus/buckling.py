@@ -26,8 +26,9 @@ from ribbonopt.studies.buckling.twin import has_twin, twin_of, twin_scene
 from ..trials import checked
 from ..walk.departure import Departure
 from ..walk.metric import Metric
-from ..walk.points import Point
+from ..walk.points import TURN, Point, Special
 from ..walk.protocol import Passage, Trial
+from ..walk.special import special_points
 from .laid import Laid
 from .surface import Surface
 
@@ -132,6 +133,11 @@ class BucklingEquations:
         place = (begin + arc * ahead + aside * across) * sizes
         return self._on(origin.solution, self.plane.across(place, across * sizes), guess)
 
+    def special(self, a: Point[Solution], b: Point[Solution]) -> Special[Solution]:
+        """Return where the locus turns in l2."""
+        found = special_points(self, a, b)
+        return replace(found, points=[self._turned(point) for point in found.points])
+
     def crossings(self, a: Point[Solution], b: Point[Solution]) -> list[Point[Solution]]:
         """Return none."""
         return []
@@ -201,12 +207,19 @@ class BucklingEquations:
         aside = abs(float(off[0] * t2 - off[1] * t1))
         return Laid(tangent, across, error=aside / abs(t2) if t2 else None)
 
+    def _turned(self, point: Point[Solution]) -> Point[Solution]:
+        """Return a point where l2 turns as the buckling load that it is."""
+        guess = point.unknowns
+        trial = self.correct_along(point, point.tangent, 0.0, guess)
+        solution, unknowns = trial.solution, trial.unknowns
+        return replace(point, kind=TURN, solution=solution, unknowns=unknowns)
+
     def _searched(self, solution: Solution) -> Crossing:
         """Return the load at a straight state that comes without, as one from a file."""
         scene, surface = solution.scene, self.surface
         l2 = surface.position(value_at(scene, surface.name))
         place = np.array([value_at(scene, surface.other), l2])
-        found = self.plane.found(self.plane.across(place, np.array([1.0, 0.0])))
+        found = self.plane.found(np.array([[l1, l2] for l1 in surface.between]))
         if not found:
             raise np.linalg.LinAlgError(LOST)
         return min(found, key=lambda one: self.metric.length(one.place - place))

@@ -30,8 +30,8 @@ from ..walk.special import Special
 from .bars import barred
 from .chart import Chart
 from .laid import Laid
-from .special import special_of
 from .slices import Found, Lost, found_on
+from .special import special_of
 from .surface import Surface
 
 RECENT = 8  # solutions whose metric is remembered
@@ -151,8 +151,7 @@ class LocusEquations:
     def chart(self, solution: Solution, origin: Array, along: Array, across: Array) -> Chart:
         """Return the chart of rows that are dual to directions (m,), in a solution's layout."""
         rows = (
-            row_of(solution, self.metric.dual(part), self.surface.count)
-            for part in (along, across)
+            row_of(solution, self.metric.dual(part), self.surface.count) for part in (along, across)
         )
         nlp = self._beside(solution, origin[-2:]).nlp
         line = self.surface.line(solution)

@@ -59,6 +59,18 @@ class Readings:
         self.way: Array | None = None
         self.known: dict[Trajectory, Reading] = {}
 
+    def signs(self, point: Point[Solution]) -> Reading:
+        """Return what has the same signs at a point, from what is known of it already."""
+        laid = self.equations.laid(point.solution)
+        along, across = self._facing(point.solution, point.tangent, laid.across)
+        p1, p2 = along[-2:] / self.spans, across[-2:] / self.spans
+        if self.equations.kind != FOLD:
+            return self.at(point.solution, point.unknowns)
+        left, _, _ = np.linalg.svd(np.stack([p1, p2], axis=1))
+        e = self._oriented(left[:, 0])
+        determinant = self.determinants.read(point.unknowns).test
+        return Reading(e, {SPEED: float(e @ p1), TURN: float(e[1]), DETERMINANT: determinant})
+
     def at(self, solution: Solution, unknowns: Array) -> Reading:
         """Return the readings at a point of the locus (n + 2,); LinAlgError where singular."""
         key = solution.trajectory
@@ -86,13 +98,8 @@ class Readings:
         return Reading(e, values)
 
     def _of_crossings(self, solution: Solution, y: Array) -> Reading:
-        equations, laid = self.equations, self.equations.laid(solution)
-        along, across = laid.tangent, laid.across
-        metric = equations.metric
-        along, across = (
-            part if metric.product(equations.reduced(solution, part), side) >= 0 else -part
-            for part, side in zip((along, across), self.sides, strict=True)
-        )
+        laid = self.equations.laid(solution)
+        along, across = self._facing(solution, laid.tangent, laid.across)
         ahead, behind = (self.determinants.read(y + s * ASIDE * across).test for s in (1, -1))
         p1, p2 = along[-2:] / self.spans, across[-2:] / self.spans
         e = p1 / np.linalg.norm(p1)
@@ -102,6 +109,14 @@ class Readings:
             SLOPE: (ahead - behind) / (2 * ASIDE),
         }
         return Reading(e, values)
+
+    def _facing(self, solution: Solution, *parts: Array) -> list[Array]:
+        """Return tangent and across (n + 2,) of a point with the signs that they have here."""
+        reduced, metric = self.equations.reduced, self.equations.metric
+        return [
+            part if metric.product(reduced(solution, part), side) >= 0 else -part
+            for part, side in zip(parts, self.sides, strict=True)
+        ]
 
     def _oriented(self, way: Array) -> Array:
         """Return e with the sign that it has at the first point that was read."""

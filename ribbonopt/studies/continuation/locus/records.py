@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import replace
+from collections.abc import Callable, Mapping
 from typing import Any
 
+from ribbonopt.arrays import Array
+from ribbonopt.classes import dataclass
 from ribbonopt.plain import Row
 from ribbonopt.solution.solution import Solution
 
@@ -17,14 +18,42 @@ from .surface import Surface
 LEFT = "{} has left the range {:g} to {:g}"
 
 
+@dataclass(frozen=True, eq=False)
 class LocusRecords(StageRecords):
-    """What is recorded of the points of one locus."""
+    """What is recorded of the points of one locus.
+
+    Attributes
+    ----------
+    beside : function of a solution and unknowns (n + 2,)
+        The solution of these on the mesh of the other.
+    """
+
+    beside: Callable[[Solution, Array], Solution]
 
     @property
     def surface(self) -> Surface:
         """The locus's surface."""
         assert isinstance(self.curve, Surface)
         return self.curve
+
+    def row(self, point: Point[Solution]) -> Row:
+        """Return what is recorded of a point; negative directions are counted beside.
+
+        Of the special point itself one direction is neutral: it is left out of the count.
+        """
+        row = dict(super().row(point))
+        laid = point.solution.trajectory.found.get(Laid)
+        if isinstance(laid, Laid) and laid.sides and self.surface.stage.stability:
+            row["negative"] = self._least(point, laid.sides)
+        return row
+
+    def _least(self, point: Point[Solution], sides: tuple[Array, Array]) -> int | None:
+        """Return the least count of negative directions on both sides of a point."""
+        from ribbonopt.checks.stability import negative_directions  # builds second derivatives
+
+        counts = [negative_directions(self.beside(point.solution, side)) for side in sides]
+        known = [count for count in counts if count is not None]
+        return min(known) if len(known) == len(counts) else None
 
     def stopped(self, row: Mapping[str, Any]) -> str:
         """Return the condition of the stage that a row meets, "" if none."""

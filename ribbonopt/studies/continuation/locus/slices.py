@@ -15,6 +15,7 @@ from ribbonopt.classes import dataclass
 from ..walk.points import FOLD
 from .chart import Chart, Sample
 
+SIDE = 0.005  # arclength to what is given of both sides of a fold
 REACH = 0.5  # arclength across, within which a special point is looked for
 FIRST = 0.001  # arclength between the first two places: folds may be narrow on the surface
 APART = 1e-4  # arclength between places that a polynomial goes through
@@ -117,10 +118,14 @@ class _Slice:
             if root is None or abs(root - self.middle) > REACH:
                 break
             if abs(root - nearest.t) <= SETTLED:
-                sides = self.unknowns(nearest.t - FIRST), self.unknowns(nearest.t + FIRST)
+                sides = self._beside(nearest, -SIDE), self._beside(nearest, SIDE)
                 return Found(nearest.y, nearest.first, nearest.second, slope, sides)
             self.at(root)
         raise Lost("no fold was found near by")
+
+    def _beside(self, one: Sample, off: float) -> Array:
+        """Return the surface at a distance across from a sample."""
+        return self.chart.corrected(one.y + off * one.second, self.s, one.t + off)
 
     def _apart(self) -> list[Sample]:
         """Return samples of the least test functions, far enough from each other."""

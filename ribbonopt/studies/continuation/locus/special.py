@@ -11,7 +11,9 @@ closed one, if H is definite: an isola centre; else two branches cross there.
 
 from __future__ import annotations
 
+from collections.abc import Callable, Mapping
 from dataclasses import replace
+from functools import cached_property
 from typing import TYPE_CHECKING
 
 import numpy as np
@@ -20,18 +22,19 @@ from ribbonopt.arrays import Array
 from ribbonopt.classes import dataclass
 from ribbonopt.solution.solution import Solution
 
-from ..walk.beside import ENOUGH, Beside
+from ..walk.beside import ENOUGH, Beside, Probe
 from ..walk.points import CROSSING, CUSP, DOUBLE, FOLD, ISOLA, TURN, Point, Special
-from .bars import ROUNDING, SAFETY, on_finer_mesh
+from .bars import ROUNDING, SAFETY, halved
 from .laid import Laid
 from .readings import AREA, DETERMINANT, SLOPE, SPEED, Readings
-from .readings import TURN as TURNS
 
 if TYPE_CHECKING:
     from .equations import LocusEquations
 
 ROUND = 0.5  # least cosine of the angle that the direction in the plane turns by in one step
-ASIDE = 0.03  # arclength on both sides of a special point, between which it is found again
+ASIDE = 0.25  # of a step: on both sides of a special point, between which it is found again
+ROUNDS, KNOTS = 20, 4  # of secants; points that they go through
+SETTLED = 1e-9  # change of a root, in arclength
 BESIDE = 1e-3  # half the arclength that second derivatives of l2 are taken over
 MEETS = {
     DETERMINANT: "a locus of branch points is met",
@@ -45,9 +48,21 @@ DIRECTION = "direction of the locus"
 class Root:
     """Where a test function vanishes between two points."""
 
+    equations: LocusEquations
     beside: Beside[Solution]
-    readings: Readings
     arc: float
+    name: str
+
+    @cached_property
+    def unknowns(self) -> Array:
+        """Unknowns (n + 2,) there: of the locus, or interpolated where that is singular."""
+        beside, guess = self.beside, self.beside.unknowns(self.arc)
+        if self.equations.kind == FOLD and self.name != DETERMINANT:
+            a = beside.a
+            trial = self.equations.correct_along(a, a.tangent, self.arc, guess, ENOUGH)
+            if trial.converged:
+                return trial.unknowns
+        return guess
 
 
 def special_of(
@@ -61,7 +76,7 @@ def special_of(
         return Special([])
     try:
         readings = Readings(equations, a)
-        first, last = (readings.at(p.solution, p.unknowns) for p in (a, b))
+        first, last = (readings.signs(p) for p in (a, b))
         names = [name for name, value in first.values.items() if value * last.values[name] < 0]
         if abs(float(first.way @ last.way)) < ROUND:
             return Special([], (DIRECTION,), 1)
@@ -73,23 +88,65 @@ def special_of(
         return Special([])
     unresolved = tuple(name for name, arc in roots.items() if arc is None)
     found = sorted((arc, name) for name, arc in roots.items() if arc is not None)
-    points = [_point(equations, Root(beside, readings, arc), name) for arc, name in found]
+    points = [_point(Root(equations, beside, arc, name)) for arc, name in found]
     return Special(points, unresolved, len(names))
 
 
 def _root(beside: Beside[Solution], readings: Readings, name: str) -> float | None:
-    """Return the arclength where a test function vanishes, None where it is not found."""
-    return beside.root(lambda probe: readings.at(probe.solution, probe.unknowns).values[name])
+    """Return the arclength where a test function vanishes, None where it is not found.
+
+    On a locus of folds nothing is singular there, but where another surface crosses.
+    """
+
+    def test(probe: Probe[Solution]) -> float:
+        return readings.at(probe.solution, probe.unknowns).values[name]
+
+    if readings.equations.kind == FOLD and name != DETERMINANT:
+        return _regular(beside, test)
+    return beside.root(test)
 
 
-def _point(equations: LocusEquations, root: Root, name: str) -> Point[Solution]:
+def _regular(beside: Beside[Solution], test: Callable[[Probe[Solution]], float]) -> float | None:
+    """Return the root of a test function that can be read next to it, by secants of its inverse."""
+    values = {probe.arc: test(probe) for probe in beside.ends}
+    low, high = sorted(values)
+    if values[low] * values[high] > 0:
+        return None
+    arc = low + (high - low) * values[low] / (values[low] - values[high])
+    for _ in range(ROUNDS):
+        probe = beside.at(arc, 0.0)
+        if probe is None:
+            return None
+        values[arc] = test(probe)
+        low, high = (arc, high) if values[arc] * values[low] > 0 else (low, arc)
+        nearest = sorted(values, key=lambda place: abs(values[place]))[:KNOTS]
+        found = _inverse({place: values[place] for place in nearest})
+        if not low < found < high:
+            found = (low + high) / 2
+        if abs(found - arc) <= SETTLED:
+            return found
+        arc = found
+    return None
+
+
+def _inverse(values: Mapping[float, float]) -> float:
+    """Return where a function vanishes, by the polynomial of its inverse through some values."""
+    found = 0.0
+    for place, value in values.items():
+        others = (other for other in values.values() if other != value)
+        weight = float(np.prod([other / (other - value) for other in others]))
+        found += weight * place
+    return found
+
+
+def _point(root: Root) -> Point[Solution]:
     """Return the special point at a root, with its kind and its error."""
-    place = root.beside.unknowns(root.arc)
+    equations, name, place = root.equations, root.name, root.unknowns
     error, note = None, MEETS.get(name, "")
-    finer = _finer(equations, root, name)
+    finer = _finer(root)
     if finer is not None:
-        moved = np.abs(finer.beside.unknowns(finer.arc)[-2:] - place[-2:])
-        root, place = finer, finer.beside.unknowns(finer.arc)
+        moved = np.abs(finer.unknowns[-2:] - place[-2:])
+        root, place = finer, finer.unknowns
         error = max(SAFETY * float(moved[0]), ROUNDING * abs(float(place[-2])))
     a = root.beside.a
     solution, tangent = equations.restored(a.solution, place), root.beside.tangent(root.arc)
@@ -124,30 +181,32 @@ def _level(equations: LocusEquations, point: Point[Solution]) -> str:
     return ISOLA if ss * tt - st * ts > 0 else CROSSING
 
 
-def _finer(equations: LocusEquations, root: Root, name: str) -> Root | None:
+def _finer(root: Root) -> Root | None:
     """Return the root between two points of the locus on a mesh twice as fine."""
-    beside, a = root.beside, root.beside.a
-    aside = min(ASIDE, beside.reach(root.arc))
-    sides: list[Point[Solution]] = []
+    equations, beside = root.equations, root.beside
+    aside = min(ASIDE * beside.whole, beside.reach(root.arc))
     try:
-        for arc in (root.arc - aside, root.arc + aside):
-            trial = equations.correct_along(a, a.tangent, arc, beside.unknowns(arc), ENOUGH)
-            trial = on_finer_mesh(equations, trial) if trial.converged else trial
-            if not trial.converged:
-                return None
-            tangent = equations.laid(trial.solution).tangent
-            ahead = equations.reduced(trial.solution, tangent)
-            if equations.metric.product(ahead, beside.along) < 0:
-                tangent = -tangent
-            length = equations.metric.length(ahead)
-            sides.append(
-                replace(
-                    a, solution=trial.solution, unknowns=trial.unknowns, tangent=tangent / length
-                )
-            )
+        sides = [_on_halves(equations, beside, root.arc + off) for off in (-aside, aside)]
         readings, again = Readings(equations, sides[0]), Beside(equations, *sides)
-        first, last = (readings.at(p.solution, p.unknowns).values[name] for p in sides)
-        arc_again = _root(again, readings, name) if first * last < 0 else None
+        first, last = (readings.at(p.solution, p.unknowns).values[root.name] for p in sides)
+        arc = _root(again, readings, root.name) if first * last < 0 else None
     except np.linalg.LinAlgError:
         return None
-    return None if arc_again is None else Root(again, readings, arc_again)
+    return None if arc is None else Root(equations, again, arc, root.name)
+
+
+def _on_halves(equations: LocusEquations, beside: Beside[Solution], arc: float) -> Point[Solution]:
+    """Return the point of a locus at an arclength on halved elements; LinAlgError for none."""
+    a = beside.a
+    trial = equations.correct_along(a, a.tangent, arc, beside.unknowns(arc), ENOUGH)
+    if trial.converged:
+        finer, y = halved(equations, trial)
+        begin = replace(a, solution=finer, unknowns=y)
+        trial = equations.correct_along(begin, equations.laid(finer).tangent, 0.0, y, ENOUGH)
+    if not trial.converged:
+        raise np.linalg.LinAlgError(trial.message)
+    tangent = equations.laid(trial.solution).tangent
+    ahead = equations.reduced(trial.solution, tangent)
+    sign = 1.0 if equations.metric.product(ahead, beside.along) >= 0 else -1.0
+    tangent = sign * tangent / equations.metric.length(ahead)
+    return replace(a, solution=trial.solution, unknowns=trial.unknowns, tangent=tangent)

@@ -11,7 +11,9 @@ from ribbonopt.pipeline.prepared import Prepared
 from ribbonopt.solution.solution import Solution
 
 from ..recorded import Recorder
-from ..walk.points import Point
+from ..walk.points import BUCKLING, Point
+from ..walk.protocol import Trial
+from .buckling import BucklingEquations
 from .equations import LocusEquations
 from .laid import Laid
 from .records import LocusRecords
@@ -44,7 +46,13 @@ class LocusStage:
     @property
     def records(self) -> LocusRecords:
         """What is recorded of its points."""
-        return LocusRecords(self.recorder, self.surface)
+        return LocusRecords(self.recorder, self.surface, self._beside)
+
+    def _beside(self, solution: Solution, unknowns: Array) -> Solution:
+        """Return a solution of unknowns (n + 2,) on the mesh and in the phases of another."""
+        search = self.prepared.search(self.surface.posed_at(*map(float, unknowns[-2:])))
+        attempt = search.on_mesh(solution.sheets, solution.mesh, solution.trajectory.ends[1:-1])
+        return attempt.restored(unknowns[:-2])
 
     @property
     def switch(self) -> int:
@@ -79,6 +87,8 @@ class LocusStage:
         """
         special, before = self.special, self.before
         assert special is not None and before is not None
+        if self.kind == BUCKLING:
+            return self._begun(self._buckling(special.solution), special)
         l2 = self.surface.begin
         positions = np.array([special.position, l2])
         search = self.prepared.search(self.surface.posed_at(*map(float, positions)))
@@ -97,21 +107,42 @@ class LocusStage:
         start = attempt.restored(guess[:-2])
         across = np.concatenate([ahead, [tangent[-1], 0.0]])
         start.trajectory.found[Laid] = Laid(np.zeros_like(guess), across)
-        equations = self.equations(start)
+        equations = self._of_tests(start)
         trial = equations.correct_at(start, guess)
         if trial.converged:
             point = Point(trial.solution, trial.unknowns, across, 0.0, 1.0)
             trial = equations.finished(point, trial)
-        if not trial.converged:
-            raise ConvergenceError(
-                f"the {self.kind} at {self.surface.other} = {special.position:.6g} was not found "
-                f"as a point of its locus: {trial.message}",
-                "not_converged",
-            )
-        return trial.solution, trial.unknowns
+        return self._told(trial, special)
 
-    def equations(self, first: Solution) -> LocusEquations:
+    def equations(self, first: Solution) -> LocusEquations | BucklingEquations:
         """Return its equations, with the metric of a stage that begins at a solution."""
+        if self.kind == BUCKLING:
+            return self._buckling(first)
+        return self._of_tests(first)
+
+    def _of_tests(self, first: Solution) -> LocusEquations:
         unknowns = np.append(first.dense.w, self.surface.positions_of(first.scene))
         metric = self.surface.metric_at(first, unknowns)
         return LocusEquations(self.prepared, self.surface, self.kind, metric)
+
+    def _buckling(self, first: Solution) -> BucklingEquations:
+        return BucklingEquations(self.prepared, self.surface, first)
+
+    def _begun(
+        self, equations: BucklingEquations, special: Point[Solution]
+    ) -> tuple[Solution, Array]:
+        """Return the buckling load that the branch has found, with its mode."""
+        place = np.array([special.position, self.surface.begin])
+        guess = np.concatenate([special.unknowns[:-1], place])
+        trial = equations.correct_at(special.solution, guess)
+        return self._told(equations.verified(trial) if trial.converged else trial, special)
+
+    def _told(self, trial: Trial[Solution], special: Point[Solution]) -> tuple[Solution, Array]:
+        """Return what was found; ConvergenceError if nothing was."""
+        if trial.converged:
+            return trial.solution, trial.unknowns
+        raise ConvergenceError(
+            f"the {self.kind} at {self.surface.other} = {special.position:.6g} was not found "
+            f"as a point of its locus: {trial.message}",
+            "not_converged",
+        )
