@@ -186,10 +186,10 @@ def draw(loci: dict[str, dict[str, Any]], path: Path) -> None:
         )
     axes.set_yticks(range(len(loci)), list(loci))
     axes.set_ylim(len(loci) - 0.5, -0.5)
-    axes.margins(x=0.2)
+    axes.margins(x=0.25)
     axes.set(xlabel="CPU, milliseconds", title=f"Points of loci (asked: ratio at most {ASKED:g})")
     axes.grid(True, axis="x", alpha=0.3)
-    axes.legend(loc="center left", bbox_to_anchor=(1.0, 0.5), fontsize=9)
+    figure.legend(loc="outside lower center", ncols=3, fontsize=9)
     figure.savefig(path, dpi=150)
 
 
