@@ -48,8 +48,16 @@ class SavedRow:
     branch: Count
     parameter: str
     kind: Literal[
-        *("point", "fold", "branch point", "buckling point", "kink"),
-        *("cusp", "isola centre", "crossing", "double point", "turn"),
+        "point",
+        "fold",
+        "branch point",
+        "buckling point",
+        "kink",
+        "cusp",
+        "isola centre",
+        "crossing",
+        "double point",
+        "turn",
     ]
     negative: Count | None
     error: float | None

@@ -185,7 +185,7 @@ class Branch(Generic[S]):
         elif point.kind != POINT:
             return False
         elif self.closed:
-            self.walk.ending = Ending(False, CLOSED)
+            self.walk.ending = Ending(self.walk.range.rounds, CLOSED)
         elif is_idle(self.common.atlas, self.trace, point):
             self.walk.ending = Ending(
                 False,

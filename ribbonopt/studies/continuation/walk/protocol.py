@@ -208,6 +208,10 @@ class Range(Protocol):
         """Whether folds and branch points are located."""
 
     @property
+    def rounds(self) -> bool:
+        """Whether a curve that has come back to where it began is all that was asked for."""
+
+    @property
     def most(self) -> int:
         """Most points."""
 

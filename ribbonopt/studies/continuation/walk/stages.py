@@ -119,7 +119,7 @@ class _Ways(Generic[S]):
 
             branch = self._branch(walk, begin, first)
             if first is not None and self.branches[0].closed:
-                branch.ended = Ending(False, f"is branch 0 already, which is {CLOSED}")
+                branch.ended = Ending(way.rounds, f"is branch 0 already, which is {CLOSED}")
             yield from branch.points()
 
     def crossing(self) -> Iterator[Point[S]]:
