@@ -73,8 +73,9 @@ class LocusStage:
         low, high = self.surface.between
         other = self.surface.other
         return (
-            f"no {self.kind} to begin the locus with: the branch has none from {other} = {low:g} "
-            f"to {high:g} at which it stopped; follow the branch alone to see what it has"
+            f"no {self.kind} to begin the locus with: the branch from {other} = {low:g} to "
+            f"{high:g} has none at which it stopped; choose another range, or follow the branch "
+            "alone to see what it has"
         )
 
     def first(self) -> tuple[Solution, Array]:

@@ -14,11 +14,12 @@ from typing import Generic, Protocol
 
 from ribbonopt.arrays import Array
 
+from .asked import Range, Records
 from .branches import Branch, Common, History, Register
 from .endless import CLOSED
 from .known import Atlas
 from .points import POINT, Point, S
-from .protocol import Equations, Range, Records
+from .protocol import Equations
 from .switching import switched
 from .walk import Ending, Walk
 
