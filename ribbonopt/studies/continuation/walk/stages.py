@@ -88,10 +88,13 @@ def followed(
         yield from ways.points()
         if stage.switch:
             yield from ways.crossing()
-        if not all(register.endings[number, way].reached for way in range(len(stage.ways))):
-            return
         main = ways.branches[len(stage.ways) - 1]
         before, special = main.last or ways.branches[0].first, main.special
+        if not all(register.endings[number, way].reached for way in range(len(stage.ways))):
+            # What the next one would have needed tells more than how far this one came.
+            if number + 1 < count and (why := stage_after(number + 1, before, None).missing):
+                register.endings[number + 1, 0] = Ending(False, why)
+            return
 
 
 class _Ways(Generic[S]):
