@@ -16,7 +16,7 @@ if TYPE_CHECKING:
     from .exports import export
     from .output.results import load_solution, save_solution
     from .output.summary import summarize
-    from .pipeline.prepared import prepare, solve
+    from .pipeline.prepared import prepare
     from .scene import Scene, dump_scene, json_schema, load_scene, loads_scene
     from .solution.solution import Solution
     from .studies.batch.batch import run_batch
@@ -28,8 +28,10 @@ if TYPE_CHECKING:
     from .studies.continuation.branch import Branch
     from .studies.continuation.continuation import Continuation
     from .studies.continuation.files import load_branch
+    from .studies.equilibria import all_equilibria
     from .studies.loading import load
     from .studies.maps.map import Map
+    from .studies.solving import solve
     from .views import plot_plane, plot_ribbon, plot_strains, save_figures
 
 __version__ = version.VERSION
@@ -42,6 +44,7 @@ __all__ = [
     "Scene",
     "Solution",
     "__version__",
+    "all_equilibria",
     "buckling_loads",
     "compare",
     "dump_scene",
@@ -72,6 +75,7 @@ _HOMES = {
     "Map": "studies.maps.map",
     "Scene": "scene",
     "Solution": "solution.solution",
+    "all_equilibria": "studies.equilibria",
     "buckling_loads": "studies.buckling.buckling",
     "compare": "studies.comparison.compare",
     "dump_scene": "scene",
@@ -91,7 +95,7 @@ _HOMES = {
     "run_batch": "studies.batch.batch",
     "save_figures": "views",
     "save_solution": "output.results",
-    "solve": "pipeline.prepared",
+    "solve": "studies.solving",
     "summarize": "output.summary",
 }
 

@@ -16,10 +16,12 @@ from ribbonopt.scene.inertia import Inertia
 from ribbonopt.solution.solution import Solution
 
 from .vibrations.found import Vibrations, vibrations
-from .vibrations.shapes import shapes_of
-from .vibrations.units import DIMENSIONLESS, gyration_of, unit_of_time
+from .vibrations.shapes import shapes_of, straightens
+from .vibrations.units import Time, gyration_of, time_of
 
 COUNT = 8
+ACROSS = 1 - 1e-6  # share of the kinetic energy in the plane, of a mode across it
+UNCLAIMED = "those across the plane without a bound, the law being singular where it does not bend"
 
 
 @dataclass(frozen=True, eq=False)
@@ -30,12 +32,13 @@ class Modes:
     ----------
     squared : (k,) array
         omega^2, ascending, zero modes left out: in units Dw / (rho L^4), rho mass per length, or
-        (rad/s)^2 of a scene in SI.
+        (rad/s)^2 of a scene in SI that has a density.
     frequencies : (k,) array
-        sign(squared) sqrt ``|squared|``, in Hz (over 2 pi) of a scene in SI. A negative one is a
+        sign(squared) sqrt ``|squared|``, in Hz (over 2 pi) of such a scene. A negative one is a
         rate of growth.
     errors : (k,) array
-        Bounds of the relative errors of the frequencies; nan where none is known.
+        Bounds of the relative errors of the frequencies; nan where none is known: not
+        even a sign, or across a plane where the law is singular.
     zero : tuple of str
         Motions that nothing opposes, such as "translation along x" or "sliding along itself".
     in_plane : (k,) array
@@ -51,7 +54,8 @@ class Modes:
     negative : int
         How many omega^2 are clearly negative, of all.
     told : str
-        Which modes these are, where not all: in the plane alone, or with the symmetry of a piece.
+        Which modes these are, where not all: in the plane alone, or with the symmetry of a piece;
+        and what is not known of them.
     bounds : (k,) array
         Bounds of the errors of `squared`.
     """
@@ -86,24 +90,25 @@ def modes_of(
     planar
         Whether only motions in the ribbon's plane are looked at.
     """
-    gyration, time = gyration_of(solution, inertia), unit_of_time(solution)
+    gyration = gyration_of(solution, inertia)
     if isinstance(gyration, str):
         return gyration
-    if isinstance(time, str):
-        return time
     found = vibrations(solution, count, gyration, planar=planar)
     if isinstance(found, str):
         return found
-    return _in_units(solution, found, time)
+    return _in_units(solution, found, time_of(solution))
 
 
-def _in_units(solution: Solution, found: Vibrations, time: float) -> Modes:
-    """Return modes in the units of a scene, `time` of which is one over a unit of omega."""
+def _in_units(solution: Solution, found: Vibrations, time: Time) -> Modes:
+    """Return modes in the units of a scene."""
     shapes = shapes_of(solution, found)
-    si = solution.units.si
-    squared, bounds = found.squared / time**2, found.bounds / time**2
-    cycles = 2 * np.pi if si else 1.0
+    squared, bounds = found.squared / time.size**2, found.bounds / time.size**2
+    cycles = 2 * np.pi if time.seconds else 1.0
     frequencies = np.sign(squared) * np.sqrt(np.abs(squared)) / cycles
+    told, across = found.told, shapes.in_plane < ACROSS
+    if across.any() and straightens(solution):
+        told = ", ".join(filter(None, [told, UNCLAIMED]))
+        bounds[across] = np.nan
     return Modes(
         squared,
         frequencies,
@@ -113,9 +118,9 @@ def _in_units(solution: Solution, found: Vibrations, time: float) -> Modes:
         shapes.s,
         shapes.displacement,
         shapes.rotation,
-        "Hz" if si else DIMENSIONLESS,
+        time.unit,
         found.negative,
-        found.told,
+        told,
         bounds,
     )
 

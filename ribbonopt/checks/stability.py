@@ -71,6 +71,14 @@ def negative_directions(solution: Solution) -> int | None:
     return None if isinstance(found, str) else found.negative
 
 
+def negative_within_plane(solution: Solution) -> int | None:
+    """Negative directions in the plane of a ribbon that is held in one; None of any other."""
+    found = second_variation(solution)
+    if isinstance(found, str) or solution.scene.states != "planar":
+        return None
+    return found.negative if found.planar or not found.negative else found.in_plane
+
+
 def negative_range(solution: Solution) -> tuple[int, int] | None:
     """Least and largest number of negative directions, neutral ones counted or not; None so too."""
     found, variation = second_variation(solution), variation_of(solution)

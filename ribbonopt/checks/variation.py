@@ -14,7 +14,7 @@ those of the continuous problem, whatever the mesh. Where strains leap see `movi
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -91,8 +91,8 @@ class Energy:
     ribbon: Ribbon
     sides: Mapping[int, Side]
     switches: MovingSwitches | None
-    conditions: Buffered
-    bent: Buffered
+    conditions: Callable[..., list[Array]]
+    bent: Callable[..., list[Array]]
 
     @classmethod
     def of(cls, ribbon: Ribbon) -> Energy:

@@ -79,7 +79,7 @@ def follow(verb: argparse.ArgumentParser) -> None:
 
 def mapped(verb: argparse.ArgumentParser) -> None:
     """Options of `map`."""
-    _scene(verb)
+    scene(verb)
     verb.add_argument("--jobs", metavar="N", help="worker processes (default: one for each core)")
     verb.add_argument("--out", metavar="DIR", help="folder of the map (default: results/NAME-map)")
     verb.add_argument("--resume", action="store_true", help="go on with the map in the folder")

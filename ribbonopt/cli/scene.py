@@ -22,6 +22,7 @@ from .terminal import complain, say, say_json, say_line
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from ribbonopt.scene import Scene
     from ribbonopt.solution.solution import Solution
 
 
@@ -29,16 +30,14 @@ def solve(options: argparse.Namespace) -> int:
     """Solve a scene and report its numbers."""
     refuse_idle_verbose(options)
     scene, import_seconds = load(options)
-    from ribbonopt.pipeline.prepared import solve
-
     if not (options.out or options.plot):
-        return _tell(options, solve(scene), import_seconds, None)
+        return _tell(options, _solved(options, scene), import_seconds, None)
     from ribbonopt.output.results import save_solution
     from ribbonopt.output.staging import staged_result
 
     # Claimed before solving, so that a folder that cannot be written costs no solve.
     with staged_result(options.out or default_folder(scene.name, "solve")) as stage:
-        solution = solve(scene)
+        solution = _solved(options, scene)
         try:
             say_left_out(save_solution(solution, stage.folder))
             written = stage.commit(solution.status.failure)
@@ -51,6 +50,28 @@ def solve(options: argparse.Namespace) -> int:
 
             status = drawn(lambda: draw_solution(solution, written))
     return _tell(options, solution, import_seconds, written) or status
+
+
+def _solved(options: argparse.Namespace, scene: Scene) -> Solution:
+    """Solve a scene as it asks, for one equilibrium or for all, which are counted on the way."""
+    if scene.equilibria is None:
+        from ribbonopt.pipeline.prepared import solve
+
+        return solve(scene)
+    from ribbonopt.studies.equilibria.solved import solved
+
+    from .progress import ProgressLine
+
+    line = ProgressLine(quiet=options.quiet)
+
+    def tell(text: str) -> None:
+        if line.due:
+            line.show(f"{scene.name}: {text}")
+
+    try:
+        return solved(scene, tell=tell)
+    finally:
+        line.close()
 
 
 def _tell(

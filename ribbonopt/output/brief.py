@@ -39,7 +39,7 @@ def brief(summary: Mapping[str, Any], verdict: str = "") -> str:
             *reactions(s),
             *phases(s),
             *stability(verdict),
-            *others(s["equilibria"]),
+            *others(s["equilibria"], s.get("search")),
             *(f"  warning: {text}" for text in s["warnings"]),
         ]
     )

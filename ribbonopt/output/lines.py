@@ -98,22 +98,29 @@ def _load(load: Mapping[str, Any]) -> str:
     return " and ".join(texts)
 
 
-def others(equilibria: Sequence[Mapping[str, Any]]) -> list[str]:
-    """Lines on all equilibria found, where there are several."""
-    if len(equilibria) == 1:
+def others(equilibria: Sequence[Mapping[str, Any]], search: str | None = None) -> list[str]:
+    """Lines on all equilibria found, where there are several, or a `search` for all was made."""
+    if len(equilibria) == 1 and not search:
         return []
     told = [found.get("potential") for found in equilibria]
     worked = None not in told and told != [found["energy"] for found in equilibria]
     name = "potential" if worked else "energy"
-    lines = [f"  {len(equilibria)} equilibria, by {name}; the first is the one above:"]
+    count = "1 equilibrium" if len(equilibria) == 1 else f"{len(equilibria)} equilibria"
+    lines = [f"  {count}, by {name}; the first is the one above:"]
     for i, found in enumerate(equilibria, start=1):
         n = ", ".join(f"{v:.6g}" for v in found["n0"])
         m = ", ".join(f"{v:.6g}" for v in found["m0"])
-        lines.append(
-            f"    {i}: {name} {found[name]:.8g}, n(0) = ({n}), m(0) = ({m}), "
-            f"from {found['starts']} starts"
-        )
-    return lines
+        more = _among_all(i, found) if "image_of" in found else [f"from {found['starts']} starts"]
+        loads = f"n(0) = ({n}), m(0) = ({m})"
+        lines.append(f"    {i}: " + ", ".join([f"{name} {found[name]:.8g}", loads, *more]))
+    return lines + ([f"  {search}"] if search else [])
+
+
+def _among_all(number: int, found: Mapping[str, Any]) -> list[str]:
+    """Say what a search for all equilibria tells of one."""
+    if found["image_of"] != number:
+        return [f"an image of {found['image_of']}"]
+    return [text for text in (found["stability"], found["symmetry"]) if text]
 
 
 def row(label: str, value: float | Sequence[float] | None, error: float | None) -> str:

@@ -46,7 +46,7 @@ def report(summary: Mapping[str, Any], *, steps: bool = True, verdict: str = "")
         f"{_short(s['residual_between_nodes'])} (relative), "
         f"the law to {_short(s['law_residual'])}",
         *([f"  {_steps(s['path'])}", f"  {_times(s['timings'])}"] if steps else []),
-        *others(s["equilibria"]),
+        *others(s["equilibria"], s.get("search")),
         f"  units {s['units']}",
         *(f"  warning: {text}" for text in s["warnings"]),
         *(["  skipped:", *(f"    {reason}" for reason in s["skipped"])] if steps else []),

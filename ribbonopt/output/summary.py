@@ -71,6 +71,7 @@ def summarize(solution: Solution) -> dict[str, Any]:
         "degree": dense.blocks.degree,
         "iterations": solution.iterations,
         "equilibria": [_equilibrium(found) for found in (solution, *solution.others)],
+        "search": solution.sought.told if solution.sought else None,
         "path": [dict(step) for step in solution.steps],
         "given_up": list(solution.given_up),
         "fell_back": list(solution.fell_back),
@@ -112,13 +113,18 @@ def _symmetry(solution: Solution) -> dict[str, Any] | None:
 
 def _equilibrium(solution: Solution) -> dict[str, Any]:
     """Return what tells one equilibrium of a scene from the others; `starts` led to it."""
-    return {
+    found: dict[str, Any] = {
         "energy": solution.energy,
         "potential": potential(solution),
         "n0": solution.n0.tolist(),
         "m0": solution.m0.tolist(),
         "starts": solution.times,
     }
+    if solution.sought is None:
+        return found
+    from .sought import among_all  # few scenes ask for all of them
+
+    return found | among_all(solution, solution.sought)
 
 
 def _conserved(solution: Solution) -> dict[str, float]:

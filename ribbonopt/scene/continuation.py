@@ -69,6 +69,10 @@ class ContinuationStage:
     branch
         Folder of a saved branch whose special point is taken in place of following one.
         Example: `results/snap-continue`
+    modes
+        How many natural frequencies are recorded at every point that is not special, lowest first,
+        as `frequency1` and so on, and their squares omega^2 as `squared1`, which go through zero at
+        folds and branch points. Example: `3`
     """
 
     parameter: str | tuple[str, str]
@@ -88,6 +92,7 @@ class ContinuationStage:
     number: Annotated[int, Bounds(ge=1, most=limits.COUNTED)] = 1
     between: tuple[float, float] | None = None
     branch: str | None = None
+    modes: Annotated[int, Bounds(ge=0, most=limits.MODES)] = 0
 
     @property
     def paths(self) -> tuple[str, ...]:

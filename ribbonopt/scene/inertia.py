@@ -2,11 +2,17 @@
 
 from __future__ import annotations
 
-from typing import Annotated, Literal
+from typing import TYPE_CHECKING, Annotated, Literal
 
 from ribbonopt.classes import dataclass
 
 from .schema.bounds import Bounds
+
+if TYPE_CHECKING:
+    from .model import RibbonSizes
+    from .units import Units
+
+STRIP = 12.0  # squared width over the squared radius of gyration about normal and tangent
 
 Squared = Annotated[float, Bounds(ge=0)]
 
@@ -30,3 +36,19 @@ class Inertia:
 
 #: an inertia of a scene: numbers, or those of the width of its `ribbon`
 AnyInertia = Literal["ribbon"] | Inertia
+
+
+def of_width(width: float) -> Inertia:
+    """Return the inertia of a strip of a width, in the unit of that squared."""
+    return Inertia(width**2 / STRIP, width**2 / STRIP)
+
+
+def in_units(
+    inertia: AnyInertia | None, units: Units, ribbon: RibbonSizes | None
+) -> AnyInertia | None:
+    """Return an inertia in units of what counts as 1 inside, with the width of its ribbon."""
+    if not isinstance(inertia, Inertia):
+        if inertia is None or ribbon is None:
+            return inertia  # that of the width of the law
+        inertia = of_width(ribbon.width)
+    return Inertia(inertia.d1 / units.length**2, inertia.d3 / units.length**2)

@@ -165,8 +165,9 @@ class Scene:
         Of sections that turn, for natural frequencies: `ribbon` has that of a strip of the width of
         the `ribbon`, w^2/12 about normal and tangent; without it none. Example: `{d3: 0.01}`
     equilibria
-        That `solve` looks for all equilibria, unstable ones too, along branches through their
-        folds. Example: `all` or `{along: [parameters.angle], below: 20}`
+        That `solve` and batches look for all equilibria, unstable ones too, along branches through
+        their folds; `continue` and comparisons leave it aside.
+        Example: `all` or `{along: [parameters.angle], below: 20}`
     map
         What `ribbonopt map` draws: loci of folds and branch points in the plane of two numbers, and
         how many shapes there are in each region.

@@ -21,6 +21,7 @@ from ribbonopt.transcription import Mesh
 from .as_guess import unknowns_of
 from .at_home import AtHome
 from .named import Each
+from .sought import Sought
 from .trajectory import Trajectory
 from .verification import Verification
 
@@ -63,6 +64,8 @@ class Solution(AtHome):
         Kinds of the phases: sign of m2, or 0 for a mixture of both sheets; empty for one phase.
     coarser : Trajectory or None
         Of a minimum, that on elements twice as wide, if it has one: its bars.
+    sought : Sought or None
+        What a search for all equilibria tells of it, if that has found it.
     """
 
     posed: Posed
@@ -81,6 +84,7 @@ class Solution(AtHome):
     times: int = 1
     sheets: tuple[int, ...] = ()
     coarser: Trajectory | None = None
+    sought: Sought | None = None
 
     @property
     def scene(self) -> Scene:

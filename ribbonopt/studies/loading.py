@@ -1,4 +1,4 @@
-"""One loader for all that is written: results, branches, batches and maps, told apart by their files."""
+"""One loader for all that is written: results, branches, batches and maps, told apart by files."""
 
 from __future__ import annotations
 

@@ -11,17 +11,18 @@ import numpy as np
 
 from ribbonopt.checks.modes import Modes
 from ribbonopt.errors import ViewError
-from ribbonopt.output.modes_rows import HERTZ, plane_of, rows_of, value_of
+from ribbonopt.output.modes_rows import HERTZ, plane_of, rows_of, value_of, which_of
 from ribbonopt.plain import Row
 from ribbonopt.solution.solution import Solution
 from ribbonopt.text import drawn
 
 from .album import BESIDE, Box, place
 from .camera import Camera, camera_for
-from .facets import HAZE, Drawing, Part, faded, parts_of, sorted_far
+from .facets import HAZE, Drawing, faded, parts_of, sorted_far
 from .lettering import wrapped
 from .moved import amplitude_of, moved, subject_with
 from .paper_style import PAGE, PLAIN, Style, sized, spaced
+from .pieces import Array
 from .style import FAINT, INK, SI, SPECIAL, TITLE, Drawn, blank, draw_all
 from .subject import Subject
 from .surface import Surface, sweep
@@ -34,9 +35,10 @@ OMEGA = r"\omega"
 MOST = 24  # modes on a sheet
 ACROSS, NARROW_ACROSS = 4, 2  # panels side by side
 ROWS = 121  # of a ribbon: there are many
-#: phases that are drawn, as shares of the amplitude, and how far each is faded to white
-PHASES = ((1.0, 0.0), (0.5, 0.66), (0.0, 0.78), (-0.5, 0.66), (-1.0, 0.4))
-LIFT = 0.04  # of the extent: how much nearer what is not faded counts, where phases overlap
+Phase = tuple[float, float]  # a share of the amplitude, and how far it is faded to white
+PHASES: tuple[Phase, ...] = ((1.0, 0.0), (0.5, 0.66), (0.0, 0.78), (-0.5, 0.66), (-1.0, 0.4))
+OF_BANDS: tuple[Phase, ...] = ((1.0, 0.0), (0.0, 0.8), (-1.0, 0.5))
+NARROWER = 0.5  # half-width of bands, over the one that they are drawn to by themselves
 WORDS = 0.16  # inches of a line under a panel
 MARGIN = 0.2  # inches about a panel
 ENOUGH = 2e-6  # relative error of a number that is read in a figure
@@ -80,9 +82,12 @@ def draw_modes(solution: Solution, modes: Modes, style: Style = PLAIN) -> Figure
     check_field(style.color)
     subject = subject_with(solution, modes, ROWS)
     surface = sweep(subject.pieces, style.half_width or subject.drawn)
-    swept = [_swept(subject, modes, i, surface.half_width) for i in range(len(rows))]
+    phases = OF_BANDS if surface.closed else PHASES
+    narrower = surface.closed and style.half_width is None
+    half_width = (NARROWER if narrower else 1.0) * surface.half_width
+    swept = [_swept(subject, modes, i, half_width, phases) for i in range(len(rows))]
     camera = _camera(style.camera, subject, swept)
-    drawings = [_drawing(surfaces, camera) for surfaces in swept]
+    drawings = [_drawing(surfaces, camera, phases) for surfaces in swept]
     box = _box(drawings)
     across = min(len(rows), NARROW_ACROSS if style.narrow else ACROSS)
     down = -(-len(rows) // across)
@@ -100,15 +105,17 @@ def draw_modes(solution: Solution, modes: Modes, style: Style = PLAIN) -> Figure
         place(axes, drawing, box, THIN)
         axes.set_xlabel(text, fontsize=sized(8.5), color=INK)
     if style.titles:
-        _title(figure, subject, modes)
+        _title(figure, subject.name, which_of(solution, modes), modes.unit)
     return figure
 
 
-def _swept(subject: Subject, modes: Modes, number: int, half_width: float) -> list[Surface]:
+def _swept(
+    subject: Subject, modes: Modes, number: int, half_width: float, phases: Sequence[Phase]
+) -> list[Surface]:
     """Return the ribbon at the phases of its motion."""
     most = amplitude_of(subject, modes, number)
     return [
-        sweep(moved(subject, modes, number, share * most).pieces, half_width) for share, _ in PHASES
+        sweep(moved(subject, modes, number, share * most).pieces, half_width) for share, _ in phases
     ]
 
 
@@ -120,16 +127,18 @@ def _camera(said: str, subject: Subject, swept: Sequence[Sequence[Surface]]) -> 
     return camera_for(said, line, normals)
 
 
-def _drawing(surfaces: Sequence[Surface], camera: Camera) -> Drawing:
-    """Return all phases in one picture, what is near over what is far."""
-    parts: list[Part] = []
-    line = np.concatenate([sheet.piece.r for surface in surfaces for sheet in surface.sheets])
-    lift = LIFT * float(np.linalg.norm(np.ptp(line, axis=0)))
-    for surface, (_, paler) in zip(surfaces, PHASES, strict=True):
-        for part in parts_of(surface, camera):
-            corners, heights, faces, edges, widths = faded(part, paler)
-            parts.append((corners, heights + lift * (1 - paler), faces, edges, widths))
-    return sorted_far(parts, HAZE)
+def _drawing(surfaces: Sequence[Surface], camera: Camera, phases: Sequence[Phase]) -> Drawing:
+    """Return all phases in one picture, those that are less faded over the others."""
+    order = np.argsort([-paler for _, paler in phases], kind="stable")
+    layers = []
+    for i in order:
+        parts = [faded(part, phases[i][1]) for part in parts_of(surfaces[i], camera)]
+        layers.append(sorted_far(parts, HAZE))
+    return Drawing(*(np.concatenate(parts) for parts in zip(*map(_parts, layers), strict=True)))
+
+
+def _parts(drawing: Drawing) -> tuple[Array, Array, Array, Array]:
+    return drawing.corners, drawing.faces, drawing.edges, drawing.line_widths
 
 
 def _box(drawings: Sequence[Drawing]) -> Box:
@@ -151,14 +160,9 @@ def _caption(row: Row, unit: str, width: float) -> str:
     return "\n".join(told)
 
 
-def _title(figure: Figure, subject: Subject, modes: Modes) -> None:
-    figure.suptitle(
-        f"{drawn(subject.name, TITLE)}: small vibrations{f' ({modes.told})' if modes.told else ''}",
-        x=0.01,
-        ha="left",
-        fontsize=sized(11),
-        fontweight="bold",
-    )
-    si = modes.unit == HERTZ
-    words = SI if si else rf"{SPECIAL}, $\omega$ over $\sqrt{{Dw/(\rho L^4)}}$"
-    figure.text(0.99, 0.985, words, ha="right", va="top", fontsize=sized(8.5), color=FAINT)
+def _title(figure: Figure, name: str, which: str, unit: str) -> None:
+    words = f"{drawn(name, TITLE)}: small vibrations"
+    look = {"fontsize": sized(11), "fontweight": "bold"}
+    figure.suptitle(f"{words}\n{which}" if which else words, x=0.01, ha="left", **look)
+    units = SI if unit == HERTZ else rf"{SPECIAL}, $\omega$ over $\sqrt{{Dw/(\rho L^4)}}$"
+    figure.text(0.99, 0.985, units, ha="right", va="top", fontsize=sized(8.5), color=FAINT)

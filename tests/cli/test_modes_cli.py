@@ -140,7 +140,8 @@ def test_what_has_no_modes_is_kept_and_says_why(run: Run, strip: str) -> None:
 
 def test_what_was_not_solved_has_none(run: Run, strip: str) -> None:
     words = ("--set", "solver={type: newton, max_iterations: 1}", "--set", "parameters.d=0.2")
-    more = ("--set", "boundary.end={support: clamped, position: [0, 0, 1 - d], directors: identity}")
+    end = "{support: clamped, position: [0, 0, 1 - d], directors: identity}"
+    more = ("--set", f"boundary.end={end}")
     status, out, _ = run("modes", strip, *words, *more, "--out", "kept", "--json")
     assert status == 3
     assert json.loads(out)["verified"] is False

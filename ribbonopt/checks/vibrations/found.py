@@ -7,8 +7,6 @@ x K x, the energy of the strains and what the loads do; the sum of their sizes t
 
 from __future__ import annotations
 
-from typing import NamedTuple
-
 import numpy as np
 
 from ribbonopt.arrays import Array
@@ -19,12 +17,13 @@ from ribbonopt.solution.solution import Solution
 
 from ..stability import MOST, too_coarse
 from ..variation import Variation
+from .interpolated import interpolated
 from .kinetic import Gyration, Kinetic, kinetic
-from .lowest import Spectrum, lowest
+from .lowest import Spectrum, improved, lowest
 from .stated import Vibrating, stated
 from .zero import Neutral
 
-MARGIN = 4.0  # bounds over what two opinions differ by
+MARGIN = 3.0  # bounds over what two opinions differ by
 SHAPE = 10.0  # bounds over the error of the shape
 ROUNDING = 1e-12  # of omega^2 and the shift: least bound
 
@@ -78,11 +77,10 @@ def vibrations(
     energy = _kinetic(what, variation, gyration)
     neutral = Neutral.of(what, variation, energy)
     scale = 1 / (variation.largest * what.length**4)
-    first = lowest(variation.form, energy.rows, count + neutral.most, scale)
+    first = lowest(variation.form, energy.rows, count + len(neutral.words), scale)
     if isinstance(first, str):
         return first
-    moving = neutral.others(first, scale)
-    kept = np.flatnonzero(moving)[:count]
+    kept = np.flatnonzero(~neutral.among(first, energy))[:count]
     squared, modes = first.squared[kept], first.modes[..., kept]
     bounds = _bounds(what, variation, first, gyration, scale)[kept]
     negative = int((squared < -bounds).sum())
@@ -90,7 +88,7 @@ def vibrations(
         squared,
         bounds,
         modes,
-        neutral.names(int((~moving).sum())),
+        neutral.names(first, energy),
         negative,
         variation,
         what.ribbon,
@@ -117,14 +115,19 @@ def _bounds(
     """Bounds (k,) of the errors of omega^2; infinite where the second opinion has no such mode."""
     again = what.variation(again=True)
     rows = _kinetic(what, again, gyration).rows
-    other = lowest(again.form, rows, len(first.squared), scale)
+    near = interpolated(first.modes, variation, again)
+    if near is not None:
+        other = improved(again.form, rows, near, first.shift)
+    else:
+        found = lowest(again.form, rows, len(first.squared), scale)
+        other = np.empty(0) if isinstance(found, str) else found.squared
     apart = np.full(len(first.squared), np.inf)
-    if isinstance(other, Spectrum):
-        both = min(len(apart), len(other.squared))
-        apart[:both] = np.abs(first.squared[:both] - other.squared[:both])
+    both = min(len(apart), len(other))
+    apart[:both] = np.abs(first.squared[:both] - other[:both])
     nx = variation.form.A.shape[1]
     own, compliance = first.modes[:, nx:], np.diagonal(variation.form.Q, axis1=1, axis2=2)[:, nx:]
     strained = np.einsum("eyk,ey->k", own**2, np.abs(compliance))
     parts = np.abs(first.squared) + 2 * strained
-    bounds: Array = MARGIN * apart + SHAPE * variation.stages.error * parts
-    return bounds + ROUNDING * (parts + first.shift)
+    least = SHAPE * variation.stages.error * parts + ROUNDING * (parts + first.shift)
+    bounds: Array = MARGIN * apart + least
+    return bounds

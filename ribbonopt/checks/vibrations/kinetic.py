@@ -69,12 +69,28 @@ def moves_of(model: RodModel, x: Array) -> Moves:
     return Moves(displacement, rotation)
 
 
-def directors_at(model: RodModel, x: Array) -> Array:
-    """Directors d1 and d3 (k, 2, 3), lab frame, of states (k, nx) in space."""
+class Sections(NamedTuple):
+    """Positions and directors d1, d3 (k, 3) of sections, lab frame, units L = 1.
+
+    Of a rod in a plane the positions are those in the plane through the origin.
+    """
+
+    r: Array
+    d1: Array
+    d3: Array
+
+
+def sections_of(model: RodModel, x: Array) -> Sections:
+    """Return where sections are by their states (k, nx)."""
+    if isinstance(model, PlanarRod):
+        r, (a, b) = np.zeros((len(x), 3)), model.plane.basis
+        r[:, list(model.plane.inside)] = x[:, :2]
+        cos, sin = np.cos(x[:, 2:3]), np.sin(x[:, 2:3])
+        return Sections(r, cos * a - sin * b, sin * a + cos * b)
     a, b, c, d = x[:, 3:7].T
     d1 = [a * a + b * b - c * c - d * d, 2 * (b * c + a * d), 2 * (b * d - a * c)]
     d3 = [2 * (b * d + a * c), 2 * (c * d - a * b), a * a - b * b - c * c + d * d]
-    return np.moveaxis(np.array([d1, d3]), 2, 0)
+    return Sections(x[:, :3], np.array(d1).T, np.array(d3).T)
 
 
 def kinetic(
@@ -92,7 +108,8 @@ def kinetic(
     moves = moves_of(model, at.x)
     parts = [np.sqrt(weights)[:, None, None] * moves.displacement]
     if any(gyration) and not isinstance(model, PlanarRod):
-        turns = directors_at(model, at.x) @ moves.rotation
+        _, d1, d3 = sections_of(model, at.x)
+        turns = np.stack([d1, d3], axis=1) @ moves.rotation
         sizes = np.sqrt(weights * width**2)[:, None] * np.sqrt(gyration)
         parts += [(sizes[..., None] * turns)[:, [i]] for i in (0, 1) if gyration[i]]
     moved = np.concatenate(parts, axis=1).reshape(N, K, -1, nx)

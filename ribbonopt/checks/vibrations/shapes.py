@@ -12,6 +12,7 @@ from ribbonopt.problem import Ribbon
 from ribbonopt.solution.solution import Solution
 
 from ..variation import Variation
+from ..zero_moment import law_in_space
 from .found import Vibrations
 from .kinetic import moves_of
 
@@ -69,6 +70,18 @@ def in_plane(found: Vibrations, displacement: Array) -> Array:
     # Of a kinetic energy of one half at unit frequency, turns included.
     share: Array = (inside[:, 1:-1] ** 2).sum(axis=2) @ found.weights
     return share
+
+
+def straightens(solution: Solution) -> bool:
+    """Whether the bending of a ribbon in a plane vanishes somewhere, where its law is singular.
+
+    Across the plane: there a law that is homogeneous twists as it bends.
+    """
+    law = law_in_space(solution)
+    if law.linear_at_zero or law.natural:
+        return False
+    m2 = solution.trajectory.at_stages["m2"]
+    return bool(m2.min() * m2.max() < 0)
 
 
 def normal_of(x: Array) -> Array | None:

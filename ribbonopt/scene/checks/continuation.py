@@ -96,6 +96,9 @@ def _form(stage: ContinuationStage, scene: Scene, path: KeyPath) -> Iterator[Pro
         if a > b:
             message = f"step sizes reversed: {small} {a:g} > {large} {b:g}; expected smallest <= "
             yield Problem((*path, small), f"{message}first <= largest, so exchange the two")
+    if stage.modes and scene.ribbon is not None and scene.ribbon.density is None:
+        message = "frequencies in Hz need the density of the ribbon, in kg/m^3; write for example "
+        yield Problem((*path, "modes"), f'{message}"density: 1390" under ribbon', f"{stage.modes}")
     for index, text in enumerate(stage.stop):
         yield from _stop(text, stage, scene, (*path, "stop", index))
 

@@ -86,4 +86,4 @@ def branch_scenes(
     """Yield the scenes at both ends of the branch of a locus, with where these stand."""
     for i, value in enumerate(stage.between or ()):
         there = with_value(scene, stage.paths[0], value)
-        yield (*path, "between", i), value, replace(there, continuation=None)
+        yield (*path, "between", i), value, replace(there, continuation=None, map=None)

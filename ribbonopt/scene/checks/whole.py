@@ -13,6 +13,7 @@ from typing import Any, get_origin
 from ribbonopt.classes import dataclass
 from ribbonopt.scene.along import is_along, numbers_along
 from ribbonopt.scene.ends import Boundary
+from ribbonopt.scene.equilibria import Equilibria
 from ribbonopt.scene.faults import KeyPath, Problem, shown
 from ribbonopt.scene.guesses import Guess, MoebiusGuess
 from ribbonopt.scene.loads import Loads
@@ -100,6 +101,10 @@ def check(scene: Scene, like: Sound | None = None) -> list[Problem]:
         from .membrane import check_membrane  # as above
 
         problems += check_membrane(scene, scene.membrane)
+    if scene.inertia is not None:
+        from .inertia import check_inertia  # as above
+
+        problems += check_inertia(scene, scene.inertia)
     if scene.loads.points or scene.supports:
         from .stations import check_stations  # few scenes have any
 
@@ -123,6 +128,10 @@ def check(scene: Scene, like: Sound | None = None) -> list[Problem]:
         from .maps import check_map  # few scenes are mapped
 
         problems += check_map(scene, scene.map, None if problems else check)
+    if isinstance(scene.equilibria, Equilibria):
+        from .equilibria import check_equilibria  # few scenes ask for all of them
+
+        problems += check_equilibria(scene, scene.equilibria, None if problems else check)
     return problems
 
 

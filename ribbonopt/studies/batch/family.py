@@ -58,6 +58,8 @@ def solve_beside(
     posed = prepared.posed(scene)
     if before is not None and before.members[0].prepared is not prepared:
         before = None
+    if posed.given.equilibria is not None:
+        return _all(prepared, posed, number, before)
     if posed.scene.starts > 1:
         return _least(prepared, posed, number, before)
     nearest = before.members[0] if before is not None else None
@@ -96,6 +98,18 @@ def _least(
     family = Family(tuple(known[i] for i in firsts), number, turn)
     start = f"ribbon {before.number}" if before and firsts[0] < count else "own"
     return least(solutions, kinds), start, family
+
+
+def _all(
+    prepared: Prepared, posed: Posed, number: int, before: Family | None
+) -> tuple[Solution, str, Family | None]:
+    """Search for all equilibria of a ribbon, from those of the ribbon before as well."""
+    from ribbonopt.studies.equilibria.solved import solved  # few scenes ask for it
+
+    near = [member.solution for member in before.members] if before else []
+    found = solved(posed.given, prepared, known=near)
+    members = tuple(Neighbour(prepared, each) for each in (found, *found.others))
+    return found, f"ribbon {before.number}" if before else "own", Family(members, number)
 
 
 def _followed(member: Neighbour, posed: Posed, before: Family) -> Neighbour | None:

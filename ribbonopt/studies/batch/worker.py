@@ -148,7 +148,7 @@ def _outcome(found: Solution, start: str) -> Row:
     }
     if found.status.converged:
         row |= numbers_of(found) | {"error": error_of(found)}
-        if found.scene.starts > 1:
+        if found.scene.starts > 1 or found.scene.equilibria is not None:
             row["equilibria"] = 1 + len(found.others)
     steps = [step["step"] for step in found.steps]
     row["note"] = "; ".join((*found.given_up, *found.fell_back))

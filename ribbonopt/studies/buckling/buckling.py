@@ -25,7 +25,6 @@ from .found import Buckling
 from .straight import BEYOND, StraightStates
 
 
-
 def buckling_loads(scene: Scene, parameter: str, start: float, end: float) -> tuple[Buckling, ...]:
     """Return the buckling loads of a straight ribbon as a number of its scene moves.
 

@@ -98,7 +98,9 @@ class LoadsInPlane:
         # A rod may buckle beyond the line, as a ribbon is softer than the rod with its stiffnesses.
         spans = ((-share, 1 + share) for share in BEYOND)
         loads = next((found for span in spans if (found := states.between(*span)) is not None), [])
-        for load in sorted((one for one in loads if 0 <= one.value <= 1), key=lambda one: one.value):
+        for load in sorted(
+            (one for one in loads if 0 <= one.value <= 1), key=lambda one: one.value
+        ):
             place = line[0] + load.value * way
             found = self.crossed(load.mode, self.across(place, way))
             result += [] if found is None else [found]

@@ -27,9 +27,9 @@ from ribbonopt.solution.solution import Solution
 from ribbonopt.text import one_line, shortened
 
 from .curve import Curve
-from .recorded import Recorder
 from .locus.stage import LocusStage
 from .locus.surface import Surface, curve_of
+from .recorded import Recorder
 from .stage import RibbonStage, refuse_idle
 from .walk.branches import History, Key, Nothing, Register
 from .walk.points import Point

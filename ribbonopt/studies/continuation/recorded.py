@@ -24,6 +24,7 @@ from ribbonopt.solution.potential import potential
 from ribbonopt.solution.solution import Solution
 
 from .curve import Curve
+from .frequencies import frequencies, names_of
 from .stops import Stops, conditions_of
 from .walk.points import POINT, Point
 
@@ -55,8 +56,9 @@ class Recorder:
         self.parameters = tuple(dict.fromkeys(chain.from_iterable(s.paths for s in stages)))
         self.measured = any(stage.measured for stage in stages)
         self.located = any(stage.is_locus for stage in stages)
+        self.frequencies = names_of(stages)
         for name in self.formulas:
-            if name in (*NUMBERS, *WORDS, VALUE, SOFTEST, *self.parameters):
+            if name in (*NUMBERS, *WORDS, VALUE, SOFTEST, *self.frequencies, *self.parameters):
                 raise ModelError(
                     f"record.{name}: every row has {name!r} already; choose another name",
                     f"record.{name}",
@@ -70,7 +72,7 @@ class Recorder:
     def names(self) -> tuple[str, ...]:
         """Names of all numbers of a row."""
         softest = [SOFTEST] if self.measured else []
-        return (*self.parameters, *NUMBERS, *softest, *self.formulas)
+        return (*self.parameters, *NUMBERS, *softest, *self.frequencies, *self.formulas)
 
     @property
     def short(self) -> dict[str, str]:
@@ -120,6 +122,10 @@ class Recorder:
         row["intervals"] = solution.dense.blocks.layout.element_count
         if self.measured:
             row[SOFTEST] = _softest(solution) if stage.measured and point.kind == POINT else None
+        if self.frequencies:
+            row |= dict.fromkeys(self.frequencies)
+            if stage.modes and point.kind == POINT:
+                row |= frequencies(solution, stage.modes)
         row["iterations"] = solution.iterations
         told = [*unknown_of(solution), *solution.given_up, *solution.fell_back]
         if row["negative"] is not None and solution.scene.states == "planar":

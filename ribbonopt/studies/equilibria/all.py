@@ -19,7 +19,7 @@ from ribbonopt.starts.equilibria import distinct
 
 from .found import Equilibrium, Found
 from .line import Line
-from .search import AGREES, Search, Tell
+from .search import AGREES, Search, Tell, quiet
 from .seeds import first_load_energy, seeds
 from .symmetry import symmetry_of
 from .told import told
@@ -30,16 +30,12 @@ LOADS = 5.0  # times the energy of the strip as it buckles first: the limit, whe
 GAP, COARSE = 1e-5, 1e-3  # of two that are images: relative, without a tolerance
 
 
-def _quiet(_: str) -> None:
-    """Tell nothing."""
-
-
 def all_equilibria(
     scene: Scene,
     prepared: Prepared | None = None,
     *,
     known: Iterable[Solution] = (),
-    tell: Tell = _quiet,
+    tell: Tell = quiet,
 ) -> Found:
     """Search for all equilibria of a scene, unstable ones too.
 
@@ -78,7 +74,7 @@ def all_equilibria(
     search = Search(prepared, posed, below, settings.points, tell)
     for name, solution in started:
         search.enter(solution, name)
-    lines = [line for line in _lines(prepared, scene, settings, started[0][1]) if line]
+    lines = list(_lines(prepared, scene, settings, started[0][1]))
     search.run(lines)
     return _found(search, lines, len(started))
 
@@ -106,15 +102,26 @@ def _limit(posed: Posed, energies: Sequence[float]) -> float:
 
 def _lines(
     prepared: Prepared, scene: Scene, settings: Equilibria, first: Solution
-) -> Iterator[Line | None]:
-    """Yield the lines of the numbers that move; None for one that changes nothing."""
+) -> Iterator[Line]:
+    """Yield the lines of the numbers that move; ModelError where one that is named changes nothing.
+
+    Of the parameters that are taken where none is named, those that change something.
+    """
     ranges = settings.ranges
     if not ranges:
         stages = [stage.parameter for _, stage in located_stages(scene)]
         named = [f"{PARAMETERS}{name}" for name in scene.parameters]
         ranges = dict.fromkeys(stages or named)
     for path, range_ in ranges.items():
-        yield Line.of(prepared, scene, path, range_, first)
+        line = Line.of(prepared, scene, path, range_, first)
+        if line is not None:
+            yield line
+        elif path in settings.ranges:
+            raise ModelError(
+                f"equilibria.along: {path} changes nothing in this scene; name a number that its "
+                "equations contain",
+                "equilibria.along",
+            )
 
 
 def _found(search: Search, lines: Sequence[Line], starts: int) -> Found:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from functools import cached_property
 
-from ribbonopt.checks.stability import SecondVariation, second_variation
+from ribbonopt.checks.stability import SecondVariation, negative_within_plane, second_variation
 from ribbonopt.classes import dataclass
 from ribbonopt.plain import Row
 from ribbonopt.solution.potential import potential
@@ -51,10 +51,7 @@ class Equilibrium:
     @property
     def in_plane(self) -> int | None:
         """The same among disturbances in the plane, of a ribbon that is held in one; else None."""
-        found = self.variation
-        if isinstance(found, str) or self.solution.scene.states != "planar":
-            return None
-        return found.negative if found.planar or not found.negative else found.in_plane
+        return negative_within_plane(self.solution)
 
     @property
     def stable(self) -> bool | None:

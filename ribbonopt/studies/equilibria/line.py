@@ -7,7 +7,7 @@ back to the scene's own value.
 from __future__ import annotations
 
 from collections.abc import Iterator
-from dataclasses import replace
+from dataclasses import field, replace
 from functools import cached_property
 
 import numpy as np
@@ -27,10 +27,52 @@ from ribbonopt.studies.continuation.walk.points import Point
 from ribbonopt.studies.continuation.walk.tangents import near
 from ribbonopt.studies.continuation.walk.walk import Walk
 
-FAR = 20.0  # times what changes the states by as much as they are: range where none is given
+FAR = 8.0  # times what changes the states by as much as they are: range where none is given
 LARGEST, FIRST, SMALLEST = 0.35, 0.15, 1e-5  # steps, in the same measure
 HALVINGS = 12  # to where a range must end because there is no scene beyond
 MOST = 400  # points of one walk
+CELL, KNOTS = 0.5, 10  # ranges, in the same measure, on which theta is a polynomial through so many
+EXACT = 1e-10  # of theta: what is exact enough on the way
+
+
+@dataclass(frozen=True, eq=False)
+class Cell:
+    """Parameters theta on a small range of positions, by the polynomial through some of them.
+
+    Attributes
+    ----------
+    places, values : (k,) and (k, ntheta) arrays
+        Positions, and theta there.
+    exact : bool
+        Whether it tells theta to what counts on the way.
+    """
+
+    places: Array
+    values: Array
+    exact: bool
+
+    @classmethod
+    def of(cls, curve: Curve, low: float, high: float) -> Cell:
+        """Read theta at Chebyshev's positions and, as a test, at two others."""
+        nodes = np.cos(np.pi * (np.arange(KNOTS) + 0.5) / KNOTS)
+        places = (low + high) / 2 + (high - low) / 2 * nodes
+        try:
+            found = cls(places, np.array([curve.posed_at(place).values for place in places]), True)
+            tests = [low + share * (high - low) for share in (0.27, 0.61)]
+            off = [np.abs(found.at(x) - curve.posed_at(x).values).max() for x in tests]
+        except (RibbonoptError, ArithmeticError, ValueError):  # no scene is there
+            return cls(places, np.empty((KNOTS, 0)), False)
+        size = float(np.abs(found.values).max())
+        return replace(found, exact=bool(max(off) <= EXACT * (1 + size)))
+
+    def at(self, position: float) -> Array:
+        """Return theta (ntheta,) at a position, by barycentric weights."""
+        away = position - self.places
+        if not away.all():
+            return np.asarray(self.values[int(np.abs(away).argmin())])
+        turns = np.pi * (np.arange(KNOTS) + 0.5) / KNOTS
+        weights = (-1.0) ** np.arange(KNOTS) * np.sin(turns) / away
+        return np.asarray(weights @ self.values / weights.sum())
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,11 +80,23 @@ class SearchCurve(Curve):
     """A curve on which a given change of the position, its `scale`, counts as one."""
 
     scale: float = 1.0
+    _cells: dict[int, Cell] = field(default_factory=dict)
 
     @cached_property
     def span(self) -> float:
         """Change of the position that counts as one, and that steps are measured by."""
         return self.scale
+
+    def _theta(self, position: float) -> Array:
+        """Parameters theta at a position: posing a scene costs as much as a step of Newton's."""
+        if self._direct is not None:
+            return super()._theta(position)
+        number = int(np.floor((position - self.begin) / (CELL * self.scale)))
+        if number not in self._cells:
+            low = self.begin + number * CELL * self.scale
+            self._cells[number] = Cell.of(self, low, low + CELL * self.scale)
+        cell = self._cells[number]
+        return cell.at(position) if cell.exact else self.posed_at(position).values
 
 
 @dataclass(frozen=True, eq=False)

@@ -8,7 +8,7 @@ followed once, and so are those of the branches that cross, until nothing new co
 from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Sequence
-from dataclasses import dataclass, field, replace
+from dataclasses import dataclass, field
 
 import numpy as np
 
@@ -32,6 +32,10 @@ COARSE = 1e-4  # the same, where there is no tolerance
 MET = 1e-4  # arclength between two estimates of one point where branches cross
 
 Tell = Callable[[str], None]
+
+
+def quiet(_: str) -> None:
+    """Tell nothing."""
 
 
 @dataclass(eq=False)
@@ -155,7 +159,9 @@ class Search:
                 continue
             self.points, count = self.points + 1, count + 1
             value = line.curve.value(point.position)
-            self.tell(f"{len(self.nodes)} equilibria; {self.points} points; {line.name} = {value:.5g}")
+            self.tell(
+                f"{len(self.nodes)} equilibria; {self.points} points; {line.name} = {value:.5g}"
+            )
             equations = line.equations(before.solution)
             if self._passed(line, equations, before, point, found_by):
                 self._ended("came to where another had been")
@@ -167,7 +173,9 @@ class Search:
                 self._ended("were left after as many points as allowed")
                 return
             before = point
-        self._ended("left the range" if walk.ending.reached else "were lost where no step succeeded")
+        self._ended(
+            "left the range" if walk.ending.reached else "were lost where no step succeeded"
+        )
 
     def _passed(
         self,

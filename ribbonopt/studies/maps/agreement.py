@@ -64,5 +64,5 @@ def _by_negative(shapes: Sequence[Row]) -> Counter[int] | None:
     for shape in shapes:
         if shape["negative"] is None:
             return None
-        found[shape["negative"]] += int(shape.get("images") or 1)
+        found[shape["negative"]] += 1
     return found

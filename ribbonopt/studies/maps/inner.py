@@ -8,7 +8,7 @@ from ribbonopt.arrays import Array
 
 from .faces import Face
 
-GRID = 48  # places along each side of what is searched
+GRID = 24  # places along each side of what is searched
 ROUNDS = 4  # each in a window that is so much smaller
 CLOSER = 0.12
 BESIDE = (0.25, 0.05, 0.01)  # of a side's length: places beside it, for slivers that no grid meets

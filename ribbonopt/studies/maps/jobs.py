@@ -11,6 +11,7 @@ from dataclasses import replace
 from ribbonopt.classes import dataclass
 from ribbonopt.plain import Row
 from ribbonopt.scene import ContinuationStage, Scene, dump_scene
+from ribbonopt.scene.equilibria import Equilibria
 from ribbonopt.scene.lens import with_value
 from ribbonopt.scene.maps import MapPlan
 from ribbonopt.studies.batch.study import Source, StudyRibbon
@@ -105,6 +106,8 @@ def locus(scene: Scene, plan: MapPlan, number: int, begin: Row) -> Job:
 def shapes(scene: Scene, plan: MapPlan, number: int, x: float, y: float) -> Job:
     """Return the count of all equilibria at a point of the map."""
     there = with_value(with_value(_bare(scene), plan.x, x), plan.y, y)
+    if not isinstance(there.equilibria, Equilibria):
+        there = replace(there, equilibria=Equilibria(along=(plan.x, plan.y)))
     return Job(f"{POINTS}/{number}", SHAPES, there, {plan.x: x, plan.y: y})
 
 

@@ -15,6 +15,7 @@ import numpy as np
 from ribbonopt.arrays import Array
 
 PARTS = 8  # of a curve between two points
+UNEVEN = 4.0  # ratio of spacings, beyond which polynomials of degree 4 may swing
 REACH = 4e-3  # of the square: an end this near to something ends there
 BEYOND = 1e-6  # by how much it is drawn over that, so that both surely meet
 CLOSED = 1e-6  # between the two ends of a closed line
@@ -51,8 +52,8 @@ def joined(lines: Sequence[Array]) -> list[Array]:
     for own, line in enumerate(lines, start=1):
         if not _closed(line):
             others = [np.stack([o[:-1], o[1:]], axis=1) for i, o in enumerate(all_) if i != own]
-            sides = np.concatenate(others)
-            line = _led_on(_led_on(line, sides)[::-1], sides)[::-1]
+            for _ in range(2):
+                line = _led_on(line, others)[::-1]
         found.append(line)
     return found
 
@@ -68,19 +69,16 @@ def _straight(points: Array) -> Array:
 
 
 def _curve(points: Array, closed: bool) -> Array:
-    """Return a cubic Hermite curve in the length of chords; its tangents are those of parabolas."""
+    """Return a cubic Hermite curve in the length of chords."""
     if len(points) < 3:
         return _straight(points)
     if closed:
-        around = np.concatenate([points[-3:-1], points, points[1:3]])
+        around = np.concatenate([points[-4:-1], points, points[1:4]])
         whole = _curve(around, closed=False)
-        return whole[2 * PARTS : -2 * PARTS]
+        return whole[3 * PARTS : -3 * PARTS]
     ways = np.diff(points, axis=0)
-    chords = np.maximum(np.hypot(*ways.T), np.finfo(float).tiny)[:, None]
-    slopes = ways / chords
-    inner = (chords[1:] * slopes[:-1] + chords[:-1] * slopes[1:]) / (chords[1:] + chords[:-1])
-    first, last = 2 * slopes[0] - inner[0], 2 * slopes[-1] - inner[-1]
-    tangents = np.concatenate([first[None], inner, last[None]])
+    chords = np.maximum(np.hypot(*ways.T), np.finfo(float).tiny)
+    tangents = np.array([_tangent(points, chords, i) for i in range(len(points))])
     t = np.linspace(0, 1, PARTS + 1)[1:, None]
     rise, out, into = t**2 * (3 - 2 * t), t * (1 - t) ** 2, t**2 * (t - 1)
     parts = [points[:1]]
@@ -91,7 +89,41 @@ def _curve(points: Array, closed: bool) -> Array:
     return np.concatenate(parts)
 
 
-def _led_on(line: Array, sides: Array) -> Array:
+def _tangent(points: Array, chords: Array, i: int) -> Array:
+    """Return the derivative (2,) at point i by the length of chords, from the points about it.
+
+    From five of them, or from three where spacings differ much.
+    """
+    for count in (5, 3):
+        width = min(count, len(points))
+        first = min(max(i - width // 2, 0), len(points) - width)
+        near = chords[first : first + width - 1]
+        if near.max() <= UNEVEN * near.min() or count == 3:
+            break
+    at = np.concatenate([[0.0], np.cumsum(near)])
+    gaps = at[i - first] - at
+    others = [j for j in range(width) if at[j] != at[i - first]]
+    weights = np.zeros(width)
+    for j in others:
+        rest = [k for k in others if k != j]
+        weights[j] = np.prod(gaps[rest] / (at[j] - at[rest])) / (at[j] - at[i - first])
+    weights[i - first] = -weights.sum()
+    return np.asarray(weights @ points[first : first + width])
+
+
+def _led_on(line: Array, others: Sequence[Array]) -> Array:
+    """Return a line that goes on from its last point to the border, or else what else is near.
+
+    `others` are segments (m, 2, 2) of the border and of all other lines, in this order.
+    """
+    for sides in (others[0], np.concatenate(others)):
+        longer = _led_to(line, sides)
+        if len(longer) > len(line):
+            return longer
+    return line
+
+
+def _led_to(line: Array, sides: Array) -> Array:
     """Return a line that goes on from its last point to the nearest of sides, if that is near."""
     end = line[-1]
     starts, ways = sides[:, 0], sides[:, 1] - sides[:, 0]

@@ -16,7 +16,7 @@ from .jobs import LINES, LOCI
 from .loci import Locus, value_of
 from .survey import Survey
 
-SHAPE = ("energy", "negative", "stable", "images", "symmetry", "error")
+SHAPE = ("energy", "negative", "in_plane", "stable", "image", "symmetry", "error")
 CONVERGED, NOTHING, FAILED = "converged", "nothing_found", "no_branch"
 
 
@@ -93,6 +93,7 @@ def _locus(locus: Locus, survey: Survey) -> Row:
         "folder": f"{LOCI}/{locus.number}",
         "ending": locus.ending,
         "negative": min(negative, default=None),
+        "changes": survey.changes(locus),
         "error": max(errors, default=None),
         "points": _values(locus.points, survey),
         "curve": _values(locus.curve, survey),

@@ -144,7 +144,9 @@ def halved(equations: LocusEquations, trial: Trial[Solution]) -> tuple[Solution,
     parts = []
     for part in (laid.tangent, laid.across):
         h = 1e-4
-        parts.append((moved(trial.unknowns + h * part) - moved(trial.unknowns - h * part)) / (2 * h))
+        parts.append(
+            (moved(trial.unknowns + h * part) - moved(trial.unknowns - h * part)) / (2 * h)
+        )
     finer = attempt.restored(y[:-2])
     finer.trajectory.found[Laid] = replace(laid, tangent=parts[0], across=parts[1], sides=None)
     return finer, y

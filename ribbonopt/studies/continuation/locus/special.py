@@ -27,7 +27,6 @@ from ..walk.points import CROSSING, CUSP, DOUBLE, FOLD, ISOLA, TURN, Point, Spec
 from .bars import ROUNDING, SAFETY, halved
 from .laid import Laid
 from .readings import AREA, DETERMINANT, SLOPE, SPEED, Readings
-from .readings import TURN as TURNS
 
 if TYPE_CHECKING:
     from .equations import LocusEquations
@@ -119,9 +118,7 @@ def _root(beside: Beside[Solution], readings: Readings, name: str) -> float | No
     return _from_afar(beside, test) if name in MEETS else _regular(beside, test)
 
 
-def _regular(
-    beside: Beside[Solution], test: Callable[[Probe[Solution]], float]
-) -> float | None:
+def _regular(beside: Beside[Solution], test: Callable[[Probe[Solution]], float]) -> float | None:
     """Return the root of a test function that can be read next to it, by secants of its inverse."""
     values = {probe.arc: test(probe) for probe in beside.ends}
     low, high = sorted(values)
@@ -230,9 +227,7 @@ def _finer(root: Root) -> Root | None:
     return None if arc is None else Root(equations, again, arc, root.name)
 
 
-def _on_halves(
-    equations: LocusEquations, beside: Beside[Solution], arc: float
-) -> Point[Solution]:
+def _on_halves(equations: LocusEquations, beside: Beside[Solution], arc: float) -> Point[Solution]:
     """Return the point of a locus at an arclength on halved elements; LinAlgError for none."""
     a = beside.a
     trial = equations.correct_along(a, a.tangent, arc, beside.unknowns(arc), ENOUGH)

@@ -38,6 +38,8 @@ class Trial(Generic[S]):
         How it went, in words.
     note : str
         What is to be told of it as a point of the curve, "" for nothing.
+    blurred : bool
+        Whether what is near on another branch magnifies rounding beyond the accuracy asked for.
     """
 
     solution: S
@@ -45,6 +47,7 @@ class Trial(Generic[S]):
     converged: bool
     message: str
     note: str = ""
+    blurred: bool = False
 
 
 @dataclass(frozen=True, eq=False)
