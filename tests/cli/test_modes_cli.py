@@ -98,6 +98,14 @@ def test_a_saved_result_has_its_modes_beside_it(run: Run, saved: Path) -> None:
     assert {path.name for path in Path("here").iterdir()} == FILES | RESULT
     after = run("modes", "here/summary.json", "--count", 3, "--json").out  # any file of it
     assert json.loads(before) == json.loads(after)
+    # Nor do they stay beside another solution.
+    assert run("solve", saved / "strip.yaml", "--out", "here", "--quiet") == (0, "", "")
+    assert {path.name for path in Path("here").iterdir()} == RESULT
+
+
+@pytest.mark.slow
+def test_modes_of_a_result_are_drawn_with_it(run: Run, saved: Path) -> None:
+    shutil.copytree(saved / "strip", "here")
     assert run("modes", "here", "--count", 1, "--plot", "--quiet") == (0, "", "")
     assert Path("here/modes.png").stat().st_size > 10_000
     # What is drawn of a result, and looked at, has the modes that stand there.
@@ -105,11 +113,9 @@ def test_a_saved_result_has_its_modes_beside_it(run: Run, saved: Path) -> None:
     assert "here/modes.png" in out.splitlines()
     assert run("view", "here")[0] == 0
     assert '"modes":{"shape":0' in Path("here/view.html").read_text()
-    # A picture of other modes does not stay; nor do modes of another solution.
+    # A picture of other modes does not stay.
     assert run("modes", "here", "--quiet") == (0, "", "")
     assert not Path("here/modes.png").exists()
-    assert run("solve", saved / "strip.yaml", "--out", "here", "--quiet") == (0, "", "")
-    assert {path.name for path in Path("here").iterdir()} == RESULT
 
 
 def test_modes_are_seen_where_they_are_asked_for(run: Run, saved: Path) -> None:
