@@ -45,7 +45,9 @@ def _range(
     own, (low, high) = value_at(scene, path), range_
     if not low < own < high:
         message = f"expected one value below and then one above the scene's own {path}, {own:g}"
-        yield Problem(where, f"{message}; write for example [{own - 1:g}, {own + 1:g}]", written(range_))
+        yield Problem(
+            where, f"{message}; write for example [{own - 1:g}, {own + 1:g}]", written(range_)
+        )
         return
     for index, value in enumerate(range_ if check else ()):
         trial = replace(with_value(scene, path, value), continuation=None, equilibria=None)
@@ -55,4 +57,6 @@ def _range(
             problems = list(error.problems)
         for problem in problems:
             message = "which makes no valid scene; choose another value: "
-            yield Problem((*where, index), f"{message}{dotted(problem.path)}: {problem}", f"{value:g}")
+            yield Problem(
+                (*where, index), f"{message}{dotted(problem.path)}: {problem}", f"{value:g}"
+            )

@@ -80,7 +80,10 @@ class Sweep:
             scene = self._scene(self.common | self.inputs[0])
         except SceneError:
             return ()
-        return (*scene.record, *((EQUILIBRIA,) if scene.starts > 1 or scene.equilibria is not None else ()))
+        return (
+            *scene.record,
+            *((EQUILIBRIA,) if scene.starts > 1 or scene.equilibria is not None else ()),
+        )
 
     @property
     def labels(self) -> dict[str, str]:

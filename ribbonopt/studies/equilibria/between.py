@@ -69,9 +69,7 @@ def branch_point(
 class _Stretch:
     """A branch between two points of one layout, by arclength."""
 
-    def __init__(
-        self, equations: RibbonEquations, a: Point[Solution], b: Point[Solution]
-    ) -> None:
+    def __init__(self, equations: RibbonEquations, a: Point[Solution], b: Point[Solution]) -> None:
         """Linearise at both ends."""
         self.equations, self.a = equations, a
         self.beside = Beside(equations, a, b)
@@ -88,7 +86,9 @@ class _Stretch:
         found = []
         for i in np.flatnonzero(heights[:-1] * heights[1:] < 0):
             part = heights[i] / (heights[i] - heights[i + 1])
-            found.append((float(arcs[i] + part * (arcs[i + 1] - arcs[i])), int(np.sign(heights[i + 1]))))
+            found.append(
+                (float(arcs[i] + part * (arcs[i + 1] - arcs[i])), int(np.sign(heights[i + 1])))
+            )
         return found
 
     def at(self, arc: float, own: float) -> Solution | None:
@@ -122,7 +122,9 @@ class _Stretch:
         up = self.a.tangent[-1] > 0
         top = float(heights.max() if up else heights.min())
         rise = top - (max if up else min)(heights[0], heights[-1])
-        return bool((top - own) * (1 if up else -1) > -NEAR * abs(rise) - 1e-3 * abs(np.ptp(heights)))
+        return bool(
+            (top - own) * (1 if up else -1) > -NEAR * abs(rise) - 1e-3 * abs(np.ptp(heights))
+        )
 
     def _position(self, arc: float) -> float:
         return float(self.beside.unknowns(arc)[-1])
@@ -133,6 +135,5 @@ def _one_layout(a: Point[Solution], b: Point[Solution]) -> bool:
     mine, others = a.solution, b.solution
     same = mine.dense.blocks is others.dense.blocks and mine.sheets == others.sheets
     return same and all(
-        np.array_equal(x, y)
-        for x, y in zip(mine.mesh.phases, others.mesh.phases, strict=True)
+        np.array_equal(x, y) for x, y in zip(mine.mesh.phases, others.mesh.phases, strict=True)
     )
