@@ -2,7 +2,7 @@
 
 `load_scene` reads a scene, `solve` finds its equilibrium, a `Solution` is sampled, saved, plotted
 or used as the next guess; `Continuation`, `run_batch` and `compare` solve many. `load` reads back
-whatever was written: a `Solution`, a `Branch` or a `Batch`. Names are imported when first used.
+whatever was written: a `Solution`, `Branch`, `Batch` or `Map`. Names are imported when first used.
 """
 
 from __future__ import annotations
@@ -30,6 +30,7 @@ if TYPE_CHECKING:
     from .studies.continuation.files import load_branch
     from .studies.equilibria import all_equilibria
     from .studies.loading import load
+    from .studies.maps.map import Map
     from .studies.solving import solve
     from .views import plot_plane, plot_ribbon, plot_strains, save_figures
 
@@ -39,6 +40,7 @@ __all__ = [
     "Batch",
     "Branch",
     "Continuation",
+    "Map",
     "Scene",
     "Solution",
     "__version__",
@@ -70,6 +72,7 @@ _HOMES = {
     "Batch": "studies.batch.results",
     "Branch": "studies.continuation.branch",
     "Continuation": "studies.continuation.continuation",
+    "Map": "studies.maps.map",
     "Scene": "scene",
     "Solution": "solution.solution",
     "all_equilibria": "studies.equilibria",

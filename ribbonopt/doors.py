@@ -36,6 +36,11 @@ def solution_drawn(solution: object, kind: str, style: object | None) -> Figure:
     return figure
 
 
+def modes_or_reason(solution: object, count: int, planar: bool) -> Any:
+    """Return the modes of a solution or, in words, why it has none."""
+    return door("checks.modes", "modes_of")(solution, count, planar=planar)
+
+
 def branch_drawn(
     rows: Sequence[Mapping[str, Any]],
     pair: tuple[str, str],
@@ -61,6 +66,15 @@ def batch_drawn(
     """Return a figure of two columns of a batch."""
     draw, style = door("views", "plot_batch"), style or door("views", "Style")()
     figure: Figure = draw(rows, *pair, inputs=inputs, labels=labels, style=style)
+    return figure
+
+
+def map_drawn(
+    data: Mapping[str, Any], shapes: Mapping[int, Sequence[object]], style: object | None
+) -> Figure:
+    """Return the figure of a map, with the shapes at its counted points."""
+    draw, style = door("views", "plot_map"), style or door("views", "Style")()
+    figure: Figure = draw(data, shapes, style=style)
     return figure
 
 

@@ -15,7 +15,10 @@ _PORTS = (f"{port}{number}" for port in ("com", "lpt") for number in "0123456789
 #: what Windows takes for a device, whatever follows a dot
 _DEVICES = frozenset(("con", "prn", "aux", "nul", "conin$", "conout$", *_PORTS))
 #: figures of results, branches and batches, as .png, .svg or .pdf
-_FIGURES = ("strains", "plane", "ribbon", "branch", "ribbons", "outcomes", "scatter", "special")
+_FIGURES = (
+    *("strains", "plane", "ribbon", "modes", "branch", "ribbons"),
+    *("outcomes", "scatter", "special"),
+)
 #: what our own folders hold: a folder of results so named would be taken for a part of a result
 RESERVED_NAMES = frozenset(
     (
@@ -23,6 +26,7 @@ RESERVED_NAMES = frozenset(
         *("equilibria", "solutions", "scene.yaml", "summary.json", "solution.npz", "exports.json"),
         *("strains.png", "plane.png", "ribbon.png", "branch.png", "ribbons.png", "report.html"),
         *(f"{name}.{f}" for name in _FIGURES for f in ("svg", "pdf")),
+        *("modes.json", "modes.csv", "modes.npz", "modes.png"),
         *("branch.gif", "branch.mp4"),
         *("outcomes.png", "scatter.png", "rows.jsonl", "table.csv", "study.json", "branch.jsonl"),
         *("branch.csv", "comparison.csv", "comparison.json", "comparison.png"),
@@ -30,6 +34,8 @@ RESERVED_NAMES = frozenset(
         *("laws.csv", "laws.json", "laws.png", "special.csv", "special.png"),
         *("verification.csv", "verification.json", "verification.md"),
         *("stress.csv", "stress.json", "stress.png", "view.html"),
+        *("map.json", "map.csv", "map.png", "map.svg", "map.pdf", "jobs.jsonl"),
+        *("branches", "loci", "points"),
     )
 )
 _EXECUTED = frozenset("=+-@")

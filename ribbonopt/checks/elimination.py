@@ -139,32 +139,42 @@ class Elimination:
 
     def solve(self, f0: Array, f: Array) -> tuple[Array, Array]:
         """Return x_0 and y (N, m) where the form less f_0 . x_0 + f . y is stationary."""
-        nx = self.nx
+        forces = np.concatenate([np.zeros((len(f), self.nx)), f], axis=1)
+        forces[0, : self.nx] = f0
+        found = self.response(forces[..., None])[..., 0]
+        return found[0, : self.nx], found[:, self.nx :]
+
+    def response(self, forces: Array) -> Array:
+        """Return (x_e, y_e) (N, nx + m, p) where the form less forces . (x_e, y_e) is stationary.
+
+        `forces` (N, nx + m, p), p of them at once, act on the state before an element and on its
+        own variables.
+        """
+        nx, f = self.nx, forces[:, self.nx :]
         # A line (state before; costate behind) for every segment, and those between pairs.
-        lines = (self.sides.swapaxes(1, 2) @ (self.own @ f[..., None]))[..., 0]
+        lines = self.sides.swapaxes(1, 2) @ (self.own @ f)
+        lines[:, :nx] -= forces[:, :nx]
         inner = []
         for level in self.levels:
             a, b, rest = _pairs(lines, len(level.inverse))
             between = np.concatenate([b[:, :nx], a[:, nx:]], axis=1)
             outer = np.concatenate([a[:, :nx], b[:, nx:]], axis=1)
-            change = level.coupling.swapaxes(1, 2) @ (level.inverse @ between[..., None])
+            change = level.coupling.swapaxes(1, 2) @ (level.inverse @ between)
             inner.append(between)
-            lines = np.concatenate([outer - change[..., 0], rest])
-        side = np.zeros(len(self.last))
-        side[:nx], side[2 * nx : 3 * nx] = lines[0, :nx] - f0, lines[0, nx:]
+            lines = np.concatenate([outer - change, rest])
+        side = np.zeros((len(self.last), forces.shape[2]))
+        side[:nx], side[2 * nx : 3 * nx] = lines[0, :nx], lines[0, nx:]
         found = -self.last @ side
         # State before and costate behind every segment.
         outer = np.concatenate([found[:nx], found[2 * nx : 3 * nx]])[None]
         for level, between in zip(reversed(self.levels), reversed(inner), strict=True):
             joined, rest = np.split(outer, [len(between)])
-            total = (level.coupling @ joined[..., None])[..., 0] + between
-            middle = -(level.inverse @ total[..., None])[..., 0]
+            middle = -(level.inverse @ (level.coupling @ joined + between))
             before = np.concatenate([joined[:, :nx], middle[:, nx:]], axis=1)
             behind = np.concatenate([middle[:, :nx], joined[:, nx:]], axis=1)
-            both = np.stack([before, behind], axis=1).reshape(-1, 2 * nx)
+            both = np.stack([before, behind], axis=1).reshape(-1, 2 * nx, side.shape[1])
             outer = np.concatenate([both, rest])
-        own = self.own @ (f - (self.sides @ outer[..., None])[..., 0])[..., None]
-        return outer[0, :nx], own[..., 0]
+        return np.concatenate([outer[:, :nx], self.own @ (f - self.sides @ outer)], axis=1)
 
 
 def _pairs(parts: Array, count: int) -> tuple[Array, Array, Array]:

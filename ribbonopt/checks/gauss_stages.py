@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
+from typing import NamedTuple
 
 import casadi as ca
 import numpy as np
@@ -68,12 +69,28 @@ class GaussStages:
     error: float
 
 
-def gauss_stages(solution: Solution, ribbon: Ribbon, theta: Array) -> GaussStages:
+class Sampled(NamedTuple):
+    """A solution at the stages of elements with `widths` (N,), and where it begins, turns and ends.
+
+    `every` are the named outputs at all these places in their order, at the fractions `fraction`;
+    `rows` are those of `every` that are no stages. `firsts` are the elements that begin at a
+    switch, `error` is that of the shape where it shows nowhere else.
+    """
+
+    widths: Array
+    degree: int
+    fraction: Array
+    every: Mapping[str, Array]
+    rows: NDArray[np.intp]
+    firsts: NDArray[np.intp]
+    error: float
+
+
+def sampled(solution: Solution, *, again: bool = False) -> Sampled:
     """Return a solution at its own stages where they are those of a Gauss scheme, else at others.
 
-    At its own stages it is an equilibrium of the discrete energy too, to rounding, whatever its
-    mesh: there the estimated error tells how near it is to the true one. At others it is not, and
-    the gradient of the energy tells. `theta` are the numbers of the ribbon.
+    `again` is for a second opinion: at a degree more, or in elements half as wide where there is
+    none.
     """
     trajectory, degree = solution.trajectory, solution.dense.blocks.degree
     widths, parts = np.diff(trajectory.nodes), 1
@@ -82,63 +99,86 @@ def gauss_stages(solution: Solution, ribbon: Ribbon, theta: Array) -> GaussStage
         places = _places(widths, degree)
         if np.abs(own - places).max() < SAME:
             error = _known_error(solution)
-    if error is not None:
+    if error is None:
+        parts = -(-LEAST_ELEMENTS // len(widths))
+        degree = min(degree, max(4, STAGES // (parts * len(widths))), HIGHEST_DEGREE)
+    if again:
+        parts, degree = (parts, degree + 1) if degree < MAX_DEGREE else (2 * parts, degree)
+    if error is not None and not again:
         along: Mapping[str, Array] = trajectory.at_stages
     else:
-        parts = -(-LEAST_ELEMENTS // len(widths))
         widths = np.repeat(widths / parts, parts)
-        degree = min(degree, max(4, STAGES // len(widths)), HIGHEST_DEGREE)
         places = _places(widths, degree)
         along = trajectory.outputs(places)
     lengths = np.array(trajectory.dense.blocks.layout.elements)
     turns = np.array(trajectory.turns, dtype=int)
     firsts = parts * np.cumsum(lengths)[turns - 1]
     points = {k: v[[0, *(firsts // parts), -1]] for k, v in trajectory.at_nodes.items()}
-    # Packed together, in order, for quaternions that do not change their sign.
     at = np.concatenate([[0], degree * firsts, [len(places)]])
     every = {k: np.insert(along[k], at, points[k], axis=0) for k in along}
+    fraction = np.insert(places, at, trajectory.ends[[0, *turns, -1]])
+    return Sampled(widths, degree, fraction, every, at + np.arange(len(at)), firsts, error or 0.0)
+
+
+def gauss_stages(
+    solution: Solution, ribbon: Ribbon, theta: Array, *, again: bool = False
+) -> GaussStages:
+    """Return the stages of the energy's own states and controls at a solution.
+
+    At its own stages it is an equilibrium of the discrete energy too, to rounding, whatever its
+    mesh: there the estimated error tells how near it is to the true one. At others it is not, and
+    the gradient of the energy tells. `theta` are the numbers of the ribbon; `again`: see `sampled`.
+    """
+    return packed(solution, sampled(solution, again=again), ribbon, theta)
+
+
+def packed(solution: Solution, given: Sampled, ribbon: Ribbon, theta: Array) -> GaussStages:
+    """Return what was sampled of a solution, or put together of it, as stages of the energy."""
+    every, rows = given.every, given.rows
+    # Packed together, in order, for quaternions that do not change their sign.
     r, frames, n, m = _fields(every)
     fields = RodFields(r, frames, n, m)
     # Any point of reference will do: it is for constants, which the energy does without.
     x, _ = ribbon.model.pack(fields, fields.r[0])
     if ribbon.stations:
-        ends = trajectory.ends[[0, *turns, -1]]
-        x = np.hstack([x, _held(solution, ribbon, np.insert(places, at, ends), fields.r)])
+        x = np.hstack([x, _held(solution, ribbon, given.fraction, fields.r)])
     x = np.hstack([x, *(_own(every, name)[:, None] for name in ribbon.law.states)])
-    z = _controls(every, ribbon, np.insert(places, at, trajectory.ends[[0, *turns, -1]]), theta)
-    rows = at + np.arange(len(at))
-    inside = np.delete(np.arange(len(x)), rows)
-    between = rows[1:-1]
+    z = _controls(every, ribbon, given.fraction, theta)
+    inside, between = np.delete(np.arange(len(x)), rows), rows[1:-1]
     return GaussStages(
-        widths,
-        gauss(degree),
-        places,
+        given.widths,
+        gauss(given.degree),
+        given.fraction[inside],
         x[inside],
         z[inside],
         x[rows[[0, -1]]],
-        firsts,
+        given.firsts,
         x[between],
         z[between],
-        along["switching"],
-        error or 0.0,
+        every["switching"][inside],
+        given.error,
     )
 
 
 def _controls(o: Mapping[str, Array], ribbon: Ribbon, fraction: Array, theta: Array) -> Array:
     """Return the controls (k, nz) of the law, of named outputs at fractions (k,) of the length."""
+    given = [o[f"{load}{i}"] for load in "nm" for i in (1, 2, 3)]
+    given += [_own(o, name) for name in ribbon.law.indirect().states]
+    function = ribbon.kept(_control_function)
+    (found,) = function(np.column_stack(given), np.empty(0), theta, fraction)
+    return found.reshape(len(fraction), -1)
+
+
+def _control_function(ribbon: Ribbon) -> Mapped:
+    """Return the controls by forces and moments along directors, own states, theta, fraction."""
     states = ribbon.law.indirect().states
     local, (start, end) = ca.SX.sym("local", 6 + len(states)), ribbon.interval
     share = ca.SX.sym("share")
     place = start + share * (end - start)
     controls = ribbon.law.controls_at(Stress(local[:3], local[3:6], local[6:]))
     controls = ca.densify(ca.substitute(controls, ribbon.position, place))
-    function = Mapped(
-        ca.Function("controls", [local, ca.SX(0, 1), ribbon.parameters, share], [controls])
-    )
-    given = [o[f"{load}{i}"] for load in "nm" for i in (1, 2, 3)]
-    given += [_own(o, name) for name in states]
-    (found,) = function(np.column_stack(given), np.empty(0), theta, fraction)
-    return found.reshape(len(fraction), -1)
+    inputs = [local, ca.SX(0, 1), ribbon.parameters, share]
+    return Mapped(ca.Function("controls", inputs, [controls]))
 
 
 def _own(o: Mapping[str, Array], state: str) -> Array:

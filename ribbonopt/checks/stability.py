@@ -8,32 +8,18 @@ second variation (`variation`) is a quadratic form along the ribbon, whose inert
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import replace
-from typing import TypeVar
-
-import numpy as np
-
 from ribbonopt.accuracy.spin import SPIN, spins
 from ribbonopt.classes import dataclass
-from ribbonopt.mechanics.laws.catalogue import bends_alone
-from ribbonopt.problem import BoundaryValueProblem, Ribbon
-from ribbonopt.problem.potentials import without_potential
 from ribbonopt.solution.solution import Solution
 
-from .arcs import NEGLIGIBLE, sign_changes
 from .elimination import factored
-from .in_plane import mechanics, planar_posed, posed_in_plane
-from .variation import Energy, Variation
-from .zero_moment import faded_share, law_in_space, law_of, unbent_share
-
-T = TypeVar("T")
+from .energy_of import NO_EQUILIBRIUM, energy_in_plane, energy_of
+from .in_plane import planar_posed
+from .variation import Variation
 
 # Neutral directions (a loop that slides along itself) have eigenvalues of the order of the error.
 ROUNDING = 1e-9  # of the largest eigenvalue: error of the others, at least,
 MOST = 1e-2  # and at most
-
-NO_EQUILIBRIUM = "this is no equilibrium"
 
 
 @dataclass(frozen=True, eq=False)
@@ -150,11 +136,10 @@ def _judged(variation: Variation | str, solution: Solution) -> SecondVariation |
 
 def _negative_in_plane(solution: Solution) -> int | None:
     """Negative directions in the plane of a ribbon that is held there; None where not known."""
-    posed = posed_in_plane(solution)
-    if posed is None or not bends_alone(posed.scene):
+    stated = energy_in_plane(solution)
+    if isinstance(stated, str):
         return None
-    energy = _once(solution.problem.kept(_planar), lambda: Energy.of(mechanics(posed)))
-    found = energy.variation(solution, posed.values)
+    found = stated.energy.variation(solution, stated.posed.values)
     if not found.error < MOST:
         return None
     neutral = max(found.error, ROUNDING) * found.largest
@@ -163,76 +148,18 @@ def _negative_in_plane(solution: Solution) -> int | None:
 
 def variation_of(solution: Solution) -> Variation | str:
     """Return the second variation as a quadratic form or, in words, why there is none."""
-    if not solution.status.converged:
-        return NO_EQUILIBRIUM
-    within = planar_posed(solution)
-    name, law = solution.scene.law.type, law_of(solution) if within else law_in_space(solution)
-    if not law.variational:
-        return f"the law {name} has no energy"
-    if law.states and law.direct() is law:
-        return f"the law {name} has states of its own, which its energy here does without"
-    none = f"the energy of the law {name} has no second derivatives"
-    if unbent_share(solution, law):
-        return f"{none} where m2 = m3 = 0"
-    if faded_share(solution, law):
-        return f"{none} that are known where m2 and m3 fade away"
-    if not law.smooth:
-        kinked = _on_the_kink(solution, law.switch_name) if law.kinked else "at its kinks"
-        if kinked:
-            return f"{none} {kinked}"
-    posed = within or solution.posed.under(formulation="energy", states="reduced")
-    ribbon = _once(solution.problem.kept(_ribbons), lambda: mechanics(posed))
-    # With the conditions of this very scene: whether they are zero decides.
-    refused = without_potential(replace(ribbon, conditions=posed.conditions))
-    if refused is not None:
-        return refused.reason
-    energy = _once(solution.problem.kept(_energies), lambda: Energy.of(ribbon))
-    found = energy.variation(solution, posed.values)
-    if found.error < MOST:
-        return found
+    stated = energy_of(solution)
+    if isinstance(stated, str):
+        return stated
+    found = stated.energy.variation(solution, stated.posed.values)
+    return found if found.error < MOST else too_coarse(found)
+
+
+def too_coarse(found: Variation) -> str:
+    """Say why a second variation has errors that are too large."""
     if found.residual < found.stages.error:
         return f"the shape is known to {found.stages.error:.1e} only: the mesh is too coarse"
     return (
         f"the energy is not stationary (the part {found.residual:.1e} of its gradient is left): "
         "loads that are prescribed do work, or the mesh is too coarse"
     )
-
-
-def _on_the_kink(solution: Solution, switch: str) -> str:
-    """Say where a solution of a kinked law is not clearly on one side of it; empty if nowhere."""
-    if 0 in solution.sheets:
-        return f"in a mixture of both sheets, where {switch} stays zero"
-    o = solution.trajectory.at_stages
-    value, small = o["switching"], NEGLIGIBLE * float(np.abs(o["m"]).max())
-    if solution.sheets:
-        kinds = np.array(solution.sheets)[solution.trajectory.stages[3]]
-        wrong = (kinds * value < -small) & (o["leap"] > 0)
-        beyond = f"where it is taken beyond them, {switch} having the wrong sign"
-        return beyond if wrong.any() else ""
-    near = (np.abs(value) <= small) & (o["leap"] > small)
-    if near.any() or len(sign_changes(solution).kinds) > 1:
-        found = f"where {switch} changes its sign, and no phases meet there"
-        return f"{found} (switching: auto finds them)"
-    return ""
-
-
-def _once(store: list[T], make: Callable[[], T]) -> T:
-    """Return what is in store; made where there is nothing."""
-    if not store:
-        store.append(make())
-    return store[0]
-
-
-def _ribbons(problem: BoundaryValueProblem) -> list[Ribbon]:
-    """Return the place where a problem keeps the mechanics of its energy."""
-    return []
-
-
-def _planar(problem: BoundaryValueProblem) -> list[Energy]:
-    """Return the place where a problem keeps what is built of its energy in its plane."""
-    return []
-
-
-def _energies(problem: BoundaryValueProblem) -> list[Energy]:
-    """Return the place where a problem keeps what is built of its energy."""
-    return []

@@ -14,7 +14,7 @@ those of the continuous problem, whatever the mesh. Where strains leap see `movi
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Callable, Mapping
 from dataclasses import replace
 from typing import NamedTuple
 
@@ -91,8 +91,8 @@ class Energy:
     ribbon: Ribbon
     sides: Mapping[int, Side]
     switches: MovingSwitches | None
-    conditions: Buffered
-    bent: Buffered
+    conditions: Callable[..., list[Array]]
+    bent: Callable[..., list[Array]]
 
     @classmethod
     def of(cls, ribbon: Ribbon) -> Energy:
@@ -113,9 +113,22 @@ class Energy:
             Buffered(ca.Function("bent", [*ends.inputs, ends.multipliers], [bent])),
         )
 
-    def variation(self, solution: Solution, theta: Array) -> Variation:
-        """Return the second variation at a solution, which has phases if its law needs them."""
-        at, none = gauss_stages(solution, self.ribbon, theta), np.empty(0)
+    def variation(self, solution: Solution, theta: Array, *, again: bool = False) -> Variation:
+        """Return the second variation at a solution, which has phases if its law needs them.
+
+        `again` on another mesh: see `gauss_stages`.
+        """
+        at = gauss_stages(solution, self.ribbon, theta, again=again)
+        return self.at_stages(solution, at, theta, solution.trajectory.length)
+
+    def at_stages(
+        self, solution: Solution, at: GaussStages, theta: Array, length: float
+    ) -> Variation:
+        """Return the second variation at stages of a solution, or of more that it is a piece of.
+
+        `length` is that of all of it.
+        """
+        none = np.empty(0)
         N, K, nx = len(at.widths), at.tableau.degree, at.x.shape[1]
         v, kinds = np.hstack([at.x, at.z]), self._kinds(solution, at)
         nv = v.shape[1]
@@ -126,7 +139,6 @@ class Energy:
             moved = self.switches.at(solution, at, theta)
         jumps, prices = (None, None) if moved is None else (moved.jumps, moved.prices)
         slopes = slopes.reshape(N, K, nv)
-        length = solution.trajectory.length
         chain = LinearisedChain(J, slopes, at.widths, at.tableau, length, jumps, prices)
         b, B = self.conditions(at.ends, none, theta)
         B = B.reshape(2 * nx, len(b)).T

@@ -20,9 +20,17 @@ VERBS = {
     ),
     "bench": ("time against error over degrees and meshes", options.bench),
     "stress": ("try a scene far from what it was made for, and judge every answer", options.stress),
+    "modes": (
+        "natural frequencies and shapes of small vibrations about a scene's equilibrium",
+        options_shown.modes,
+    ),
     "continue": (
         "follow a scene's equilibria as a parameter moves (its `continuation`)",
         options.follow,
+    ),
+    "map": (
+        "draw where a scene's shapes come and go as two numbers vary, and how many there are",
+        options.mapped,
     ),
     "batch": ("solve all ribbons of a study, on all cores", options.batch),
     "verify": ("compute numbers with sources again, and say which are confirmed", options.verify),

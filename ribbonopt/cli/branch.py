@@ -143,12 +143,12 @@ def _progress(point: Point[Solution], continuation: Continuation) -> str:
     from ribbonopt.scene.stages import ends_of
 
     row, stage = point.row, continuation.stages[point.stage]
-    value = row[stage.parameter]
+    value = row[stage.moved]
     ends = ends_of(stage)
     bar = _bar(value, stage.from_, ends[min(point.branch, len(ends) - 1)])
     where = f"stage {point.stage + 1}, " if len(continuation.stages) > 1 else ""
     where += f"branch {point.branch}, " if point.branch else ""
-    parts = [f"{bar} {where}{stage.parameter} = {value:.6g}", f"step {point.step:.2g}"]
+    parts = [f"{bar} {where}{stage.moved} = {value:.6g}", f"step {point.step:.2g}"]
     if row["error"] is not None:
         parts.append(f"error {row['error']:.0e}")
     if row["negative"] is not None:

@@ -27,13 +27,17 @@ MODULES = {
     "export": "export",
     "view": "view",
     "schema": "scene",
+    "modes": "modes",
     "compare": "comparison",
     "bench": "comparison",
     "stress": "stress",
     "continue": "branch",
+    "map": "map",
     "batch": "batch",
     "verify": "verification",
 }
+#: what functions are called of verbs that are words of Python's own
+OTHERWISE = {"continue": "follow", "map": "mapped"}
 
 
 def run_command(arguments: Sequence[str] | None) -> int:
@@ -83,6 +87,5 @@ def _fail(options: argparse.Namespace, error: str, status: str, code: int) -> in
 def _verb(name: str) -> Callable[[argparse.Namespace], int]:
     """Return what a verb runs; only its own module is imported."""
     module = import_module(f"ribbonopt.cli.{MODULES[name]}")
-    # `continue` is no name of a Python function.
-    verb: Callable[[argparse.Namespace], int] = getattr(module, name.replace("continue", "follow"))
+    verb: Callable[[argparse.Namespace], int] = getattr(module, OTHERWISE.get(name, name))
     return verb

@@ -18,6 +18,7 @@ if TYPE_CHECKING:
 
 BAD_INPUT, NOT_CONVERGED = 2, 3
 INTERRUPTED, READER_GONE = 130, 141
+BESIDE = {"continue": "-branch", "map": "-map"}
 
 
 def load(options: argparse.Namespace) -> tuple[Scene, float]:
@@ -44,9 +45,9 @@ def refuse_idle_verbose(options: argparse.Namespace) -> None:
 def default_folder(name: str, verb: str) -> str:
     """Return the folder of what a verb makes of a scene, where no other is asked for.
 
-    The branch of a scene stands beside its solution.
+    The branch of a scene stands beside its solution, and so does its map.
     """
-    return f"results/{name}{'-branch' if verb == 'continue' else ''}"
+    return f"results/{name}{BESIDE.get(verb, '')}"
 
 
 def pairs_of(texts: list[str] | None) -> list[tuple[str, str]] | None:

@@ -9,7 +9,7 @@ from .terminal import say
 
 def solve(verb: argparse.ArgumentParser) -> None:
     """Options of `solve`."""
-    _scene(verb)
+    scene(verb)
     verb.add_argument("--out", metavar="DIR", help="folder for the result (default: none written)")
     verb.add_argument(
         "--plot", action="store_true", help="draw pictures (into --out, or results/NAME)"
@@ -19,7 +19,7 @@ def solve(verb: argparse.ArgumentParser) -> None:
 
 def check(verb: argparse.ArgumentParser) -> None:
     """Options of `check`."""
-    _scene(verb)
+    scene(verb)
     verb.add_argument(
         "--versions",
         action=_Versions,
@@ -30,7 +30,7 @@ def check(verb: argparse.ArgumentParser) -> None:
 
 def compare(verb: argparse.ArgumentParser) -> None:
     """Options of `compare`."""
-    _scene(verb)
+    scene(verb)
     _pairs(verb)
     verb.add_argument(
         "--tolerances",
@@ -42,7 +42,7 @@ def compare(verb: argparse.ArgumentParser) -> None:
 
 def bench(verb: argparse.ArgumentParser) -> None:
     """Options of `bench`."""
-    _scene(verb)
+    scene(verb)
     _pairs(verb)
     verb.add_argument("--repeat", default="11", metavar="N", help="median of N solves")
     verb.add_argument("--quick", action="store_true", help="reduced states, low degrees only")
@@ -50,7 +50,7 @@ def bench(verb: argparse.ArgumentParser) -> None:
 
 def stress(verb: argparse.ArgumentParser) -> None:
     """Options of `stress`."""
-    _scene(verb)
+    scene(verb)
     verb.add_argument(
         "--only", action="append", metavar="KIND", help="such as noise or mesh (may be repeated)"
     )
@@ -65,7 +65,7 @@ def follow(verb: argparse.ArgumentParser) -> None:
     """Options of `continue`."""
     verb.formatter_class = _help_as_written
     verb.epilog = _branch_columns()
-    _scene(verb)
+    scene(verb)
     verb.add_argument(
         "--out", metavar="DIR", help="folder of the branch (default: results/NAME-branch)"
     )
@@ -75,6 +75,14 @@ def follow(verb: argparse.ArgumentParser) -> None:
         verb,
         "draw columns, such as law.epsilon:energy u2:energy, and ribbons along the branch",
     )
+
+
+def mapped(verb: argparse.ArgumentParser) -> None:
+    """Options of `map`."""
+    scene(verb)
+    verb.add_argument("--jobs", metavar="N", help="worker processes (default: one for each core)")
+    verb.add_argument("--out", metavar="DIR", help="folder of the map (default: results/NAME-map)")
+    verb.add_argument("--resume", action="store_true", help="go on with the map in the folder")
 
 
 def batch(verb: argparse.ArgumentParser) -> None:
@@ -163,8 +171,9 @@ def _branch_columns() -> str:
     return "\n".join(["columns of a branch:", *lines, "", fill(HINT, 98)])
 
 
-def _scene(verb: argparse.ArgumentParser) -> None:
-    verb.add_argument("scene", metavar="SCENE", help="YAML file")
+def scene(verb: argparse.ArgumentParser, words: str = "YAML file") -> None:
+    """Add the scene, and the options of all verbs that solve one."""
+    verb.add_argument("scene", metavar="SCENE", help=words)
     verb.add_argument(
         "--set",
         action="append",

@@ -1,10 +1,10 @@
-"""Options of the verbs that show or carry away what was saved, a function for each."""
+"""Options of the verbs that show, or carry away, what was solved, a function for each."""
 
 from __future__ import annotations
 
 import argparse
 
-from .options import columns
+from .options import columns, scene
 
 
 def plot(verb: argparse.ArgumentParser) -> None:
@@ -14,6 +14,23 @@ def plot(verb: argparse.ArgumentParser) -> None:
     verb.add_argument("--out", metavar="DIR", help="folder for the pictures (default: RESULT)")
     _look(verb)
     _ribbons(verb)
+
+
+def modes(verb: argparse.ArgumentParser) -> None:
+    """Options of `modes`."""
+    scene(verb, "YAML file, or a folder written by solve")
+    verb.add_argument("--count", default="8", metavar="N", help="the N lowest (8)")
+    verb.add_argument(
+        "--planar", action="store_true", help="of a planar ribbon: only motion in its plane"
+    )
+    verb.add_argument(
+        "--out",
+        metavar="DIR",
+        help="folder for solution and modes (default: none written; of a saved result its own)",
+    )
+    verb.add_argument(
+        "--plot", action="store_true", help="draw modes.png (into --out, or results/NAME)"
+    )
 
 
 def _look(verb: argparse.ArgumentParser) -> None:
@@ -80,6 +97,12 @@ def view(verb: argparse.ArgumentParser) -> None:
     """Options of `view`."""
     verb.add_argument("result", metavar="RESULT", help="folder written by solve, continue or batch")
     verb.add_argument("--out", metavar="FILE", help="the page (default: RESULT/view.html)")
+    verb.add_argument(
+        "--modes",
+        action="store_true",
+        help="of a result: with its modes of small vibrations in motion (by itself where "
+        "`ribbonopt modes` has written them)",
+    )
     verb.add_argument(
         "--half-width",
         metavar="W",

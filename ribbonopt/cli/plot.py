@@ -1,4 +1,4 @@
-"""Verb `plot`: pictures of a saved result, branch or batch."""
+"""Verb `plot`: pictures of a saved result, branch, batch or map."""
 
 from __future__ import annotations
 
@@ -14,6 +14,7 @@ from .terminal import say_line
 if TYPE_CHECKING:
     from pathlib import Path
 
+    from ribbonopt.checks.modes import Modes
     from ribbonopt.solution.solution import Solution
     from ribbonopt.views.paper_style import Style
 
@@ -42,16 +43,30 @@ def plot(options: argparse.Namespace) -> int:
         def draw(folder: Path) -> list[Path]:
             return draw_batch(result, folder, pairs, asked)
 
+    elif is_file(result / "map.json"):
+        from .map import draw as draw_map
+
+        refuse_pairs = pairs and f"--plot: {result} is a map, which has no columns to be drawn"
+        if refuse_pairs:
+            raise SceneError(refuse_pairs)
+
+        def draw(folder: Path) -> list[Path]:
+            return draw_map(result, folder, asked)
+
     elif pairs:
         raise SceneError(
             f"--plot: {result} is no branch and no batch, whose columns could be drawn"
         )
     else:
         asked.refuse(f"{result} is no branch, along which ribbons are drawn", "inset", "animate")
+        from ribbonopt.output.modes_files import load_modes
+
         solution = load_solution(result)
+        modes = load_modes(result, solution)
 
         def draw(folder: Path) -> list[Path]:
-            return draw_solution(solution, folder, asked.style)
+            paths = draw_solution(solution, folder, asked.style)
+            return paths + ([] if modes is None else _modes(solution, modes, folder, asked.style))
 
     with pictures_in(options.out or result) as folder:
         paths = draw(folder)
@@ -66,5 +81,14 @@ def draw_solution(solution: Solution, folder: Path, style: Style | None = None) 
     from ribbonopt.views.paper_style import PLAIN
 
     paths, left_out = draw_figures(solution, folder, style=style or PLAIN)
+    say_left_out(left_out)
+    return paths
+
+
+def _modes(solution: Solution, modes: Modes, folder: Path, style: Style) -> list[Path]:
+    """Draw the modes that stand beside a solution."""
+    from ribbonopt.views.modes import save_modes_figure
+
+    paths, left_out = save_modes_figure(solution, modes, folder, style)
     say_left_out(left_out)
     return paths

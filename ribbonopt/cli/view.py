@@ -20,7 +20,7 @@ def view(options: argparse.Namespace) -> int:
     from ribbonopt.viewer.looking import saved_view
 
     place = page_place(options.result, options.out)
-    shown = saved_view(options.result, half_width)
+    shown = saved_view(options.result, half_width, options.modes)
     path = write_page(shown, place)
     say_left_out(shown.left_out)
     say_line(str(path))

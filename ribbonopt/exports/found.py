@@ -16,6 +16,7 @@ from ribbonopt.solution.solution import Solution
 from ribbonopt.studies.batch.results import Batch
 from ribbonopt.studies.continuation.branch import Branch
 from ribbonopt.studies.loading import load
+from ribbonopt.studies.maps.map import Map
 
 Thing = Solution | tuple[Solution, ...] | Branch | Batch
 
@@ -51,9 +52,11 @@ def opened(path: str | Path, scene: Scene | None = None) -> Thing:
     Raises
     ------
     OutputError
-        If it holds no result, or a damaged one.
+        If it holds no result, a damaged one, or a map, whose shapes are results by themselves.
     """
     found = load(path, scene)
+    if isinstance(found, Map):
+        raise OutputError(found.held)
     if not isinstance(found, Solution):
         return found
     folder = Path(path)

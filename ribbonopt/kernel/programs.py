@@ -2,7 +2,8 @@
 
 from __future__ import annotations
 
-from typing import TYPE_CHECKING
+from collections.abc import Callable
+from typing import TYPE_CHECKING, Any
 
 import casadi as ca
 import numpy as np
@@ -21,22 +22,24 @@ def program_of(function: ca.Function) -> Program | None:
     """
     if COMPILED is None or not function.is_a("SXFunction") or not _dense(function):
         return None
-    code = np.zeros((function.n_instructions(), 5))
     known = operations()
-    for k, row in enumerate(code):
-        name = known.get(function.instruction_id(k))
+    rows: list[tuple[float, ...]] = []
+    number_of, read_by, written_by = _readers(function)
+    for k in range(function.n_instructions()):
+        name = known.get(number_of(function, k))
         if name is None:
             return None
-        read, written = function.instruction_input(k), function.instruction_output(k)
-        row[0] = COMPILED.OPERATIONS[name]
+        read, written = read_by(function, k), written_by(function, k)
+        number = COMPILED.OPERATIONS[name]
         if name == "OP_INPUT":
-            row[1:4] = written[0], read[1], read[0]
+            rows.append((number, written[0], read[1], read[0], 0.0))
         elif name == "OP_OUTPUT":
-            row[1:4] = written[1], read[0], written[0]
+            rows.append((number, written[1], read[0], written[0], 0.0))
         elif name == "OP_CONST":
-            row[1], row[4] = written[0], function.instruction_constant(k)
+            rows.append((number, written[0], 0, 0, function.instruction_constant(k)))
         else:
-            row[1:4] = written[0], read[0], read[-1]
+            rows.append((number, written[0], read[0], read[-1], 0.0))
+    code = np.array(rows, dtype=float).reshape(-1, 5)
     inputs = [function.numel_in(i) for i in range(function.n_in())]
     outputs = [function.numel_out(i) for i in range(function.n_out())]
     try:
@@ -46,6 +49,18 @@ def program_of(function: ca.Function) -> Program | None:
         return program
     except ValueError:  # more inputs or outputs than the kernel takes
         return None
+
+
+def _readers(function: ca.Function) -> tuple[Callable[..., Any], ...]:
+    """Return what reads the number, the inputs and the outputs of instruction k of a function.
+
+    Methods of `ca.Function` only pass these calls on, which costs as much again as the calls, and
+    a stage function has thousands of instructions.
+    """
+    kind = type(function)
+    direct = getattr(ca.casadi, "_casadi", None) if kind is ca.Function else None
+    methods = ("instruction_id", "instruction_input", "instruction_output")
+    return tuple(getattr(direct, f"Function_{x}", getattr(kind, x)) for x in methods)
 
 
 def _dense(function: ca.Function) -> bool:

@@ -7,6 +7,7 @@ of the kind that is expected, and together no more than the file may hold.
 from __future__ import annotations
 
 import io
+import math
 import os
 import zipfile
 from collections.abc import Sequence
@@ -21,15 +22,16 @@ ARCHIVE = Kind("an archive of arrays, as ribbonopt writes it", most=1000 * MEGA)
 
 
 class Row(NamedTuple):
-    """One array (k,) that is expected: its name, and whether its numbers are whole."""
+    """One array that is expected: its name, whether its numbers are whole, how many axes it has."""
 
     name: str
     whole: bool = False
     optional: bool = False
+    axes: int = 1
 
 
 def arrays_of(path: str | os.PathLike[str], rows: Sequence[Row]) -> dict[str, Array]:
-    """Return arrays (k,) of an archive by name, of floats, or of whole numbers.
+    """Return arrays of an archive by name, (k,) unless a row says more, of floats or whole numbers.
 
     Raises
     ------
@@ -73,20 +75,20 @@ def _array(row: Row, data: bytes) -> Array:
         version = np.lib.format.read_magic(file)
         if version != (1, 0):
             raise ValueError("version")
-        shape, _, dtype = np.lib.format.read_array_header_1_0(file)
+        shape, turned, dtype = np.lib.format.read_array_header_1_0(file)
     except Exception:  # what stands there is read as Python, which may be anything
         raise _UnsoundError(f"{row.name}: expected an array") from None
     kinds = "iu" if row.whole else "f"
     # An array of nothing has no kind of its own.
-    if len(shape) != 1 or not (dtype.kind in kinds or (shape == (0,) and dtype.kind in "iuf")):
+    sound = dtype.kind in kinds or (shape == (0,) and dtype.kind in "iuf")
+    if len(shape) != row.axes or not sound or (turned and row.axes > 1):
         numbers = "whole numbers" if row.whole else "numbers"
-        raise _UnsoundError(f"{row.name}: found {_told(shape, dtype)}, expected a row of {numbers}")
-    rest = data[file.tell() :]
-    if shape[0] * dtype.itemsize != len(rest):
-        raise _UnsoundError(
-            f"{row.name}: says that it has {shape[0]} numbers, has {len(rest)} bytes"
-        )
-    array = np.frombuffer(rest, dtype=dtype)
+        expected = f"a row of {numbers}" if row.axes == 1 else f"{numbers} along {row.axes} axes"
+        raise _UnsoundError(f"{row.name}: found {_told(shape, dtype)}, expected {expected}")
+    rest, count = data[file.tell() :], math.prod(shape)
+    if count * dtype.itemsize != len(rest):
+        raise _UnsoundError(f"{row.name}: says that it has {count} numbers, has {len(rest)} bytes")
+    array = np.frombuffer(rest, dtype=dtype).reshape(shape)
     return array.astype(np.int64 if row.whole else float)
 
 

@@ -9,7 +9,14 @@ from pathlib import Path
 
 from ribbonopt.errors import OutputError
 
-from .declared import BATCH_PICTURES, BRANCH_PICTURES, PAGE, PICTURES
+from .declared import (
+    BATCH_PICTURES,
+    BRANCH_PICTURES,
+    MAP_PICTURES,
+    MODES_PICTURES,
+    PAGE,
+    PICTURES,
+)
 from .locks import refuse_held, take
 from .places import (
     LOCK,
@@ -23,7 +30,14 @@ from .places import (
 )
 from .placing import OLD, beside, put_right
 
-DRAWN = (*PICTURES, *BRANCH_PICTURES, *BATCH_PICTURES, PAGE)
+DRAWN = (
+    *PICTURES,
+    *MODES_PICTURES,
+    *BRANCH_PICTURES,
+    *BATCH_PICTURES,
+    *MAP_PICTURES,
+    PAGE,
+)
 
 
 @contextmanager

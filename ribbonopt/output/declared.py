@@ -30,6 +30,12 @@ BATCH_PICTURES = (
     "report.html",
     *(f"{name}.{f}" for name in ("outcomes", "scatter", "special") for f in FORMATS),
 )
+MAP_PICTURES = tuple(f"map.{f}" for f in FORMATS)
+
+#: modes of small vibrations, and their figure
+MODES_JSON, MODES_TABLE, MODES_NPZ = "modes.json", "modes.csv", "modes.npz"
+MODES_PICTURES = tuple(f"modes.{f}" for f in FORMATS)
+MODES_FILES = (MODES_JSON, MODES_TABLE, MODES_NPZ, *MODES_PICTURES)
 
 #: what `ribbonopt.viewer` writes beside any of them
 PAGE = "view.html"

@@ -17,7 +17,7 @@ from typing import IO
 from ribbonopt.classes import dataclass
 from ribbonopt.errors import OutputError
 
-from .declared import PAGE, PICTURES
+from .declared import MODES_FILES, PAGE, PICTURES
 from .disk import sync
 from .locks import refuse_held
 from .places import (
@@ -33,7 +33,12 @@ from .placing import beside, locked, place, put_right, recover
 WAIT = 1.0  # seconds for who writes the result of a failed solve to the same place
 
 #: files of a result that every version knows; others are declared by the folder itself
-OWN_FILES = frozenset(("scene.yaml", "summary.json", "solution.npz", "equilibria", PAGE, *PICTURES))
+OWN_FILES = frozenset(
+    (
+        *("scene.yaml", "summary.json", "solution.npz", "equilibria"),
+        *(PAGE, *PICTURES, *MODES_FILES),
+    )
+)
 
 
 @dataclass(frozen=True, eq=False)

@@ -25,8 +25,9 @@ class ContinuationStage:
     Attributes
     ----------
     parameter
-        Dotted path of the number of the scene that moves. Example: `law.epsilon` or
-        `boundary.end.position.x`
+        Dotted path of the number of the scene that moves; of two, for a locus (`of`), branches
+        move the first, and the locus is followed in the second. Example: `law.epsilon` or
+        `[parameters.angle, parameters.distance]`
     to
         Last value. Two, on both sides of `from`, are gone to one after the other.
         Example: `1e-4` or `[35, 60]`
@@ -57,9 +58,24 @@ class ContinuationStage:
         Whether negative directions are counted where the scene is conservative; `eigenvalue` if the
         smallest eigenvalue of the second variation is recorded besides, as `softest`.
         Example: `eigenvalue`
+    of
+        What is followed in two parameters: the locus of a special point of this kind.
+        Example: `fold`
+    number
+        Which of those special points it begins with, along the branch, from 1. Example: `2`
+    between
+        Range of the first of two parameters: the branch on which the special point is found goes
+        from the one to the other; the locus ends where it leaves them. Example: `[0, 60]`
+    branch
+        Folder of a saved branch whose special point is taken in place of following one.
+        Example: `results/snap-continue`
+    modes
+        How many natural frequencies are recorded at every point that is not special, lowest first,
+        as `frequency1` and so on, and their squares omega^2 as `squared1`, which go through zero at
+        folds and branch points. Example: `3`
     """
 
-    parameter: str
+    parameter: str | tuple[str, str]
     to: float | tuple[float, float] | None = None
     from_: float | None = None
     values: tuple[float, ...] | None = None
@@ -72,6 +88,26 @@ class ContinuationStage:
     special: bool = True
     switch: bool | Annotated[int, Bounds(ge=0, most=limits.BRANCHES)] = False
     stability: bool | Literal["eigenvalue"] = True
+    of: Literal["fold", "branch point", "buckling point"] | None = None
+    number: Annotated[int, Bounds(ge=1, most=limits.COUNTED)] = 1
+    between: tuple[float, float] | None = None
+    branch: str | None = None
+    modes: Annotated[int, Bounds(ge=0, most=limits.MODES)] = 0
+
+    @property
+    def paths(self) -> tuple[str, ...]:
+        """Paths of all numbers that move: one, or two of a locus."""
+        return (self.parameter,) if isinstance(self.parameter, str) else self.parameter
+
+    @property
+    def moved(self) -> str:
+        """Path of the number that is the position: of two, the second."""
+        return self.paths[-1]
+
+    @property
+    def is_locus(self) -> bool:
+        """Whether a locus is followed, in two parameters."""
+        return len(self.paths) > 1
 
     @property
     def measured(self) -> bool:

@@ -38,6 +38,7 @@ STARTS = 10_000  # each is a solve: some hours
 SEED = 2**128 - 1  # as many bits as numpy's seeds have
 POINTS = 1_000_000  # of a branch
 BRANCHES = 100  # how often a branch may leave a branch
+MODES = 100  # of vibrations: as many as a mesh of 20 elements may tell
 COUNTED = 1_000  # special points of one kind at which a stage may end
 
 #: items of one list or mapping of a scene, by its key; `ITEMS` for all others

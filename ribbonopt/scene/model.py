@@ -20,8 +20,10 @@ from .equilibria import Equilibria
 from .frames import LabVector, Triple
 from .guesses import Guess, Numbers3
 from .in_short import in_short
+from .inertia import AnyInertia
 from .laws import Law
 from .loads import Loads
+from .maps import MapPlan
 from .membrane import AnyMembrane
 from .natural import Natural
 from .schema.bounds import Bounds
@@ -159,10 +161,17 @@ class Scene:
     labels
         What numbers are called beside the axes of figures, by their columns; formulas stand between
         $. Example: `{energy: $E$, middle: height}`
+    inertia
+        Of sections that turn, for natural frequencies: `ribbon` has that of a strip of the width of
+        the `ribbon`, w^2/12 about normal and tangent; without it none. Example: `{d3: 0.01}`
     equilibria
         That `solve` and batches look for all equilibria, unstable ones too, along branches through
         their folds; `continue` and comparisons leave it aside.
         Example: `all` or `{along: [parameters.angle], below: 20}`
+    map
+        What `ribbonopt map` draws: loci of folds and branch points in the plane of two numbers, and
+        how many shapes there are in each region.
+        Example: `{parameters: {parameters.angle: [0, 60], parameters.distance: [0.05, 0.4]}}`
     """
 
     name: str
@@ -194,6 +203,8 @@ class Scene:
     planar: bool = False
     symmetric: bool | Literal["d1", "d2", "-d1", "-d2"] = False
     labels: dict[str, str] = field(default_factory=dict)
+    inertia: AnyInertia | None = None
     equilibria: Literal["all"] | Equilibria | None = None
+    map: MapPlan | None = None
 
     __repr__ = in_short  # `dump_scene` says all of it

@@ -21,7 +21,8 @@ GRAMMAR = RESERVED - OUTPUTS.keys()
 
 _AT = re.compile(r"(.*)\sat\s(.*)", re.DOTALL)
 _WORD = re.compile(r"(?<![\w.])[A-Za-z_]\w*(?:\.[A-Za-z_]\w*)*")  # not the e of 1e3
-_SPECIAL = re.compile(r"(?:([0-9]+) +)?(fold|branch point|buckling point|kink)(s?)")
+_KINDS = "fold|branch point|buckling point|kink|cusp|isola centre|crossing|double point|turn"
+_SPECIAL = re.compile(rf"(?:([0-9]+) +)?({_KINDS})(s?)")
 _STOP = (
     "expected 'A > B' or 'A < B', such as 'energy > 30'; or fold, branch point, buckling point, "
     "kink, or a number of them, such as '2 folds'"
@@ -32,19 +33,51 @@ def stages_of(scene: Scene) -> tuple[ContinuationStage, ...]:
     """Return the stages of a scene with every `from_` filled in, in the units of the scene.
 
     A stage begins at its own `from_` or first value, or else where an earlier stage left its
-    parameter, or else at the scene's own value.
+    parameter, or else at the scene's own value. A locus that is followed from a branch of its own
+    is two stages: that branch, up to its special point, and the locus.
 
     Raises
     ------
     SceneError
         If a parameter is no number of the scene.
     """
-    stages = []
-    for _, stage in located_stages(scene):
+    stages: list[ContinuationStage] = []
+    for _, stage in followed_stages(scene):
         begin, end = begin_of(stage, scene), end_of(stage)
-        stages.append(replace(stage, from_=begin))
-        scene = scene if end is None else with_value(scene, stage.parameter, end)
+        between = stage.between or (extent_of(stages[-1]) if stage.is_locus and stages else None)
+        stages.append(replace(stage, from_=begin, between=between))
+        scene = scene if end is None else with_value(scene, stage.moved, end)
     return tuple(stages)
+
+
+def extent_of(stage: ContinuationStage) -> tuple[float, float]:
+    """Return the least and the largest value that a stage goes to, whose `from_` is given."""
+    assert stage.from_ is not None
+    places = stage.from_, *ends_of(stage)
+    return min(places), max(places)
+
+
+def followed_stages(scene: Scene) -> Iterator[tuple[KeyPath, ContinuationStage]]:
+    """Yield the stages as they are followed, each with where it stands: two for some loci."""
+    before = None
+    for path, stage in located_stages(scene):
+        # What the stage before has moved is where it has stopped.
+        begun = stage.branch is not None or before == stage.paths[0]
+        if stage.is_locus and stage.of and stage.between and not begun:
+            yield path, branch_of(stage, stage.of, stage.between)
+        yield path, stage
+        before = stage.moved
+
+
+def branch_of(
+    locus: ContinuationStage, kind: str, between: tuple[float, float]
+) -> ContinuationStage:
+    """Return the stage up to the special point that a locus begins with."""
+    stop = kind if locus.number == 1 else f"{locus.number} {kind}s"
+    begin, end = between
+    return ContinuationStage(
+        locus.paths[0], to=end, from_=begin, stop=(stop,), stability=locus.stability
+    )
 
 
 def located_stages(scene: Scene) -> Iterator[tuple[KeyPath, ContinuationStage]]:
@@ -58,9 +91,9 @@ def located_stages(scene: Scene) -> Iterator[tuple[KeyPath, ContinuationStage]]:
 
 def begin_of(stage: ContinuationStage, scene: Scene) -> float:
     """Return where a stage begins in a scene to which earlier stages have led."""
-    if stage.from_ is None and stage.values:
+    if stage.from_ is None and stage.values and not stage.is_locus:
         return stage.values[0]
-    own = value_at(scene, stage.parameter)
+    own = value_at(scene, stage.moved)
     return own if stage.from_ is None else stage.from_
 
 

@@ -22,6 +22,7 @@ from .along import scaled
 from .ends import Boundary, End
 from .frames import LabVector, Triple
 from .guesses import Guess, LoadGuess, StrainGuess
+from .inertia import in_units as turning
 from .laws import Law, OwnLaw, Stiff
 from .loads import AlongAxes, AlongVector, Loads
 from .membrane import in_units
@@ -125,6 +126,7 @@ def in_special_units(scene: Scene, units: Units | None = None) -> Scene:
         reference=_reference(scene.reference, units),
         natural=_natural(scene.natural, units, scene.ribbon),
         membrane=in_units(scene.membrane, units, scene.ribbon),
+        inertia=turning(scene.inertia, units, scene.ribbon),
         switching=switches if isinstance(switches, str) else _over(switches, units.length),
         ribbon=None,
         record={},

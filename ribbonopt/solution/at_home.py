@@ -7,8 +7,8 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from ribbonopt.doors import door, frame_along, solution_drawn, told_in_short
-from ribbonopt.errors import ViewError
+from ribbonopt.doors import door, frame_along, modes_or_reason, solution_drawn, told_in_short
+from ribbonopt.errors import ConvergenceError, ViewError
 
 if TYPE_CHECKING:
     from matplotlib.figure import Figure
@@ -24,7 +24,8 @@ class AtHome:
         Parameters
         ----------
         kind
-            "ribbon", the shape; "strains" along s; "plane", the path in the (u2, u3) plane.
+            "ribbon", the shape; "strains" along s; "plane", the path in the (u2, u3) plane; "modes"
+            of small vibrations.
         style
             A `ribbonopt.views.Style`, as for a paper; unless given as the command line draws.
 
@@ -34,6 +35,29 @@ class AtHome:
             If there is no such picture, such as the plane of a rod.
         """
         return solution_drawn(self, kind, style)
+
+    def modes(self, count: int = 8, planar: bool = False) -> Any:
+        """Return small vibrations about it, the lowest first, as `ribbonopt.checks.modes.Modes`.
+
+        `frequencies` (count,) in Hz or in units of sqrt(Dw/(rho L^4)), negative where a disturbance
+        grows; `errors`, relative; shapes along s.
+
+        Parameters
+        ----------
+        count
+            How many.
+        planar
+            Of a planar ribbon: only motion in its plane.
+
+        Raises
+        ------
+        ConvergenceError
+            If it has none, as it is no equilibrium, or its energy has no second variation.
+        """
+        found = modes_or_reason(self, count, planar)
+        if isinstance(found, str):
+            raise ConvergenceError(f"there are no modes: {found}", "no_modes")
+        return found
 
     def to_pandas(self, s: Any = None) -> DataFrame:
         """Return a table along s: 201 evenly spaced rows, or one for each of arclengths s (k,).

@@ -40,8 +40,9 @@ class Line:
         The problem, discretised.
     parameters : function of floats
         Parameters p = [theta, widths] at the positions l1 .. lk.
-    step : float
-        Half the distance of the positions that derivatives by l are taken from.
+    step : float or k floats
+        Half the distance of the positions that derivatives by l are taken from; of each its own,
+        where they differ in size.
     count : int
         Number k of positions.
     neutral : bool
@@ -50,7 +51,7 @@ class Line:
 
     blocks: Blocks
     parameters: Callable[..., Array]
-    step: float
+    step: float | tuple[float, ...]
     count: int = 1
     neutral: bool = False
 
@@ -80,11 +81,12 @@ class Line:
             Index of the position that moves.
         """
         values = []
+        step = self.step[by] if isinstance(self.step, tuple) else self.step
         for sign in (1, -1):
             moved = list(positions)
-            moved[by] += sign * self.step
+            moved[by] += sign * step
             values.append(self.blocks.values(w, self.parameters(*moved)))
-        stages, conditions = ((a - b) / (2 * self.step) for a, b in zip(*values, strict=True))
+        stages, conditions = ((a - b) / (2 * step) for a, b in zip(*values, strict=True))
         return stages, conditions
 
     @property

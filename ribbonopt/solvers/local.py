@@ -87,12 +87,20 @@ def local(
     return _local(line, factors, none, np.zeros(len(w) + line.count))
 
 
-def local_near(line: Line, row: Array, w: Array, position: float) -> tuple[Local, Derivatives]:
+def local_near(
+    line: Line,
+    row: Array,
+    w: Array,
+    positions: float | Array,
+    further: tuple[ScalarCondition, ...] = (),
+) -> tuple[Local, Derivatives]:
     """Linearise near a solution, and tell Newton's step from there; the derivatives too."""
-    system, p = ExtendedSystem(line, row, 0.0), line.parameters(position)
-    residuals, derivatives = system.linearize(np.append(w, position), p)
-    # The row says nothing of where along the branch.
-    conditions = np.append(residuals.conditions[:-1], 0.0)
+    system = ExtendedSystem(line, row, 0.0, further)
+    p = line.parameters(*np.atleast_1d(positions))
+    residuals, derivatives = system.linearize(np.append(w, positions), p)
+    # The rows say nothing of where along the branch.
+    conditions = residuals.conditions.copy()
+    conditions[-line.count :] = 0.0
     residuals = replace(residuals, conditions=conditions)
     factors = factored(line.bordered, derivatives, p, residuals, line.neutral)
     return _local(line, factors, residuals, factors.solve(residuals)), derivatives

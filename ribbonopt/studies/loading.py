@@ -1,4 +1,4 @@
-"""One loader for all that is written: a result, a branch or a batch, told apart by their files."""
+"""One loader for all that is written: results, branches, batches and maps, told apart by files."""
 
 from __future__ import annotations
 
@@ -19,12 +19,15 @@ from ribbonopt.text import one_line
 
 from .batch.saved import ROWS, STUDY
 from .continuation.files import FILE
+from .maps.saved import FILE as MAP
+from .maps.saved import JOBS
 
 if TYPE_CHECKING:
     from .batch.results import Batch
     from .continuation.branch import Branch
+    from .maps.map import Map
 
-EXPECTED = "expected a folder written by ribbonopt solve, continue or batch, or a file in it"
+EXPECTED = "expected a folder written by ribbonopt solve, continue, batch or map, or a file in it"
 #: what other verbs write, by the file that only they write
 OTHERS = {
     "comparison.json": "a comparison (ribbonopt compare)",
@@ -35,12 +38,12 @@ OTHERS = {
 }
 YAML = (".yaml", ".yml")
 #: what the name of a scene may have behind it as a folder: of its branch, of what failed
-BESIDE = ("-branch", *dict.fromkeys(f".{way.failure}" for way in Status if way.failure))
+BESIDE = ("-branch", "-map", *dict.fromkeys(f".{way.failure}" for way in Status if way.failure))
 SHOWN = 5  # results that a message names
 
 
-def load(path: str | Path, scene: Scene | None = None) -> Solution | Branch | Batch:
-    """Load what `ribbonopt solve`, `continue` or `batch` has written.
+def load(path: str | Path, scene: Scene | None = None) -> Solution | Branch | Batch | Map:
+    """Load what `ribbonopt solve`, `continue`, `batch` or `map` has written.
 
     Parameters
     ----------
@@ -51,8 +54,8 @@ def load(path: str | Path, scene: Scene | None = None) -> Solution | Branch | Ba
 
     Returns
     -------
-    Solution, Branch or Batch
-        A result, the points of a continuation, the rows of a study.
+    Solution, Branch, Batch or Map
+        A result, the points of a continuation, the rows of a study, the map of a scene.
 
     Raises
     ------
@@ -69,11 +72,15 @@ def load(path: str | Path, scene: Scene | None = None) -> Solution | Branch | Ba
         from .batch.results import Batch
 
         return Batch.load(folder)
+    if is_file(folder / MAP) or is_file(folder / JOBS):
+        from .maps.map import Map
+
+        return Map.load(folder)
     return load_solution(folder, scene)
 
 
 def folder_of(path: str | Path) -> Path:
-    """Return the folder of a result, a branch or a batch, given by itself or by a file in it.
+    """Return the folder of a result, branch, batch or map, given by itself or by a file in it.
 
     Raises
     ------
@@ -88,7 +95,7 @@ def folder_of(path: str | Path) -> Path:
     folder = given.parent if is_file(given) else given
     if is_file(folder / FILE) or is_file(folder / STUDY) or is_file(folder / ROWS):
         return folder
-    if any(os.path.lexists(folder / name) for name in (SUMMARY, NUMBERS)):
+    if any(os.path.lexists(folder / name) for name in (SUMMARY, NUMBERS, MAP, JOBS)):
         return folder
     raise OutputError(f"{path}: {_found(given, folder)}; {EXPECTED}{_inside(folder)}")
 
@@ -123,7 +130,7 @@ def _inside(folder: Path) -> str:
         inner = sorted(path for path in folder.iterdir() if path.is_dir())
     except OSError:  # cannot be read: then nothing is known of it
         return ""
-    marks = (FILE, STUDY, SUMMARY)
+    marks = (FILE, STUDY, SUMMARY, MAP)
     found = [path for path in inner if any(is_file(path / mark) for mark in marks)]
     if not found:
         return ""

@@ -8,6 +8,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from ribbonopt.checks.modes import Modes
     from ribbonopt.solution.solution import Solution
     from ribbonopt.studies.batch.results import Batch
     from ribbonopt.studies.continuation.branch import Branch
@@ -17,7 +18,9 @@ __all__ = ["embedded"]
 HEIGHT = 640  # pixels
 
 
-def embedded(thing: Solution | Branch | Batch, height: int = HEIGHT) -> str:
+def embedded(
+    thing: Solution | Branch | Batch, height: int = HEIGHT, modes: Modes | None = None
+) -> str:
     """Return HTML that shows something solved in a part of another page, such as a notebook.
 
     Parameters
@@ -26,6 +29,8 @@ def embedded(thing: Solution | Branch | Batch, height: int = HEIGHT) -> str:
         A solution, verified or not, a branch or a batch.
     height
         In pixels.
+    modes
+        Of a solution: its small vibrations (`solution.modes()`), to be seen in motion.
 
     Raises
     ------
@@ -35,4 +40,4 @@ def embedded(thing: Solution | Branch | Batch, height: int = HEIGHT) -> str:
     from .looking import view_of
     from .page import framed, page_of
 
-    return framed(page_of(view_of(thing)), height)
+    return framed(page_of(view_of(thing, modes=modes)), height)

@@ -32,12 +32,16 @@ LEVEL = 9  # of deflate
 
 
 def packed(shapes: Sequence[Shape]) -> str:
-    """Return all rows of some shapes as text in base64.
+    """Return all rows of some shapes as text in base64."""
+    return packed_tables([columns_of(shape) for shape in shapes])
 
-    It is, deflated: offset and step of every column of every shape (float32), then the high bytes
-    of all second differences, then the low bytes; of one shape after the other, column by column.
+
+def packed_tables(tables: Sequence[Array]) -> str:
+    """Return tables of columns, (columns, k) each, as text in base64.
+
+    It is, deflated: offset and step of every column of every table (float32), then the high bytes
+    of all second differences, then the low bytes; of one table after the other, column by column.
     """
-    tables = [columns_of(shape) for shape in shapes]
     scales, wholes = zip(*map(_whole, tables), strict=True)
     folded = np.concatenate([_folded(whole).ravel() for whole in wholes])
     high, low = (folded >> 8).astype(np.uint8), (folded & 255).astype(np.uint8)

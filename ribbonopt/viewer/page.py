@@ -19,7 +19,7 @@ from .view import View, contents
 PICTURE = ("colours.js", "camera.js", "mesh.js", "webgl.js", "painter.js")
 RIBBON = ("overlay.js", "hand.js", "ribbon.js", "panels.js")
 MORE: dict[str, tuple[str, ...]] = {
-    "result": (),
+    "result": ("motion.js",),
     "branch": ("choice.js", "diagram.js"),
     "batch": SCATTER,
 }

@@ -21,6 +21,7 @@ from ribbonopt.views.subject import Subject
 from ribbonopt.views.surface import sweep
 
 from .acting import arrows_of, longest
+from .motion import Motion, plain_motion
 from .packing import packed
 from .ranges import ranges_of
 from .still import still
@@ -80,6 +81,8 @@ class View:
         Of all of it.
     left_out : tuple of str
         What the page does not hold, and why.
+    motion : Motion or None
+        Small vibrations of one of the ribbons.
     """
 
     kind: str
@@ -91,6 +94,7 @@ class View:
     table: Mapping[str, Any] | None = None
     units: Units = field(default_factory=Units)
     left_out: tuple[str, ...] = ()
+    motion: Motion | None = None
 
     @property
     def shapes(self) -> list[Shape]:
@@ -123,9 +127,17 @@ def contents(view: View) -> dict[str, Any]:
         "still": still(shapes[0], camera) if shapes else "",
         "diagram": view.diagram,
         "table": view.table,
+        "modes": _motion(view, shapes),
     }
     found: dict[str, Any] = _seen(data)
     return found
+
+
+def _motion(view: View, shapes: Sequence[Shape]) -> dict[str, Any] | None:
+    if view.motion is None:
+        return None
+    i = view.motion.ribbon
+    return plain_motion(view.motion, view.ribbons[i].subject, shapes[i])
 
 
 def _told(ribbon: Ribbon, shape: Shape) -> dict[str, Any]:
@@ -169,6 +181,8 @@ def _frame(
         boxes = [np.array([np.min(boxes, axis=0)[0], np.max(boxes, axis=0)[1]])]
     middles = [box.mean(axis=0) @ axes for box in boxes]
     extent = np.max([np.ptp(box, axis=0) for box in boxes], axis=0) / 2 * ROOM
+    if view.motion is not None:
+        extent = extent + view.motion.reach(view.ribbons[view.motion.ribbon].subject, axes)
     depth = max(float(np.linalg.norm(extent)), LEAST)
     frame = {
         "axes": axes.tolist(),

@@ -1,4 +1,4 @@
-"""Pictures: strains, their path in the (u2, u3) plane, ribbons in space, branches, batches.
+"""Pictures: strains, their path in the (u2, u3) plane, ribbons in space, branches, batches, maps.
 
 Importing this room loads none of its modules, and matplotlib is imported when a figure is drawn.
 """
@@ -12,6 +12,8 @@ if TYPE_CHECKING:
     from .animation import save_animation
     from .branch import plot_branch
     from .files import Pictures, plot_solution, save_figures
+    from .map import plot_map
+    from .modes import plot_modes
     from .paper_style import Style
     from .plane import plot_plane
     from .ribbon import plot_ribbon
@@ -23,6 +25,8 @@ __all__ = [
     "Style",
     "plot_batch",
     "plot_branch",
+    "plot_map",
+    "plot_modes",
     "plot_plane",
     "plot_ribbon",
     "plot_solution",
@@ -36,6 +40,8 @@ _HOMES = {
     "Style": "paper_style",
     "plot_batch": "scatter",
     "plot_branch": "branch",
+    "plot_map": "map",
+    "plot_modes": "modes",
     "plot_plane": "plane",
     "plot_ribbon": "ribbon",
     "plot_solution": "files",

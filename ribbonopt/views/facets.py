@@ -41,7 +41,8 @@ class Drawing:
         return replace(self, line_widths=np.maximum(share * self.line_widths, SEAM))
 
 
-_Part = tuple[Array, Array, Array, Array, Array]  # a Drawing with heights (k,) after its corners
+#: a Drawing with heights (k,) after its corners
+Part = tuple[Array, Array, Array, Array, Array]
 
 
 def draw_surface(
@@ -52,6 +53,13 @@ def draw_surface(
     The generatrices at `places`, arclengths, are drawn strongly. With `tint` both sides have the
     colours of a field, what follows by symmetry too.
     """
+    return sorted_far(parts_of(surface, camera, places, tint), HAZE if tint is None else 0.0)
+
+
+def parts_of(
+    surface: Surface, camera: Camera, places: Sequence[float] = (), tint: Tint | None = None
+) -> list[Part]:
+    """Return what of a ribbon is drawn, projected and lit, in no order; see `draw_surface`."""
     back = FRONT if surface.one_sided else BACK
     length = surface.sheets[-1].piece.s[-1] - surface.sheets[0].piece.s[0]
     # A line lies in the faces that it borders: lifted by their radius it is painted after them.
@@ -71,15 +79,26 @@ def draw_surface(
     if not surface.closed:
         for sheet, row in ((surface.sheets[0], 0), (surface.sheets[-1], -1)):
             parts.append(_segments(camera, lift, _across(sheet, row), EDGE))
+    return parts
+
+
+def sorted_far(parts: Sequence[Part], far: float) -> Drawing:
+    """Return parts from far to near; what is furthest is `far` of the way to white."""
     corners, heights, faces, edges, line_widths = (
         np.concatenate(column) for column in zip(*parts, strict=True)
     )
     order = np.argsort(heights, kind="stable")
-    far = HAZE if tint is None else 0.0
     haze = far * (heights.max() - heights) / max(float(np.ptp(heights)), 1e-300)
     for colours in (faces, edges):
         colours[:, :3] += haze[:, None] * (1 - colours[:, :3])
     return Drawing(corners[order], faces[order], edges[order], line_widths[order])
+
+
+def faded(part: Part, share: float) -> Part:
+    """Return a part whose colours are a share of the way to white."""
+    corners, heights, faces, edges, line_widths = part
+    paler = [np.column_stack([c[:, :3] + share * (1 - c[:, :3]), c[:, 3]]) for c in (faces, edges)]
+    return corners, heights, paler[0], paler[1], line_widths
 
 
 def _faces(sheet: Sheet) -> tuple[Array, Array]:
@@ -91,7 +110,7 @@ def _faces(sheet: Sheet) -> tuple[Array, Array]:
     return corners.reshape(-1, 4, 3), np.repeat(normals, STRIPS, axis=0)
 
 
-def _lit(camera: Camera, corners: Array, normals: Array, back: Array, mirrored: bool) -> _Part:
+def _lit(camera: Camera, corners: Array, normals: Array, back: Array, mirrored: bool) -> Part:
     """Faces with the colour of the side that is seen, in the camera's light."""
     front = normals @ camera.towards > 0
     diffuse, gloss = camera.brightness(normals)
@@ -104,7 +123,7 @@ def _lit(camera: Camera, corners: Array, normals: Array, back: Array, mirrored: 
     return plane, heights.mean(axis=1), rgba, rgba.copy(), np.full(len(rgba), SEAM)
 
 
-def _tinted(camera: Camera, corners: Array, normals: Array, colours: Array) -> _Part:
+def _tinted(camera: Camera, corners: Array, normals: Array, colours: Array) -> Part:
     """Faces in colours (rows, 3) that light changes little, so that a bar tells what they mean."""
     diffuse, _ = camera.brightness(normals)
     light = DARKEST + (1 - DARKEST) * diffuse
@@ -129,7 +148,7 @@ def _across(sheet: Sheet, rows: Any) -> Array:
     return np.stack([sheet.points(f)[rows] for f in np.linspace(-1, 1, STRIPS + 1)])
 
 
-def _segments(camera: Camera, lift: float, points: Array, style: tuple[float, float]) -> _Part:
+def _segments(camera: Camera, lift: float, points: Array, style: tuple[float, float]) -> Part:
     """Segments between successive points (k, 3) or (k, l, 3), as polygons without area."""
     width, alpha = style
     a, b = points[:-1].reshape(-1, 3), points[1:].reshape(-1, 3)

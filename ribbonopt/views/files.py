@@ -8,7 +8,7 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from ribbonopt.errors import ModelError, OutputError
+from ribbonopt.errors import ModelError, OutputError, ViewError
 from ribbonopt.output.declared import PICTURES
 from ribbonopt.scene.faults import shown
 from ribbonopt.solution.solution import Solution
@@ -93,7 +93,7 @@ def draw_figures(
 def plot_solution(
     solution: Solution, kind: str = "ribbon", style: Style = PLAIN, complete: bool = True
 ) -> Figure:
-    """Draw one figure of a solution: "ribbon", "strains" or "plane"; see `plot_ribbon`.
+    """Draw one figure of a solution: "ribbon", "strains", "plane" or "modes"; see `plot_ribbon`.
 
     Raises
     ------
@@ -102,9 +102,11 @@ def plot_solution(
     ViewError
         If there is no such figure of this ribbon.
     """
-    if kind not in KINDS:
-        known = ", ".join(KINDS)
+    if kind not in (*KINDS, MODES):
+        known = ", ".join((*KINDS, MODES))
         raise ModelError(f"kind: found {shown(kind)}, expected one of {known}")
+    if kind == MODES:
+        return _modes(solution, style)
     with style.applied():
         return KINDS[kind](subject_of(solution, complete), style)
 
@@ -113,6 +115,18 @@ def _ribbon(subject: Subject, style: Style) -> Figure:
     return draw_ribbon(subject, None, style)
 
 
+def _modes(solution: Solution, style: Style) -> Figure:
+    from ribbonopt.checks.modes import modes_of  # few figures are of them
+
+    from .modes import plot_modes
+
+    found = modes_of(solution)
+    if isinstance(found, str):
+        raise ViewError(f"{solution.scene.name}: there are no modes to draw: {found}")
+    return plot_modes(solution, found, style)
+
+
+MODES = "modes"
 KINDS: dict[str, Callable[[Subject, Style], Figure]] = {
     "ribbon": _ribbon,
     "strains": draw_strains,

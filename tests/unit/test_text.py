@@ -8,11 +8,12 @@ import pytest
 from hostile import ALL, FORMULAS, MARKUP, NAMES_KEPT, NAMES_REFUSED, acting, texts
 
 from ribbonopt.cli.export import FOLDER
-from ribbonopt.output.declared import BATCH_PICTURES, BRANCH_PICTURES, MANIFEST
+from ribbonopt.output.declared import BATCH_PICTURES, BRANCH_PICTURES, MANIFEST, MAP_PICTURES
 from ribbonopt.output.staging import OWN_FILES
 from ribbonopt.scene.text.yamltext import read
 from ribbonopt.studies.batch.cells import as_cell, of_cell
 from ribbonopt.studies.comparison.files import files_of
+from ribbonopt.studies.maps.jobs import FOLDERS
 from ribbonopt.studies.stress.files import FILES as STRESSED
 from ribbonopt.studies.verification.files import FILES as VERIFIED
 from ribbonopt.text import (
@@ -91,6 +92,7 @@ def test_what_our_folders_hold_is_reserved() -> None:
     ours |= {"rows.jsonl", "table.csv", "study.json", "branch.jsonl", "branch.csv"}
     ours |= {*files_of("comparison"), *files_of("benchmark"), "special.csv"}
     ours |= {FOLDER, "laws.csv", "laws.json", "laws.png", *VERIFIED, *STRESSED}
+    ours |= {*MAP_PICTURES, *FOLDERS, "map.json", "map.csv", "jobs.jsonl"}
     assert ours == RESERVED_NAMES
     assert all(name_fault(name.upper()) for name in ours)
 

@@ -100,13 +100,13 @@ def halved(scene: Scene, conditions: tuple[Condition, ...]) -> Scene:
 def _refuse_turning(scene: Scene, axis: Axis) -> None:
     """Refuse a continuation along which the axis turns, or is lost: the half would not follow."""
     for stage in stages_of(scene) if scene.continuation is not None else ():
-        if not stage.parameter.startswith(("law.", "parameters.")):
-            raise _refused(f"{stage.parameter} moves along its continuation, not a parameter of it")
+        if not stage.moved.startswith(("law.", "parameters.")):
+            raise _refused(f"{stage.moved} moves along its continuation, not a parameter of it")
         first = begin_of(stage, scene)
         for goal in ends_of(stage):
             for share in ON_THE_WAY:
                 value = first + share * (goal - first)
-                there = in_special_units(with_value(scene, stage.parameter, value))
+                there = in_special_units(with_value(scene, stage.moved, value))
                 other = _axis(there, axis.director)
                 if isinstance(other, str) or np.abs(other.along - axis.along).max() > CLOSE:
                     lost = other if isinstance(other, str) else "the axis turns"

@@ -41,7 +41,7 @@ def refuse_far_goals(scene: Scene) -> None:
         for key, end in _goals(stage, path):
             _refuse_far(scene, stage, begin, end, key)
         last = end_of(stage)
-        scene = scene if last is None else with_value(scene, stage.parameter, last)
+        scene = scene if last is None else with_value(scene, stage.moved, last)
 
 
 def stretch_of(scene: Scene) -> float:
@@ -77,7 +77,7 @@ def _refuse_far(
 ) -> None:
     from ribbonopt.scene.lens import with_value
 
-    name, share = stage.parameter, stretch_of(scene)
+    name, share = stage.moved, stretch_of(scene)
 
     def slack(value: float) -> float:
         return share + _slack(with_value(scene, name, value))

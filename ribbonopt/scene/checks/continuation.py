@@ -28,6 +28,8 @@ from ribbonopt.scene.stages import (
 from ribbonopt.scene.wording import written
 from ribbonopt.text import is_word
 
+from .locus import branch_scenes, locus_faults, way_faults
+
 Check = Callable[[Scene], list[Problem]]
 
 
@@ -46,9 +48,11 @@ def check_continuation(scene: Scene, check: Check | None) -> list[Problem]:
     if scene.continuation == ():
         problems.append(Problem(("continuation",), "expected at least one stage; or remove it"))
     now, check = scene, None if problems else check
+    before: ContinuationStage | None = None
     for path, stage in located_stages(scene):
-        found = list(_form(stage, scene, path))
-        if fault := fault_of(now, stage.parameter):
+        found = [*_form(stage, scene, path), *locus_faults(stage, now, path, before)]
+        before = stage
+        if fault := fault_of(now, stage.moved):
             found.append(Problem((*path, "parameter"), fault))
         elif not found:
             found = list(_way(stage, now, path))
@@ -56,7 +60,7 @@ def check_continuation(scene: Scene, check: Check | None) -> list[Problem]:
                 found = list(_bad_ends(stage, now, path, check))
         end = end_of(stage)
         if not found and end is not None:
-            now = with_value(now, stage.parameter, end)
+            now = with_value(now, stage.moved, end)
         problems += found
     return problems
 
@@ -92,6 +96,9 @@ def _form(stage: ContinuationStage, scene: Scene, path: KeyPath) -> Iterator[Pro
         if a > b:
             message = f"step sizes reversed: {small} {a:g} > {large} {b:g}; expected smallest <= "
             yield Problem((*path, small), f"{message}first <= largest, so exchange the two")
+    if stage.modes and scene.ribbon is not None and scene.ribbon.density is None:
+        message = "frequencies in Hz need the density of the ribbon, in kg/m^3; write for example "
+        yield Problem((*path, "modes"), f'{message}"density: 1390" under ribbon', f"{stage.modes}")
     for index, text in enumerate(stage.stop):
         yield from _stop(text, stage, scene, (*path, "stop", index))
 
@@ -116,16 +123,18 @@ def _stop(text: str, stage: ContinuationStage, scene: Scene, path: KeyPath) -> I
 def _way(stage: ContinuationStage, scene: Scene, path: KeyPath) -> Iterator[Problem]:
     """Yield what is wrong with where a stage begins and ends."""
     begin, ends = begin_of(stage, scene), ends_of(stage)
-    if stage.values and stage.from_ not in (None, stage.values[0]):
+    if stage.is_locus:
+        yield from way_faults(stage, scene, path)
+    elif stage.values and stage.from_ not in (None, stage.values[0]):
         message = f"stands beside `values`, which begin at {stage.values[0]:g}; remove it"
         yield Problem((*path, "from"), message, f"{begin:g}")
     if isinstance(stage.to, tuple):
         if not min(stage.to) < begin < max(stage.to):
-            message = f"of which one is to be below and one above where {stage.parameter} begins, "
+            message = f"of which one is to be below and one above where {stage.moved} begins, "
             message += f"{begin:g}; for one direction write one number"
             yield Problem((*path, "to"), message, written(stage.to))
     elif not stage.values and begin in ends:
-        message = f"which is where {stage.parameter} begins; expected another value, or remove the"
+        message = f"which is where {stage.moved} begins; expected another value, or remove the"
         yield Problem((*path, "to"), f"{message} stage", f"{begin:g}")
     named = {"values": min(stage.values)} if stage.values else {"from": begin, "to": min(ends)}
     for key, value in named.items():
@@ -145,10 +154,12 @@ def _bad_ends(
         ends |= {("to", i): value for i, value in enumerate(stage.to)}
     else:
         ends |= {("to",): stage.to}
-    for key, value in ends.items():
-        if value is None:
-            continue  # the scene's own value, or where another stage ended
-        trial = replace(with_value(scene, stage.parameter, value), continuation=None)
+    trials = [
+        ((*path, *key), value, _alone(with_value(scene, stage.moved, value)))
+        for key, value in ends.items()
+        if value is not None  # else the scene's own value, or where another stage ended
+    ]
+    for where, value, trial in [*trials, *branch_scenes(stage, scene, path)]:
         try:
             problems = check(validate(Scene, trial))
         except InvalidSceneError as error:
@@ -156,4 +167,9 @@ def _bad_ends(
         for problem in problems:
             message = "which makes no valid scene; choose another value: "
             message += f"{dotted(problem.path)}: {problem}"
-            yield Problem((*path, *key), message, f"{value:g}")
+            yield Problem(where, message, f"{value:g}")
+
+
+def _alone(scene: Scene) -> Scene:
+    """Return a scene without what is followed from it."""
+    return replace(scene, continuation=None, map=None)

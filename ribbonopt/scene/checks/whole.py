@@ -101,6 +101,10 @@ def check(scene: Scene, like: Sound | None = None) -> list[Problem]:
         from .membrane import check_membrane  # as above
 
         problems += check_membrane(scene, scene.membrane)
+    if scene.inertia is not None:
+        from .inertia import check_inertia  # as above
+
+        problems += check_inertia(scene, scene.inertia)
     if scene.loads.points or scene.supports:
         from .stations import check_stations  # few scenes have any
 
@@ -120,6 +124,10 @@ def check(scene: Scene, like: Sound | None = None) -> list[Problem]:
         from .continuation import check_continuation
 
         problems += check_continuation(scene, None if problems else check)
+    if scene.map is not None:
+        from .maps import check_map  # few scenes are mapped
+
+        problems += check_map(scene, scene.map, None if problems else check)
     if isinstance(scene.equilibria, Equilibria):
         from .equilibria import check_equilibria  # few scenes ask for all of them
 

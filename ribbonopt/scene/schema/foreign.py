@@ -16,9 +16,10 @@ NOT_MODELLED = {
     "there is no contact (where sides touch, a warning says so)",
     ("foundation", "spring", "springs", "adhesion"): "nothing elastic holds the ribbon: write what "
     "it does as loads (force, pressure) or supports",
-    ("damping", "dynamics", "inertia", "time", "velocity", "viscosity"): "equilibria only: there "
-    "is no time",
-    ("mass",): "there is no inertia; for a weight write gravity and ribbon.density, or loads.force",
+    ("damping", "dynamics", "time", "velocity", "viscosity"): "equilibria only, and small "
+    "vibrations about them: there is no time",
+    ("mass",): "frequencies take that of the ribbon (ribbon.density); for a weight write gravity "
+    "and ribbon.density, or loads.force",
     ("stretch", "extensible", "extensibility", "shear"): "the centre line neither stretches nor "
     "shears",
     ("temperature", "magnetic", "magnetization", "electric", "charge"): "elastic only; what it "

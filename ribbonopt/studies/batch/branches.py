@@ -57,7 +57,7 @@ def follow(
     scene = settled(scene)
     stage = asked_of(scene)[0]
     assert stage.from_ is not None
-    first = replace(with_value(scene, stage.parameter, stage.from_), continuation=None)
+    first = replace(with_value(scene, stage.moved, stage.from_), continuation=None)
     continuation = Continuation(scene, prepared(first))
     if place is None or save == "none":
         return _told(continuation, _rows(continuation))

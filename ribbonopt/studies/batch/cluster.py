@@ -20,7 +20,7 @@ from ribbonopt.plain import Row
 from ribbonopt.version import VERSION
 
 from .chunks import Chunk
-from .files import SOLUTIONS
+from .kept import SOLUTIONS
 from .processes import WorkerProcess, lost_row
 from .study import Study
 

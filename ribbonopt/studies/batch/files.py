@@ -24,12 +24,12 @@ from ribbonopt.output.table import write_table
 from ribbonopt.plain import SPECIALS, Row, Rows
 
 from .cells import as_cell
-from .kept import OneEach
+from .kept import SOLUTIONS, OneEach
 from .saved import ROWS, STUDY, read_rows, read_study
 from .special import special_rows, with_columns
 from .study import Study
 
-TABLE, SPECIAL, SOLUTIONS = "table.csv", "special.csv", "solutions"
+TABLE, SPECIAL = "table.csv", "special.csv"
 
 
 class BatchFolder:

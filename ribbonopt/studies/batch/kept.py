@@ -6,6 +6,7 @@ from collections.abc import Iterable, Iterator
 
 from ribbonopt.plain import Row
 
+SOLUTIONS = "solutions"  # the folder of what is kept of ribbons, by their numbers
 LOST = ("crashed", "timed_out")  # statuses of ribbons that took their worker with them
 AGAIN = (*LOST, "error")  # those that say nothing of the ribbon itself: another try may do
 

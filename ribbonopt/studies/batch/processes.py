@@ -17,7 +17,7 @@ from ribbonopt.plain import Row
 
 from .child import Answer, Child, search_path
 from .chunks import Chunk
-from .kept import LOST
+from .kept import LOST, SOLUTIONS
 from .study import StudyRibbon
 
 STARTING = 120.0  # seconds that a new process may take until it can solve
@@ -187,6 +187,8 @@ def message(
             "set": ribbon.overrides,
             "inputs": ribbon.inputs,
             "followed": ribbon.followed,
+            "place": ribbon.place or f"{SOLUTIONS}/{ribbon.number}",
+            "task": ribbon.task,
         }
         for ribbon in ribbons
     ]

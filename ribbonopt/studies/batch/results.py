@@ -26,8 +26,8 @@ from ribbonopt.studies.continuation.branch import Branch
 from ribbonopt.studies.continuation.files import FILE
 from ribbonopt.text import one_line, shortened
 
-from .files import SOLUTIONS, load_batch, sorted_columns
-from .kept import OneEach
+from .files import load_batch, sorted_columns
+from .kept import SOLUTIONS, OneEach
 from .special import with_columns
 from .study import Study
 

@@ -111,18 +111,24 @@ class Sweep:
 
 @dataclass(frozen=True)
 class StudyRibbon:
-    """One ribbon of a study: its number, its scene and its inputs, and whether it is continued."""
+    """One ribbon of a study: its number, its scene and its inputs, and whether it is continued.
+
+    `place` is the folder of what is kept of it, where that is not `solutions/NUMBER`; `task` what
+    is done instead of solving it (`studies.maps.tasks`), whose inputs are no keys of its scene.
+    """
 
     number: int
     source: Source
     common: Inputs
     inputs: Inputs
     followed: bool = False
+    place: str = ""
+    task: str = ""
 
     @property
     def overrides(self) -> list[str]:
         """Overrides of the scene, as `load_scene` takes them."""
-        return assignments(self.common | self.inputs)
+        return [] if self.task else assignments(self.common | self.inputs)
 
 
 @dataclass(frozen=True)

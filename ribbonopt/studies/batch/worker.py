@@ -49,6 +49,9 @@ class Worker:
             if ribbon["number"] in chunk["skip"] or (known and ribbon["followed"]):
                 continue
             yield {"at": ribbon["number"]}
+            if ribbon["task"]:
+                yield {"row": self._other(ribbon, chunk)}
+                continue
             if ribbon["followed"]:
                 yield {"row": self._followed(ribbon, chunk)}
                 continue
@@ -82,13 +85,22 @@ class Worker:
 
         def answer(scene: Scene, row: Row) -> None:
             place = _place(chunk, ribbon)
-
-            def prepared(scene: Scene) -> Prepared:
-                return self._of(Posed.of(scene))
-
-            row |= follow(scene, prepared, chunk["save"], place, 2 * WATCH)
+            row |= follow(scene, self._prepared, chunk["save"], place, 2 * WATCH)
 
         return self._row(ribbon, answer)
+
+    def _other(self, ribbon: dict[str, Any], chunk: dict[str, Any]) -> Row:
+        """Return the row of a ribbon to which something else is done."""
+        from ribbonopt.studies.maps.tasks import TASKS, Place  # only maps ask for it
+
+        def answer(scene: Scene, row: Row) -> None:
+            place = Place(Path(chunk["folder"]), ribbon["place"], 2 * WATCH)
+            row |= TASKS[ribbon["task"]](scene, self._prepared, place, ribbon["inputs"])
+
+        return self._row(ribbon, answer)
+
+    def _prepared(self, scene: Scene) -> Prepared:
+        return self._of(Posed.of(scene))
 
     def _pose(self, scene: Scene) -> Posed:
         """Return a scene posed: what it shares with the one before is not evaluated again."""
@@ -100,7 +112,7 @@ class Worker:
         """Return the structure of a scene, built once."""
         structure = posed.structure
         if structure not in self._built:
-            self._built[structure] = prepare(replace(posed.given, continuation=None))
+            self._built[structure] = prepare(replace(posed.given, continuation=None, map=None))
         return self._built[structure]
 
     def _row(self, ribbon: dict[str, Any], answer: Callable[[Scene, Row], None]) -> Row:
@@ -175,7 +187,7 @@ def _save(chunk: dict[str, Any], ribbon: dict[str, Any], row: Row, found: Soluti
 def _place(chunk: dict[str, Any], ribbon: dict[str, Any]) -> Path | None:
     """Return the folder of what is kept of a ribbon; None for nowhere."""
     folder = chunk["folder"]
-    return Path(folder) / "solutions" / str(ribbon["number"]) if folder else None
+    return Path(folder) / ribbon["place"] if folder else None
 
 
 def serve() -> None:

@@ -74,11 +74,11 @@ class Search:
         law = self.deflected.ribbon.law
         found = self._from_rod(load, start)
         if found is None or not law.kinked:
-            return None if found is None else self._refined(found, self._smooth)
+            return None if found is None else self.refined(found, self._smooth)
         pieces, places = found.signs
         problem = square(self.deflected, ca.SX(0, 1), law.strain, law, pieces)
         found = self._in_phases(found, problem, pieces, places)
-        return None if found is None else self._refined(found, problem)
+        return None if found is None else self.refined(found, problem)
 
     def at(self, load: float) -> Array:
         """Start, constants and parameters of the straight state, as they are taken at a load."""
@@ -86,12 +86,15 @@ class Search:
         return found
 
     def moved(self, mode: Mode, straight: Array) -> Mode | None:
-        """Solve again from a mode of a search over other loads, and its straight state."""
+        """Solve again from a mode of a search over other loads, and its straight state.
+
+        `straight` (nx + nc + nt,) are its start, constants and parameters.
+        """
         trajectory, output = mode.trajectory, mode.trajectory.dense
-        nx, nc, _ = self.deflected.sizes
-        a, b, there = (part[: nx + nc] for part in (self.rod.a, self.rod.b, straight))
+        _, nc, _ = self.deflected.sizes
+        a, b = self.rod.a, self.rod.b
         constants = output.constants.copy()
-        constants[nc] = (there - a) @ (b - a) / ((b - a) @ (b - a))
+        constants[nc] = (straight - a) @ (b - a) / ((b - a) @ (b - a))
         parts = trajectory.approximate, trajectory.ends, constants
         numbers, mesh = output.theta[self._named :], self._mesh(mode)
         found = self._solved(trajectory.problem, mesh, *parts, numbers, mode.pieces)
@@ -168,7 +171,7 @@ class Search:
         output = nlp.output(report.w, p)
         return Mode(float(output.constants[nc]), np.inf, Trajectory(problem, output), pieces)
 
-    def _refined(self, mode: Mode, problem: BoundaryValueProblem) -> Mode:
+    def refined(self, mode: Mode, problem: BoundaryValueProblem) -> Mode:
         """Refine the mesh until the load is as exact as is wanted, or no mesh does better."""
         mode = replace(mode, error=self._error(mode))
         for allowed in RESIDUALS:

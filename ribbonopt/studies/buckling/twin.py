@@ -19,8 +19,8 @@ from ribbonopt.scene import Kirchhoff, Scene
 STIFF = Kirchhoff(B2=1.737, B3=2.391)
 
 
-def has_twin(law: ConstitutiveLaw, scene: Scene, parameter: str) -> bool:
-    """Whether a rod has the same unknowns, and the parameter that moves."""
+def has_twin(law: ConstitutiveLaw, scene: Scene, parameter: str = "") -> bool:
+    """Whether a rod has the same unknowns, and the parameter that moves, if one is named."""
     if parameter.startswith("law.") or law.states:
         return False
     return law.components == capabilities(twin_scene(scene)).components

@@ -166,14 +166,14 @@ class Branch(Sequence[Solution]):
         """
         names, scene = [*self.columns, VALUE], self.scene
         pair = column_of(x, names), column_of(y, names)
-        log = [stage.parameter for stage in self._stages if stage.scale == "log"]
+        log = [stage.moved for stage in self._stages if stage.scale == "log"]
         si = scene.ribbon is not None
         return branch_drawn(self.rows, pair, log, scene.name, scene.labels, si, style)
 
     def __repr__(self) -> str:
         """Say what it is in one line."""
         name = shortened(one_line(self.scene.name), 40)
-        moved = ", ".join(dict.fromkeys(stage.parameter for stage in self._stages))
+        moved = ", ".join(dict.fromkeys(stage.moved for stage in self._stages))
         kinds = Counter(row["kind"] for row in self.special)
         special = "".join(f", {count} {kind}{'s' * (count > 1)}" for kind, count in kinds.items())
         goal = "goal reached" if self.reached else "goal not reached"

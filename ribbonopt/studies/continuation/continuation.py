@@ -11,6 +11,7 @@ from __future__ import annotations
 
 from collections.abc import Iterator
 from dataclasses import replace
+from functools import cached_property
 
 from ribbonopt.errors import ModelError
 from ribbonopt.mechanics.ends.smallest import settled
@@ -20,12 +21,14 @@ from ribbonopt.problem.wellposed.reach import refuse_far_goals
 from ribbonopt.scene import Scene
 from ribbonopt.scene.continuation import ContinuationStage
 from ribbonopt.scene.lens import value_at
-from ribbonopt.scene.stages import ends_of, stages_of
+from ribbonopt.scene.stages import ends_of, followed_stages, stages_of
 from ribbonopt.scene.units import units_of
 from ribbonopt.solution.solution import Solution
 from ribbonopt.text import one_line, shortened
 
 from .curve import Curve
+from .locus.stage import LocusStage
+from .locus.surface import Surface, curve_of
 from .recorded import Recorder
 from .stage import RibbonStage, refuse_idle
 from .walk.branches import History, Key, Nothing, Register
@@ -58,12 +61,12 @@ class Continuation:
         """
         self.scene, self.stages = (scene := settled(scene)), asked_of(scene)
         refuse_far_goals(scene)
-        first, before = Curve(scene, self.stages[0]), scene
+        first, before = curve_of(scene, self.stages[0]), scene
         self.prepared = prepared or prepare(first.scene_at(first.begin))
         # The same along all stages, however long or stiff the ribbon becomes.
         self._units = None if scene.ribbon is not None else units_of(first.scene_at(first.begin))
         for stage in self.stages:
-            curve = Curve(before, stage, self._units)
+            curve = curve_of(before, stage, self._units)
             refuse_idle(curve, self.prepared.problem)
             before = curve.scene_at(curve.goals[-1])
         if not self.prepared.problem.square:
@@ -89,11 +92,15 @@ class Continuation:
 
         Where the stage does not say from where, that is where the stages before have ended.
         """
-        found, given = self.stages[stage], self.scene.continuation
-        given = given[stage] if isinstance(given, tuple) else given
-        if given is not None and given.from_ is None and given.values is None:
-            found = replace(found, from_=value_at(scene, found.parameter))
-        return Curve(scene, found, self._units)
+        found, given = self.stages[stage], self._given[stage]
+        if given.from_ is None and given.values is None:
+            found = replace(found, from_=value_at(scene, found.moved))
+        return curve_of(scene, found, self._units)
+
+    @cached_property
+    def _given(self) -> tuple[ContinuationStage, ...]:
+        """The stages as the scene has them, one for each that is followed."""
+        return tuple(stage for _, stage in followed_stages(self.scene))
 
     def resume(self, history: History[Solution]) -> Iterator[Point[Solution]]:
         """Go on where a history ends, as if there had been no break."""
@@ -129,17 +136,21 @@ class Continuation:
         """Say what is followed, and how far, in one line."""
         name = shortened(one_line(self.scene.name), 40)
         ways = [
-            f"{stage.parameter} from {stage.from_:.6g} to {end:.6g}"
+            f"{stage.moved} from {stage.from_:.6g} to {end:.6g}"
             for stage in self.stages
             for end in ends_of(stage)
         ]
         done = f"{self.register.number} points so far" if self.register.number else "not begun"
         return f"<Continuation {name}: {shortened('; '.join(ways), 160)}; {done}>"
 
-    def _stage(self, number: int, before: Point[Solution] | None) -> RibbonStage:
+    def _stage(
+        self, number: int, before: Point[Solution] | None, special: Point[Solution] | None
+    ) -> RibbonStage | LocusStage:
         """Return a stage that begins where the one before has ended."""
         solution = None if before is None else before.solution
         curve = self.curve(number, self.scene if solution is None else solution.scene)
+        if isinstance(curve, Surface):
+            return LocusStage(self.prepared, curve, self.recorder, before, special)
         near = self.near if number == 0 else None
         return RibbonStage(self.prepared, curve, self.recorder, solution, near)
 

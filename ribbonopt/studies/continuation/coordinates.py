@@ -16,30 +16,37 @@ from .curve import Curve
 from .walk.metric import Metric
 
 
-def reduced(solution: Solution, extended: Array) -> Array:
-    """Return states at both ends, constants of the rod and position, of a vector [w, l].
+def reduced(solution: Solution, extended: Array, count: int = 1) -> Array:
+    """Return states at both ends, constants of the rod and positions, of a vector [w, l1 .. lk].
 
-    They determine the whole solution, and are the same in any layout.
+    They determine the whole solution, and are the same in any layout; `count` is k.
     """
-    return reduced_in(solution.dense.blocks.layout, solution.problem, extended)
+    return reduced_in(solution.dense.blocks.layout, solution.problem, extended, count)
 
 
-def reduced_in(layout: Layout, problem: BoundaryValueProblem, extended: Array) -> Array:
-    """Return the same of a vector [w, l] in a layout of the problem."""
+def reduced_in(
+    layout: Layout, problem: BoundaryValueProblem, extended: Array, count: int = 1
+) -> Array:
+    """Return the same of a vector [w, l1 .. lk] in a layout of the problem."""
     last, c = layout.constants_at - layout.nx, layout.constants_at
     rod = c + layout.nc - problem.lengths - problem.slack
-    return np.concatenate([extended[: layout.nx], extended[last:c], extended[c:rod], extended[-1:]])
+    ends = extended[: layout.nx], extended[last:c]
+    return np.concatenate([*ends, extended[c:rod], extended[-count:]])
 
 
-def row_of(solution: Solution, part: Array) -> Array:
+def row_of(solution: Solution, part: Array, count: int = 1) -> Array:
     """Put a vector of the form of `reduced` in the place of its entries among all points and c."""
-    layout = solution.dense.blocks.layout
+    return row_in(solution.dense.blocks.layout, part, count)
+
+
+def row_in(layout: Layout, part: Array, count: int = 1) -> Array:
+    """Put the same in the place of its entries in a layout."""
     nx, points = layout.nx, len(layout.point_elements)
-    row = np.zeros(points * nx + layout.nc + 1)
+    row = np.zeros(points * nx + layout.nc + count)
     row[:nx], row[(points - 1) * nx : points * nx] = part[:nx], part[nx : 2 * nx]
-    rod = part[2 * nx : -1]
+    rod = part[2 * nx : -count]
     row[points * nx : points * nx + len(rod)] = rod
-    row[-1] = part[-1]
+    row[-count:] = part[-count:]
     return row
 
 

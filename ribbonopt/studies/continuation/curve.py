@@ -5,6 +5,7 @@ from __future__ import annotations
 from dataclasses import field, replace
 from functools import cached_property
 from itertools import pairwise
+from typing import Any
 
 import numpy as np
 
@@ -46,7 +47,12 @@ class Curve:
     scene: Scene
     stage: ContinuationStage
     units: Units | None = None
-    _posed: dict[float, Posed] = field(default_factory=dict)
+    _posed: dict[Any, Posed] = field(default_factory=dict)
+
+    @property
+    def count(self) -> int:
+        """Number of positions: one of a branch, two of a locus."""
+        return 1
 
     @cached_property
     def begin(self) -> float:
@@ -111,7 +117,7 @@ class Curve:
     @property
     def name(self) -> str:
         """Path of the parameter in the scene."""
-        return self.stage.parameter
+        return self.stage.moved
 
     def moves(self, problem: BoundaryValueProblem) -> bool:
         """Whether the equations of the scene contain the parameter."""
@@ -151,9 +157,9 @@ class Curve:
         log = self.stage.scale == "log"
         return abs(value) if log else max(abs(value), SOME * self.span)
 
-    def scene_at(self, position: float) -> Scene:
+    def scene_at(self, *positions: float) -> Scene:
         """Return the scene with the parameter's value at a position."""
-        return self.posed_at(position).given
+        return self.posed_at(*positions).given
 
     def line(self, solution: Solution) -> Line:
         """Return the equations of a solution along this curve, on its mesh and in its phases."""
@@ -165,12 +171,19 @@ class Curve:
         widths = dense.blocks.widths(dense.p)
         return Line(
             dense.blocks,
-            lambda position: layout.parameters(self._theta(position), widths, known),
-            SLOPE * self.span,
+            lambda *positions: layout.parameters(self._theta(*positions), widths, known),
+            self._slopes,
+            self.count,
         )
 
-    def _theta(self, position: float) -> Array:
+    @property
+    def _slopes(self) -> float | tuple[float, ...]:
+        """Half the distances that derivatives by the positions are taken over."""
+        return SLOPE * self.span
+
+    def _theta(self, *positions: float) -> Array:
         """Parameters theta at a position."""
+        (position,) = positions
         if self._direct is None:
             return self.posed_at(position).values
         first, entry, scale = self._direct
@@ -193,8 +206,9 @@ class Curve:
         scale = float(found[largest, entry] / values[largest])
         return (found[0], entry, scale) if bool((found[:, entry] == scale * values).all()) else None
 
-    def posed_at(self, position: float) -> Posed:
+    def posed_at(self, *positions: float) -> Posed:
         """Return the posed scene with the parameter's value at a position."""
+        (position,) = positions
         if position not in self._posed:
             if len(self._posed) >= KEPT:
                 self._posed.pop(next(iter(self._posed)))
@@ -207,5 +221,5 @@ class Curve:
     @cached_property
     def _place(self) -> tuple[Scene, KeyPath]:
         """The scene without its continuation, and the steps to the parameter in it."""
-        steps = steps_to(self.scene, self.stage.parameter)
-        return replace(self.scene, continuation=None), steps
+        steps = steps_to(self.scene, self.stage.moved)
+        return replace(self.scene, continuation=None, map=None), steps

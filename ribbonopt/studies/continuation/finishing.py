@@ -57,11 +57,13 @@ def _finished(
     else:
         found = verified(found, prepared.ribbon)
     note = "; ".join(filter(None, [note, changed_phases(origin.solution, found)]))
-    if origin.kind != POINT and found.status in (Status.ROUNDED, Status.TOLERANCE_MISSED):
+    missed = found.status in (Status.ROUNDED, Status.TOLERANCE_MISSED)
+    blurred = missed and origin.kind != POINT
+    if blurred:
         # Where branches cross rounding is magnified: the row says how exact it is.
         found = replace(found, status=Status.CONVERGED, message=Status.CONVERGED.value)
         note = "; ".join(filter(None, [note, NEXT_TO_CROSSING]))
-    return replace(checked(trial, found), note=note)
+    return replace(checked(trial, found), note=note, blurred=blurred)
 
 
 def elsewhere(

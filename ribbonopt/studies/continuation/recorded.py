@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
 from functools import cached_property
+from itertools import chain
 from typing import Any
 
 import numpy as np
@@ -23,6 +24,7 @@ from ribbonopt.solution.potential import potential
 from ribbonopt.solution.solution import Solution
 
 from .curve import Curve
+from .frequencies import frequencies, names_of
 from .stops import Stops, conditions_of
 from .walk.points import POINT, Point
 
@@ -32,7 +34,8 @@ NUMBERS = (
     *("number", "stage", "branch", "negative", "intervals", "iterations"),
 )
 SOFTEST = "softest"  # a number of rows where a stage asks for it
-WORDS = ("parameter", "kind", "origin", "switches", "note")
+OF = "of"  # kind of the special points that a locus is of
+WORDS = (OF, "parameter", "kind", "origin", "switches", "note")
 VALUE = "value"  # stands for the parameter that a row's own stage moves
 PARAMETERS = "parameters."
 
@@ -49,15 +52,18 @@ class Recorder:
             If a condition of a stage names what is not recorded.
         """
         self.formulas = {name: parse_record(text, scene) for name, text in scene.record.items()}
-        self.parameters = tuple(dict.fromkeys(stage.parameter for stage in stages_of(scene)))
-        self.measured = any(stage.measured for stage in stages_of(scene))
+        stages = stages_of(scene)
+        self.parameters = tuple(dict.fromkeys(chain.from_iterable(s.paths for s in stages)))
+        self.measured = any(stage.measured for stage in stages)
+        self.located = any(stage.is_locus for stage in stages)
+        self.frequencies = names_of(stages)
         for name in self.formulas:
-            if name in (*NUMBERS, *WORDS, VALUE, SOFTEST, *self.parameters):
+            if name in (*NUMBERS, *WORDS, VALUE, SOFTEST, *self.frequencies, *self.parameters):
                 raise ModelError(
                     f"record.{name}: every row has {name!r} already; choose another name",
                     f"record.{name}",
                 )
-        for stage in stages_of(scene):
+        for stage in stages:
             for text, left, _, right in conditions_of(stage):
                 if fault := self.fault_of((*words_of(left), *words_of(right))):
                     raise ModelError(f"continuation.stop: {text!r}: {fault}", "continuation")
@@ -66,7 +72,7 @@ class Recorder:
     def names(self) -> tuple[str, ...]:
         """Names of all numbers of a row."""
         softest = [SOFTEST] if self.measured else []
-        return (*self.parameters, *NUMBERS, *softest, *self.formulas)
+        return (*self.parameters, *NUMBERS, *softest, *self.frequencies, *self.formulas)
 
     @property
     def short(self) -> dict[str, str]:
@@ -99,18 +105,27 @@ class Recorder:
             "stage": point.stage,
             "branch": point.branch,
             "origin": point.origin,
-            "parameter": stage.parameter,
+            "parameter": stage.moved,
             **self._parameters(solution.scene, stage, curve.value(point.position)),
             "kind": point.kind,
-            "negative": _negative(solution) if stage.stability and point.kind == POINT else None,
+            "negative": None,
             # At a fold the equations at a given parameter are singular: so is their estimate.
-            "error": error_of(solution) if point.kind == POINT else curve.error_of(point),
+            "error": curve.error_of(point),
         }
+        if self.located:
+            row[OF] = stage.of
+        if point.kind == POINT and not stage.is_locus:
+            row["negative"] = _negative(solution) if stage.stability else None
+            row["error"] = error_of(solution)
         row |= self.varying(point, curve)
         row["switches"] = solution.switch_points.tolist()
         row["intervals"] = solution.dense.blocks.layout.element_count
         if self.measured:
             row[SOFTEST] = _softest(solution) if stage.measured and point.kind == POINT else None
+        if self.frequencies:
+            row |= dict.fromkeys(self.frequencies)
+            if stage.modes and point.kind == POINT:
+                row |= frequencies(solution, stage.modes)
         row["iterations"] = solution.iterations
         told = [*unknown_of(solution), *solution.given_up, *solution.fell_back]
         if row["negative"] is not None and solution.scene.states == "planar":
@@ -122,13 +137,13 @@ class Recorder:
         self, scene: Scene, stage: ContinuationStage, value: float
     ) -> dict[str, float | None]:
         """Values of the parameters of all stages: of the others as they are in the scene."""
-        given = {path: value_at(scene, path) for path in self.parameters if path != stage.parameter}
+        given = {path: value_at(scene, path) for path in self.parameters if path != stage.moved}
         return {path: given.get(path, value) for path in self.parameters}
 
     def named(self, row: Mapping[str, Any], stage: ContinuationStage) -> Row:
         """Return a row of a stage with the numbers by all their names, as conditions may say."""
         others = {name: row.get(path) for name, path in self.short.items()}
-        return {**row, VALUE: row.get(stage.parameter), **others}
+        return {**row, VALUE: row.get(stage.moved), **others}
 
     def varying(self, point: Point[Solution], curve: Curve) -> dict[str, float | None]:
         """Return the numbers of a row that vary along a branch, in the units of the scene."""

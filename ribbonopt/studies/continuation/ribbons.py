@@ -35,8 +35,9 @@ from .trials import checked, trial_of, without_last
 from .walk.departure import Departure
 from .walk.linearised import Heading
 from .walk.metric import Metric
-from .walk.points import BUCKLING, POINT, Point
+from .walk.points import BUCKLING, POINT, Point, Special
 from .walk.protocol import Passage, Trial
+from .walk.special import special_points
 
 RECENT = 4  # solutions whose metric is remembered
 MOST = 20  # iterations of Newton's method: a step that needs more is too long
@@ -141,6 +142,10 @@ class RibbonEquations:
     def leaving(self, point: Point[Solution]) -> list[Point[Solution]]:
         """Return the first points on the branches that leave a kink, the main branch's first."""
         return [way.first for way in leaving(self, replace(point, kind=POINT))]
+
+    def special(self, a: Point[Solution], b: Point[Solution]) -> Special[Solution]:
+        """Return folds and branch points between two points of one layout."""
+        return special_points(self, a, b)
 
     def crossings(self, a: Point[Solution], b: Point[Solution]) -> list[Point[Solution]]:
         """Return the buckling points between two points where m2 = m3 = 0 along the ribbon."""

@@ -47,10 +47,14 @@ class SavedRow:
     stage: Count
     branch: Count
     parameter: str
-    kind: Literal["point", "fold", "branch point", "buckling point", "kink"]
+    kind: Literal[
+        *("point", "fold", "branch point", "buckling point", "kink"),
+        *("cusp", "isola centre", "crossing", "double point", "turn"),
+    ]
     negative: Count | None
     error: float | None
     origin: Count | None = None
+    of: str | None = None
     note: str = ""
     intervals: Count | None = None
     iterations: Count | None = None
@@ -69,6 +73,8 @@ class SavedState:
     w: str
     widths: str
     tangent: str
+    first_position: float | None = None
+    across: str | None = None
 
 
 @dataclass(frozen=True)
@@ -93,12 +99,17 @@ class _Course:
     @cached_property
     def moving(self) -> tuple[str, ...]:
         """What each stage moves."""
-        return tuple(stage.parameter for stage in stages_of(self.scene))
+        return tuple(stage.moved for stage in stages_of(self.scene))
 
     @cached_property
     def numbers(self) -> frozenset[str]:
         """Columns that are numbers, or unknown."""
-        return frozenset((*ANSWERS, *self.scene.record, *self.moving))
+        return frozenset((*ANSWERS, *self.scene.record, *self.moving, *self.others))
+
+    @cached_property
+    def others(self) -> tuple[str, ...]:
+        """What loci move besides."""
+        return tuple(stage.paths[0] for stage in stages_of(self.scene) if stage.is_locus)
 
     def checked(self, data: Any, where: str) -> dict[str, Any]:
         """Return a line, with its parameter under its own name; OutputError if it is damaged."""
@@ -195,8 +206,13 @@ def _refuse_state(state: SavedState) -> None:
         except ValueError as error:
             raise ValueError(f"state.{name}: {error}") from None
     refuse_mesh(state.sheets, state.elements, arrays["widths"], arrays["w"])
-    if len(arrays["tangent"]) != len(arrays["w"]) + 1:
-        raise ValueError("state.tangent: expected one number more than unknowns")
+    count = 1 if state.across is None else 2
+    if len(arrays["tangent"]) != len(arrays["w"]) + count:
+        raise ValueError(f"state.tangent: expected {count} more numbers than unknowns")
+    if state.across is not None and state.first_position is None:
+        raise ValueError("state.first_position: missing beside across")
+    if state.across is not None and len(unpacked(state.across)) != len(arrays["tangent"]):
+        raise ValueError("state.across: expected as many numbers as state.tangent")
 
 
 def _renamed(row: Row) -> Row:

@@ -50,6 +50,11 @@ class RibbonStage:
         """How deep branches that cross are followed."""
         return int(self.curve.stage.switch)
 
+    @property
+    def missing(self) -> str:
+        """Nothing: it can begin."""
+        return ""
+
     def first(self) -> tuple[Solution, Array]:
         """Solve where it begins.
 

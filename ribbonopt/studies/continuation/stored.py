@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import os
-from collections.abc import Collection, Iterator
+from collections.abc import Collection, Iterator, Mapping
 from typing import Any
 
 import numpy as np
@@ -18,6 +18,7 @@ from ribbonopt.transcription import Mesh
 
 from .continuation import Continuation
 from .curve import Curve
+from .locus.laid import Laid
 from .saved import ARRAYS, BRANCH, packed, unpacked
 from .walk.branches import Key
 from .walk.points import POINT, Point
@@ -60,7 +61,7 @@ class Stored:
             regular = [line for line in lines if line["row"]["kind"] == POINT]
             if regular:  # where a stage ended, at its goal or before
                 self._refuse_elsewhere(regular[-1])
-                scene = self._curves[-1].scene_at(regular[-1]["state"]["position"])
+                scene = self._curves[-1].scene_at(*_positions(regular[-1]["state"]))
 
     def points(self, stage: int, branch: int, kind: str) -> Iterator[Point[Solution]]:
         """Points of a kind, in order, each restored when it is asked for."""
@@ -83,9 +84,11 @@ class Stored:
             refuse_other(answers_of(solution), _told(row))
         except (ValueError, ArithmeticError, RuntimeError) as error:
             raise self._damaged(row, str(error)) from error
+        if state.get("across") is not None:
+            solution.trajectory.found[Laid] = Laid(arrays["tangent"], unpacked(state["across"]))
         return Point(
             solution,
-            np.append(arrays["w"], state["position"]),
+            np.append(arrays["w"], _positions(state)),
             arrays["tangent"],
             state["sign"],
             state["step"],
@@ -102,7 +105,7 @@ class Stored:
         state = line["state"]
         mesh = Mesh(tuple(np.split(widths, np.cumsum(state["elements"])[:-1])))
         curve = self._curves[line["row"]["stage"]]
-        search = self._prepared.search(curve.posed_at(state["position"]))
+        search = self._prepared.search(curve.posed_at(*_positions(state)))
         attempt = search.on_mesh(tuple(state["sheets"]), mesh)
         if len(w) != attempt.nlp.unknowns:
             raise ValueError(f"state.w: {len(w)} unknowns, its scene has {attempt.nlp.unknowns}")
@@ -144,10 +147,21 @@ def restored(
             yield line["row"]["number"], history.point(line).solution
 
 
+def _positions(state: Mapping[str, Any]) -> tuple[float, ...]:
+    """Return the positions of a state: one on a branch, two on a locus."""
+    first = state.get("first_position")
+    return (state["position"],) if first is None else (first, state["position"])
+
+
 def state_of(point: Point[Solution]) -> dict[str, Any]:
     """Return what a point is beside its row; arrays as base64 of their bytes."""
     solution = point.solution
+    laid = solution.trajectory.found.get(Laid)
+    located: dict[str, Any] = {}
+    if isinstance(laid, Laid):
+        located = {"first_position": float(point.unknowns[-2]), "across": packed(laid.across)}
     return {
+        **located,
         "position": point.position,
         "step": point.step,
         "sign": point.sign,

@@ -189,4 +189,4 @@ class _Walk:
         x = parameters[0] if len(parameters) == 1 else "value"
         names = [*found.recorder.formulas, "energy", "u2", "H0", "u3"]
         self.pairs = tuple((x, name) for name in names)
-        self.log = tuple(s.parameter for s in found.stages if s.scale == "log")
+        self.log = tuple(s.moved for s in found.stages if s.scale == "log")

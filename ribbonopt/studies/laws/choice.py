@@ -151,7 +151,7 @@ def _choice(name: str, sizes: Mapping[str, float], scene: Scene) -> Choice:
         law = maker.make(**{need: sizes[need] for need in maker.needs})
         if maker.asks is not None and scene.ribbon is not None:
             law = maker.asks
-        elif moved := [s.parameter for s in stages_of(scene) if s.parameter in _paths(maker)]:
+        elif moved := [s.moved for s in stages_of(scene) if s.moved in _paths(maker)]:
             reason = f"left out: its stiffnesses are those of one ribbon, and {moved[0]} changes it"
             return Choice(name, None, reason)
     elif maker.otherwise is not None:

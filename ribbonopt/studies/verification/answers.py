@@ -35,7 +35,7 @@ class Branch:
 
     def parameter(self, point: Point[Solution]) -> str:
         """Return the path of the number that the stage of a point moves."""
-        return self.continuation.stages[point.stage].parameter
+        return self.continuation.stages[point.stage].moved
 
 
 @dataclass(frozen=True, eq=False)
@@ -73,6 +73,6 @@ class Answers:
         stage = Continuation(self.scene).stages[0]
         assert stage.from_ is not None and isinstance(stage.to, float)
         try:
-            return buckling_loads(self.scene, stage.parameter, stage.from_, stage.to)
+            return buckling_loads(self.scene, stage.moved, stage.from_, stage.to)
         except ConvergenceError as error:
             raise NoAnswerError(str(error)) from None

@@ -87,7 +87,7 @@ class _OfSpecial:
             # Its equations are singular at the parameter's value: so would its bar be.
             return self.number.measured(point.solution, barred=False)
         stage = branch.continuation.stages[point.stage]
-        value = float(point.row[stage.parameter])
+        value = float(point.row[stage.moved])
         if point.error is None:
             tolerance = answers.scene.tolerance or USUAL
             return Measured(value, tolerance * abs(value), TOLERANCE)
@@ -145,7 +145,7 @@ class _Buckling:
 
 def _special(found: Match[str], scene: Scene) -> Quantity:
     name, kind, k = found["what"], KINDS[found["kind"]], int(found["number"])
-    moved = {stage.parameter for stage in stages_of(scene)}
+    moved = {stage.moved for stage in stages_of(scene)}
     moved |= {path.removeprefix(PARAMETERS) for path in moved} | {VALUE}
     return _OfSpecial(kind, k, None if name in moved else number(name, scene))
 

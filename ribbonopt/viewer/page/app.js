@@ -6,7 +6,7 @@ const [WHOLE, FASTEST, SLOWEST] = [9000, 40, 300]; // milliseconds: of all shape
 
 function makeApp() {
   const get = (id) => document.getElementById(id);
-  let ribbon, panels, overview;
+  let ribbon, panels, overview, motion;
   let shape = -1;
   let playing = null;
 
@@ -20,6 +20,7 @@ function makeApp() {
     shape = i;
     ribbon.show(i);
     panels.show(i);
+    motion?.show(i);
     tell(i);
     paint();
     overview?.mark(view.shapes[i].row);
@@ -83,7 +84,7 @@ function makeApp() {
     for (const [name, text] of known) get("field").add(new Option(text, name));
     get("field").onchange = paint;
     get("again").onclick = () => get("stage").querySelector("canvas").dispatchEvent(new Event("dblclick"));
-    for (const form of ["look", "steps"]) get(form).onsubmit = (event) => event.preventDefault();
+    for (const form of ["look", "steps", "motion"]) get(form).onsubmit = (event) => event.preventDefault();
     get("steps").hidden = view.shapes.length < 2;
     get("slider").max = view.shapes.length - 1;
     get("slider").oninput = () => {
@@ -140,6 +141,7 @@ function makeApp() {
     controls();
     ribbon = makeRibbon(get("stage"), (row) => mark(row));
     panels = makePanels(get("panels"), mark);
+    if (view.modes) motion = await makeMotion(get("motion"), ribbon);
     if (view.diagram) overview = drawDiagram();
     if (view.table) overview = { mark: drawBatch().choose };
     if (view.shapes.length) show(0);

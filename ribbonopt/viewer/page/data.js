@@ -9,7 +9,8 @@
 //             pieces], closing: 0 | 1 | -1, rod: true | false}],
 //   ranges: {name: [least, largest]} over all shapes, of what is drawn along them,
 //   packed: base64 of all rows (packing.py),
-//   diagram: what diagram.py gives, of a branch; table: what rows.py gives, of a batch
+//   diagram: what diagram.py gives, of a branch; table: what rows.py gives, of a batch,
+//   modes: what motion.py gives, of a result whose modes of small vibrations are known
 // }
 // shapes.rows(i) -> {count, solved, starts, and Float32Arrays of that length: s, x, y, z, width,
 //   slant, u1, u2, u3, eta, n1, n2, n3, m1, m2, m3 (along the directors), energy; and, three numbers
@@ -20,22 +21,23 @@ const COLUMNS = ["s", "x", "y", "z", "q0", "q1", "q2", "q3", "slant", "width", "
   "angle", "nx", "ny", "nz", "mx", "my", "mz", "energy"];
 const view = JSON.parse(document.getElementById("data").textContent);
 
-const shapes = (() => {
-  let scales, bytes, places;
-  const cache = new Map();
+// Tables of columns of numbers as packing.py packs them, of `counts` rows each, columns by `names`:
+// read() unpacks, column(i, k) is a Float32Array, NaN where there is no number.
+function makeTables(packed, counts, names) {
+  let scales, bytes;
+  const places = [0];
+  for (const count of counts) places.push(places.at(-1) + count * names.length);
 
   async function read() {
-    const raw = await inflated(view.packed).arrayBuffer();
-    const head = view.shapes.length * COLUMNS.length * 8;
+    const raw = await inflated(packed).arrayBuffer();
+    const head = counts.length * names.length * 8;
     scales = new DataView(raw, 0, head);
     bytes = new Uint8Array(raw, head);
-    places = [0];
-    for (const shape of view.shapes) places.push(places.at(-1) + shape.count * COLUMNS.length);
   }
 
   function column(i, k) {
-    const { count } = view.shapes[i];
-    const at = (i * COLUMNS.length + k) * 8;
+    const count = counts[i];
+    const at = (i * names.length + k) * 8;
     const offset = scales.getFloat32(at, true);
     const step = scales.getFloat32(at + 4, true);
     const first = places[i] + k * count;
@@ -51,6 +53,14 @@ const shapes = (() => {
     }
     return found;
   }
+
+  return { read, column };
+}
+
+const shapes = (() => {
+  const counts = view.shapes.map(({ count }) => count);
+  const { read, column } = makeTables(view.packed, counts, COLUMNS);
+  const cache = new Map();
 
   function frames(q, count) {
     const [d1, d2, d3] = [0, 1, 2].map(() => new Float32Array(3 * count));

@@ -1,14 +1,14 @@
 "use strict";
 // The picture of the ribbon: its canvas, what lies over it (axes, scale, marks), and the hand that
 // turns it. `makeRibbon(stage)` gives show(i), mark(row), colour(field); it calls `onHover(row)`
-// with the row under the pointer, null where there is none.
+// with the row under the pointer, null where there is none. move(moved) shows it off its place.
 function makeRibbon(stage, onHover) {
   const canvas = stage.querySelector("canvas");
   const overlay = makeOverlay(stage.querySelector("svg"));
   const camera = makeCamera(view.camera);
   const brush = makeWebgl(canvas) || makePainter(canvas);
   const BEYOND = 0.12; // of the width
-  const state = { shape: 0, field: "", row: null };
+  const state = { shape: 0, field: "", row: null, moved: (rows) => rows };
   let mesh;
   let scale = null;
   let look;
@@ -42,13 +42,17 @@ function makeRibbon(stage, onHover) {
   }
 
   function load() {
-    const rows = shapes.rows(state.shape);
     const shape = view.shapes[state.shape];
-    mesh = makeMesh(rows, shape.closing);
-    mesh.size = Math.max(...view.camera.extent);
     if (shape.centre) camera.centre = shape.centre;
-    brush.load(mesh);
+    form();
     dye();
+  }
+
+  function form() {
+    mesh = makeMesh(state.moved(shapes.rows(state.shape)), view.shapes[state.shape].closing);
+    mesh.size = Math.max(...view.camera.extent);
+    brush.load(mesh);
+    draw();
   }
 
   function dye() {
@@ -95,6 +99,11 @@ function makeRibbon(stage, onHover) {
       state.shape = i;
       state.row = null;
       load();
+    },
+    // `moved(rows)` gives the rows in the place of those at rest.
+    move: (moved) => {
+      state.moved = moved;
+      form();
     },
     mark: (row) => {
       state.row = row;

@@ -9,7 +9,7 @@ from typing import Any
 import pytest
 
 from ribbonopt.errors import OutputError
-from ribbonopt.output.declared import MANIFEST, PAGE, declare, foreign_in
+from ribbonopt.output.declared import MANIFEST, MODES_FILES, PAGE, declare, foreign_in
 from ribbonopt.output.exports import STANDARD, Export
 from ribbonopt.output.results import load_solution, save_solution
 from ribbonopt.output.staging import OWN_FILES, staged_result
@@ -73,7 +73,8 @@ def test_what_nobody_declared_is_still_left_alone(
 
 def test_standard_exports_and_pictures_are_known_everywhere() -> None:
     exports: tuple[Export, ...] = (*STANDARD, Pictures())
-    assert {name for export in exports for name in export.files} | {"equilibria", PAGE} == OWN_FILES
+    files = {name for export in exports for name in export.files}
+    assert files | {"equilibria", PAGE, *MODES_FILES} == OWN_FILES
 
 
 def test_two_exports_cannot_write_one_file(solved: Solved, toy: Any, tmp_path: Path) -> None:

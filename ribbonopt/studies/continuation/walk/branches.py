@@ -12,7 +12,7 @@ import numpy as np
 from .endless import CLOSED, IDLE, IDLE_POINTS, comes_home, homeward, is_home, is_idle
 from .known import Atlas
 from .landing import landed
-from .points import CROSSINGS, FOLD, POINT, SPECIAL, Point, S
+from .points import CROSSINGS, OF_LOCI, POINT, SPECIAL, Point, S
 from .protocol import Records
 from .strides import Stride
 from .walk import Ending, Walk
@@ -98,13 +98,13 @@ class Branch(Generic[S]):
         self.first: Point[S] | None = None
         self.last: Point[S] | None = None
         self.branch_points: list[Point[S]] = []
-        kinds = (POINT, *SPECIAL)
+        self.special: Point[S] | None = None  # beyond the last point
+        kinds = (POINT, *SPECIAL, *OF_LOCI)
         points = [point for kind in kinds for point in common.history.points(*self.key, kind)]
         for point in sorted(points, key=lambda point: point.number):
             common.register.known(point)
             self._note(point)
-            if point.kind == FOLD:
-                walk.turned.append(walk.range.value(point.position))
+            walk.note(point)
         self.ended = common.history.endings.get(self.key)
 
     def points(self) -> Iterator[Point[S]]:
@@ -154,8 +154,10 @@ class Branch(Generic[S]):
         self.common.atlas.note(self.trace, point)
         self.kinds[point.kind] += 1
         if point.kind == POINT:
-            self.first, self.last = self.first or point, point
-        elif point.kind in CROSSINGS:
+            self.first, self.last, self.special = self.first or point, point, None
+            return
+        self.special = point
+        if point.kind in CROSSINGS:
             self.branch_points.append(point)
 
     def _arrived(self, point: Point[S]) -> bool:

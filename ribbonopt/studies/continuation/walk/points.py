@@ -13,6 +13,11 @@ KINK = "kink"  # branches meet at an angle where the equations change, as phases
 # Where other branches cross; at the last two without a derivative.
 CROSSINGS = (BRANCH_POINT, BUCKLING, KINK)
 SPECIAL = (FOLD, *CROSSINGS)
+# On loci: where the fold's curve in the plane of the parameters has a point; where folds at one l2
+# meet, and the branches there are a single point, or cross; where two loci meet; where one turns.
+CUSP, ISOLA, CROSSING, DOUBLE, TURN = "cusp", "isola centre", "crossing", "double point", "turn"
+OF_LOCI = (CUSP, ISOLA, CROSSING, DOUBLE, TURN)
+TURNING = (FOLD, CUSP, ISOLA, CROSSING, TURN)  # the position turns there
 
 S = TypeVar("S")  # what a solution is, is the business of the equations
 
@@ -72,3 +77,16 @@ class Point(Generic[S]):
         where = f"{moved} = {self.row[moved]:.10g}" if moved else f"position {self.position:.10g}"
         place = f"{self.number} of stage {self.stage}, branch {self.branch}"
         return f"<Point {place}: {self.kind}, {where}>"
+
+
+@dataclass(frozen=True, eq=False)
+class Special(Generic[S]):
+    """What was found between two points.
+
+    Special points by arclength, what was not resolved, and how many test functions have changed
+    their sign: two at a pitchfork that is met from its side.
+    """
+
+    points: list[Point[S]]
+    unresolved: tuple[str, ...] = ()
+    changes: int = 0

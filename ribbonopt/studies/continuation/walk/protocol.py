@@ -19,7 +19,7 @@ from ribbonopt.arrays import Array
 from .departure import Departure
 from .linearised import Heading, Linearised
 from .metric import Metric
-from .points import Point, S
+from .points import Point, S, Special
 
 
 @dataclass(frozen=True, eq=False)
@@ -38,6 +38,8 @@ class Trial(Generic[S]):
         How it went, in words.
     note : str
         What is to be told of it as a point of the curve, "" for nothing.
+    blurred : bool
+        Whether what is near on another branch magnifies rounding beyond the accuracy asked for.
     """
 
     solution: S
@@ -45,6 +47,7 @@ class Trial(Generic[S]):
     converged: bool
     message: str
     note: str = ""
+    blurred: bool = False
 
 
 @dataclass(frozen=True, eq=False)
@@ -122,6 +125,9 @@ class Equations(Protocol[S]):
         enough
             Last relative step of Newton's method that will do.
         """
+
+    def special(self, a: Point[S], b: Point[S]) -> Special[S]:
+        """Return what is special between two points of one layout, as test functions tell."""
 
     def crossings(self, a: Point[S], b: Point[S]) -> list[Point[S]]:
         """Return where other branches cross between two points, if no determinant can tell it."""

@@ -3,13 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Mapping
-from dataclasses import dataclass, replace
-from typing import Any, Generic
+from dataclasses import replace
+from typing import Any
 
 import numpy as np
 
 from .beside import ENOUGH, Beside, Probe
-from .points import BRANCH_POINT, FOLD, Point, S
+from .points import BRANCH_POINT, FOLD, Point, S, Special
 from .protocol import Equations
 from .switching import named
 from .tangents import near
@@ -20,19 +20,6 @@ ASIDE = 0.03  # arclength on both sides of a special point, between which it is 
 MESHES = 3  # on finer meshes, at most
 SAFETY = 4.0  # bar over what a finer mesh moves, as of all other numbers
 ROUNDING = 2e-14  # of a position: how exactly the root of a test function is known at best
-
-
-@dataclass(frozen=True, eq=False)
-class Special(Generic[S]):
-    """What was found between two points.
-
-    Special points by arclength, what was not resolved, and how many test functions have changed
-    their sign: two at a pitchfork that is met from its side.
-    """
-
-    points: list[Point[S]]
-    unresolved: tuple[str, ...] = ()
-    changes: int = 0
 
 
 def special_points(equations: Equations[S], a: Point[S], b: Point[S]) -> Special[S]:

@@ -42,6 +42,10 @@ class WalkStage(Protocol[S]):
     def switch(self) -> int:
         """How deep branches that cross are followed, in both directions: 2 for those of those."""
 
+    @property
+    def missing(self) -> str:
+        """What it would need to begin, in words; "" where it can."""
+
     def first(self) -> tuple[S, Array]:
         """Solve where it begins: a solution and its unknowns (n + k,)."""
 
@@ -51,7 +55,7 @@ class WalkStage(Protocol[S]):
 
 def followed(
     count: int,
-    stage_after: Callable[[int, Point[S] | None], WalkStage[S]],
+    stage_after: Callable[[int, Point[S] | None, Point[S] | None], WalkStage[S]],
     register: Register,
     history: History[S],
 ) -> Iterator[Point[S]]:
@@ -62,15 +66,20 @@ def followed(
     count
         Number of stages.
     stage_after
-        Gives a stage by its number and the last point of the stage before.
+        Gives a stage by its number, and of the stage before the last point and the special point
+        where it has stopped.
     register
         Where points get their numbers, and endings are noted.
     history
         What is known already.
     """
     before: Point[S] | None = None
+    special: Point[S] | None = None
     for number in range(count):
-        stage = stage_after(number, before)
+        stage = stage_after(number, before, special)
+        if stage.missing:
+            register.endings[number, 0] = Ending(False, stage.missing)
+            return
         if stage.range.span == 0:
             register.endings[number, 0] = Ending(True, "its goal is where it begins")
             continue
@@ -80,7 +89,8 @@ def followed(
             yield from ways.crossing()
         if not all(register.endings[number, way].reached for way in range(len(stage.ways))):
             return
-        before = ways.branches[len(stage.ways) - 1].last or ways.branches[0].first
+        main = ways.branches[len(stage.ways) - 1]
+        before, special = main.last or ways.branches[0].first, main.special
 
 
 class _Ways(Generic[S]):

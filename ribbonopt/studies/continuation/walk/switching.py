@@ -14,6 +14,7 @@ from .protocol import Equations
 from .tangents import near, renewed
 
 AWAY, LEAST_AWAY = 0.05, 1e-4  # arclength of the first step onto a branch that crosses
+FARTHER = (2 * AWAY, 4 * AWAY)  # where rounding is magnified too much there
 BACK = 0.3  # of that: most that accuracy may move its end by
 MOVES = 1e-3  # least change of the position, as one counts, over the square of the arclength
 PITCHFORK, TRANSCRITICAL = "pitchfork", "transcritical"
@@ -43,38 +44,74 @@ def switched(
         point = known.along if direction @ known.direction > 0 else known.against
     away, own = AWAY, None
     while away > LEAST_AWAY:
-        guess = point.unknowns + away * direction
-        trial = equations.correct_along(point, direction, away, guess)
-        off = equations.metric.length(equations.reduced(point.solution, trial.unknowns - guess))
-        if trial.converged and off < away:
-            there = equations.reduced(trial.solution, trial.unknowns)
-            ahead = there - equations.reduced(point.solution, point.unknowns)
-            trial = equations.finished(point, trial)
-            moved = equations.reduced(trial.solution, trial.unknowns) - there
-            # Back on the branch itself is no crossing.
-            if not trial.converged or equations.metric.length(moved) > BACK * away:
-                away /= 2
-                continue
-            found, tangent = near(equations, trial.solution, trial.unknowns, ahead)
-            first = replace(
-                point,
-                solution=trial.solution,
-                unknowns=trial.unknowns,
-                tangent=tangent,
-                sign=found.sign,
-                step=away,
-                kind=POINT,
-                note=trial.note,
-                row={},
-                error=None,
-            )
-            if not itself(first):
-                return first
-            own = own or first
+        first = _at(equations, point, direction, away)
+        if first is not None:
+            if not itself(first[0]):
+                return _sharp(equations, point, direction, itself, *first)
+            own = own or first[0]
         away /= 2
     if own is not None:
         return own
     raise np.linalg.LinAlgError("no point was found on the branch that crosses")
+
+
+def _at(
+    equations: Equations[S], point: Point[S], direction: Array, away: float
+) -> tuple[Point[S], bool] | None:
+    """Return the point at an arclength from a branch point, finished, and whether it is blurred.
+
+    None where there is none, or where finishing leads back on the branch itself, which is no
+    crossing.
+    """
+    guess = point.unknowns + away * direction
+    trial = equations.correct_along(point, direction, away, guess)
+    off = equations.metric.length(equations.reduced(point.solution, trial.unknowns - guess))
+    if not trial.converged or off >= away:
+        return None
+    there = equations.reduced(trial.solution, trial.unknowns)
+    ahead = there - equations.reduced(point.solution, point.unknowns)
+    trial = equations.finished(point, trial)
+    moved = equations.reduced(trial.solution, trial.unknowns) - there
+    if not trial.converged or equations.metric.length(moved) > BACK * away:
+        return None
+    found, tangent = near(equations, trial.solution, trial.unknowns, ahead)
+    first = replace(
+        point,
+        solution=trial.solution,
+        unknowns=trial.unknowns,
+        tangent=tangent,
+        sign=found.sign,
+        step=away,
+        kind=POINT,
+        note=trial.note,
+        row={},
+        error=None,
+    )
+    return first, trial.blurred
+
+
+def _sharp(
+    equations: Equations[S],
+    point: Point[S],
+    direction: Array,
+    itself: Callable[[Point[S]], bool],
+    first: Point[S],
+    blurred: bool,
+) -> Point[S]:
+    """Return a first point, or one farther off where that alone is as exact as asked.
+
+    At a pitchfork rounding is magnified by the inverse square of the distance.
+    """
+    for away in FARTHER if blurred else ():
+        try:
+            other = _at(equations, point, direction, away)
+        except np.linalg.LinAlgError:
+            break
+        if other is None or itself(other[0]):
+            break
+        if not other[1]:
+            return other[0]
+    return first
 
 
 def _left(equations: Equations[S], point: Point[S], sign: int) -> Point[S]:

@@ -1,0 +1,1 @@
+"""Loci of special points of branches in two parameters, as equations that the walk follows."""
