@@ -56,6 +56,8 @@ class Search:
         self.homes: dict[str, Nodes] = {}
         self.junctions: list[Junction] = []
         self.points = self.walks = self.lost = 0
+        #: least and largest value that was come to, by the path of the number
+        self.reached: dict[str, tuple[float, float]] = {}
         self.endings: dict[str, int] = {}
         self.cut = False  # whether there was more to follow than points allowed
 
@@ -119,6 +121,8 @@ class Search:
                 continue
             self.points, count = self.points + 1, count + 1
             value = line.curve.value(point.position)
+            low, high = self.reached.get(line.name, (value, value))
+            self.reached[line.name] = min(low, value), max(high, value)
             self.tell(
                 f"{len(self.nodes.all)} equilibria; {self.points} points; {line.name} = {value:.5g}"
             )

@@ -10,11 +10,11 @@ from .search import Search
 
 def told(search: Search, lines: Sequence[Line], starts: int, above: int) -> str:
     """Return what was searched, in a few sentences; `above` were found beyond its limit."""
-    ranges = []
+    ways = []
     for line in lines:
-        low, high = (line.curve.value(end) for end in (line.curve.start, line.curve.goals[-1]))
-        ranges.append(f"{line.name} ({low:.5g} to {high:.5g})")
-    along = f"along {' and '.join(ranges)}" if ranges else "along nothing, as no number moves"
+        low, high = search.reached.get(line.name, (line.own, line.own))
+        ways.append(f"{line.name} (which came from {low:.5g} to {high:.5g})")
+    along = f"along {' and '.join(ways)}" if ways else "along nothing, as no number moves"
     begun = "1 start" if starts == 1 else f"{starts} starts"
     said = [
         f"a search below the strain energy {search.below:.6g}, from {begun}, {along}: "
