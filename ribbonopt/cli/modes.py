@@ -126,8 +126,7 @@ def _tell(options: argparse.Namespace, found: _Found, modes: Modes, written: Pat
     elif not options.quiet:
         from ribbonopt.output.modes_told import told
 
-        name = found.solution.scene.name
-        say(told(name, modes, rows_of(found.solution, modes)))
+        say(told(found.solution, modes, rows_of(found.solution, modes)))
         if written:
             say_line(f"  written: {listing(written)}")
     return 0

@@ -35,6 +35,7 @@ LINES: dict[str, dict[str, Any]] = {
     "branch point": {"color": TWIST, "ls": (0, (4, 1.8)), "lw": 1.8},
     "buckling point": {"color": "#0b7a53", "ls": (0, (1, 1.4)), "lw": 2.0},
 }
+THIN: dict[str, Any] = {"lw": 0.8, "alpha": 0.75}
 OTHER_LINE: dict[str, Any] = {"color": FAINT, "ls": "-.", "lw": 1.5}
 POINTED: dict[str, Any] = {"ls": "", "zorder": 6, "mec": INK, "mew": 1.1, "ms": 7}
 MARKS: dict[str, dict[str, Any]] = {
@@ -96,7 +97,7 @@ def _draw(
     for region in data["regions"]:
         _region(axes, region)
     for locus in data["loci"]:
-        axes.plot(*np.array(locus["curve"]).T, **thinner(_line_of(locus["kind"])), zorder=3)
+        axes.plot(*np.array(locus["curve"]).T, **thinner(_line_of(locus)), zorder=3)
     for locus in data["loci"]:
         for mark in locus["special"]:
             if mark["kind"] not in UNMARKED:
@@ -127,8 +128,14 @@ def _fill_of(stable: int | None) -> dict[str, Any]:
     return {"fc": STABLE[min(stable, len(STABLE) - 1)], "ec": "none"}
 
 
-def _line_of(kind: str) -> dict[str, Any]:
-    return LINES.get(kind, OTHER_LINE)
+def _line_of(locus: Row) -> dict[str, Any]:
+    """Return how a locus is drawn: thin where no stable shape comes or goes."""
+    look = LINES.get(locus["kind"], OTHER_LINE)
+    return look | THIN if locus["changes"] is False else look
+
+
+def _name_of(locus: Row) -> str:
+    return f"{locus['kind']} of unstable shapes" if locus["changes"] is False else locus["kind"]
 
 
 def _mark_of(kind: str) -> dict[str, Any]:
@@ -147,8 +154,8 @@ def _legend(figure: Figure, data: Mapping[str, Any]) -> None:
     ]
     if None in counts:
         handles.append(Patch(label="not counted", lw=stroke(0.5), **UNKNOWN))
-    kinds = dict.fromkeys(locus["kind"] for locus in data["loci"])
-    handles += [Line2D([], [], label=kind, **thinner(_line_of(kind))) for kind in kinds]
+    kinds = {_name_of(locus): _line_of(locus) for locus in data["loci"]}
+    handles += [Line2D([], [], label=name, **thinner(look)) for name, look in kinds.items()]
     marks = dict.fromkeys(mark["kind"] for locus in data["loci"] for mark in locus["special"])
     handles += [
         Line2D([], [], label=kind, **thinner(_mark_of(kind)))
@@ -158,7 +165,7 @@ def _legend(figure: Figure, data: Mapping[str, Any]) -> None:
     figure.legend(
         handles=handles,
         loc="outside lower center",
-        ncols=max(1, int(figure.get_figwidth() / spaced(1.45))),
+        ncols=max(1, int(figure.get_figwidth() / spaced(1.9))),
         frameon=False,
         fontsize=sized(9),
     )

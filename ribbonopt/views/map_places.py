@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 
 import numpy as np
+from numpy.typing import NDArray
 
 from .curves import Array
 
@@ -12,10 +13,17 @@ STEPS = 41  # places along each side that are tried
 APART = 0.012  # of the axes: least room between pictures, and between these and the frame
 CROSSED = 0.6  # what it costs to lie on a line, and on each further sample of one
 MORE = 0.05
+ABROAD = 0.8  # what it costs to lie in other regions
+SEEN = ((0.5, 0.5), (0.1, 0.1), (0.9, 0.1), (0.1, 0.9), (0.9, 0.9))  # of a picture, where it lies
 ELSEWHERE = 1.5  # what it costs not to lie about the point itself
 
 
-def places_of(marks: Array, sizes: Sequence[Array], taken: Array) -> list[Array]:
+Inside = Callable[[Array], NDArray[np.bool_]]
+
+
+def places_of(
+    marks: Array, sizes: Sequence[Array], taken: Array, inside: Sequence[Inside]
+) -> list[Array]:
     """Return the lower left corners (2,) of pictures, in shares of the axes.
 
     Parameters
@@ -26,6 +34,8 @@ def places_of(marks: Array, sizes: Sequence[Array], taken: Array) -> list[Array]
         Width and height (2,) of each.
     taken
         Points (m, 2), close together along lines.
+    inside
+        For each picture what says of points (n, 2) whether they are in its own region.
     """
     found: list[tuple[Array, Array]] = []
     for number, (mark, size) in enumerate(zip(marks, sizes, strict=True)):
@@ -35,6 +45,8 @@ def places_of(marks: Array, sizes: Sequence[Array], taken: Array) -> list[Array]
         near = np.clip(mark, corners, corners + size)
         cost = np.hypot(*(near - mark).T) + 0.3 * np.hypot(*(corners + size / 2 - mark).T)
         cost[1:] += 0.02 * ELSEWHERE
+        for share in SEEN:
+            cost += ABROAD / len(SEEN) * ~inside[number](corners + np.array(share) * size)
         on = (
             ((taken > corners[:, None]) & (taken < corners[:, None] + size)).all(axis=2).sum(axis=1)
         )

@@ -18,9 +18,10 @@ from .style import FAINT, INK
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
+    from matplotlib.path import Path
 
 MOST = 4  # shapes pictured in one region
-LARGEST, LEAST = 0.17, 0.07  # of the axes: width or height of one picture
+LARGEST, LEAST = 0.17, 0.085  # of the axes: width or height of one picture
 ROOM = 2.2  # of the distance to the nearest locus: pictures fit into that
 WORDS = 0.045  # of the axes: height of words below pictures
 BELOW = 0.05  # of their size: room below ribbons
@@ -48,7 +49,9 @@ def draw_shapes(
         for s, p in zip(scales, points, strict=True)
     ]
     lines = [np.array([_share(at, data) for at in locus["curve"]]) for locus in data["loci"]]
-    corners = places_of(marks, sizes, samples_of(lines))
+    rings = {r["number"]: _outline(r, data) for r in data["regions"]}
+    inside = [rings[point["region"]].contains_points for point in points]
+    corners = places_of(marks, sizes, samples_of(lines), inside)
     drawings = iter(album.drawings)
     for point, corner, size, mark in zip(points, corners, sizes, marks, strict=True):
         count = len(shown[point["number"]])
@@ -91,7 +94,16 @@ def _join(axes: Axes, mark: Array, corner: Array, size: Array) -> None:
     axes.plot(*np.stack([mark, near]).T, lw=stroke(0.7), **(look | {"color": FAINT}))
 
 
-def _share(at: Sequence[float], data: Mapping[str, Any]) -> Array:
+def _outline(region: Row, data: Mapping[str, Any]) -> Path:
+    """Return the border of a region in shares of the axes, its holes too."""
+    from matplotlib.path import Path
+
+    rings = [_share([*ring, ring[0]], data) for ring in region["rings"]]
+    codes = [[Path.MOVETO] + [Path.LINETO] * (len(ring) - 1) for ring in rings]
+    return Path(np.concatenate(rings), np.concatenate(codes))
+
+
+def _share(at: Sequence[Any], data: Mapping[str, Any]) -> Array:
     low, high = np.array(data["ranges"]).T
     return np.asarray((np.array(at) - low) / (high - low))
 

@@ -54,7 +54,10 @@ class SavedMark:
 
 @dataclass(frozen=True)
 class SavedLocus:
-    """A locus: where its points are, in the units of the scene, and what it draws between them."""
+    """A locus: where its points are, in the units of the scene, and the curve through them.
+
+    `changes` says whether the number of stable shapes is another one on its other side.
+    """
 
     number: Count
     kind: str
@@ -62,6 +65,7 @@ class SavedLocus:
     curve: tuple[Pair, ...] = ()
     special: tuple[SavedMark, ...] = ()
     negative: Count | None = None
+    changes: bool | None = None
     error: float | None = None
     folder: str = ""
     ending: str = ""

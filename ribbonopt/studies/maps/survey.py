@@ -55,9 +55,7 @@ class Survey:
         self._follow_lines()
         for row in self.lines:
             self._follow_loci(row)
-        self.regions.extend(
-            regions_of([locus.curve for locus in self.loci if len(locus.points) > 1])
-        )
+        self.regions.extend(regions_of([locus.curve for locus in self._drawn]))
         self._count()
         self._agree()
 
@@ -149,12 +147,11 @@ class Survey:
     def _faults(self) -> list[tuple[tuple[int, int], str]]:
         """Return pairs of regions whose counts do not fit what is between them."""
         found = []
-        lines = [locus for locus in self.loci if len(locus.points) > 1]
         for a, b, number in pairs_of([region.beside for region in self.regions]):
             here, there = (self.best(i) for i in (a, b))
             if here is None or there is None:
                 continue
-            locus = lines[number]
+            locus = self._drawn[number]
             known = [row["negative"] for row in locus.rows if row.get("negative") is not None]
             fault = disagreement(locus.kind, min(known, default=None), here, there)
             if fault:
@@ -164,6 +161,22 @@ class Survey:
     def best(self, region: int) -> Row | None:
         """Return the count of a region that found most; None where there is none."""
         return max(self.counted_in(region), key=lambda row: row["count"], default=None)
+
+    def changes(self, locus: Locus) -> bool | None:
+        """Return whether the number of stable shapes changes across a locus; None: not known."""
+        number = self._drawn.index(locus)
+        counts = [
+            (self.best(a), self.best(b))
+            for a, b, line in pairs_of([region.beside for region in self.regions])
+            if line == number
+        ]
+        known = [(a["stable"], b["stable"]) for a, b in counts if a and b]
+        return any(a != b for a, b in known) if known else None
+
+    @property
+    def _drawn(self) -> list[Locus]:
+        """The loci that are lines."""
+        return [locus for locus in self.loci if len(locus.points) > 1]
 
     def _count_at(self, wanted: Sequence[tuple[int, tuple[float, float]]]) -> None:
         first = len(self.points) + 1

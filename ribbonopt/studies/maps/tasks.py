@@ -17,7 +17,9 @@ from ribbonopt.output.staging import staged_result
 from ribbonopt.pipeline.prepared import Prepared
 from ribbonopt.plain import Row
 from ribbonopt.scene import Scene
-from ribbonopt.scene.stages import stages_of
+from ribbonopt.scene.equilibria import Equilibria
+from ribbonopt.scene.lens import with_value
+from ribbonopt.scene.stages import ends_of, stages_of
 from ribbonopt.solution.solution import Solution
 from ribbonopt.studies.batch.branches import OWN
 from ribbonopt.studies.continuation.branch import Branch
@@ -56,11 +58,14 @@ def follow_line(scene: Scene, prepare: Prepare, place: Place, inputs: Row) -> Ro
     where they are, in which folder, and the number of their points there.
     """
     along = inputs["along"]
-    bare = replace(scene, continuation=None)
+    (stage,) = stages_of(scene)
+    begin, end = stage.from_ or 0.0, ends_of(stage)[-1]
+    bare = with_value(replace(scene, continuation=None), along, begin)
     prepared, rows, told = prepare(bare), list[list[Row]](), list[str]()
     specials: list[Row] = []
+    if not isinstance(bare.equilibria, Equilibria):
+        bare = replace(bare, equilibria=Equilibria(along={along: (begin, end)}))
     seeds = all_of(bare, prepared)
-    begin = stages_of(scene)[0].from_ or 0.0
     with staged_result(place.path, NUMBERED, wait=place.wait, durable=False) as staged:
         for seed in seeds[:MOST]:
             if is_known(seed, rows, along, begin):
@@ -69,7 +74,6 @@ def follow_line(scene: Scene, prepare: Prepare, place: Place, inputs: Row) -> Ro
             found, ending = _followed(scene, prepared, staged.folder / name, seed)
             rows += branches_of(found)
             told.append(ending)
-            where = f"{place.name}/{name}"
             said: Row = {**inputs, "folder": f"{place.name}/{name}"}
             specials += [
                 {**said, **row, "near": _beside(found, i, along)}

@@ -93,6 +93,7 @@ def _locus(locus: Locus, survey: Survey) -> Row:
         "folder": f"{LOCI}/{locus.number}",
         "ending": locus.ending,
         "negative": min(negative, default=None),
+        "changes": survey.changes(locus),
         "error": max(errors, default=None),
         "points": _values(locus.points, survey),
         "curve": _values(locus.curve, survey),

@@ -10,6 +10,7 @@ from made_modes import made_modes, wave
 
 from ribbonopt import load_scene, solve
 from ribbonopt.errors import ModelError, ViewError
+from ribbonopt.output.modes_rows import plane_of, rows_of
 from ribbonopt.solution.solution import Solution
 from ribbonopt.views import Style, plot_modes
 from ribbonopt.views.modes import PHASES
@@ -82,6 +83,15 @@ def test_a_panel_for_each_mode() -> None:
     assert len(one.get_paths()) % len(PHASES) == 0
     narrow = plot_modes(solution, made_modes(solution), Style(width=3.35))
     assert len({axes.get_position().x0 for axes in narrow.axes}) == 2
+
+
+def test_what_only_twists_says_so() -> None:
+    solution = solved("snap")
+    modes = made_modes(solution)
+    still = replace(modes, displacement=1e-12 * modes.displacement)
+    words = [row["twist"] for row in rows_of(solution, modes)]
+    assert words == 4 * [False]
+    assert [plane_of(row) for row in rows_of(solution, still)] == 4 * ["twist"]
 
 
 def test_in_si_frequencies_are_in_hertz_and_rates_in_seconds() -> None:

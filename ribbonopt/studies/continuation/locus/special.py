@@ -35,6 +35,7 @@ ROUND = 0.5  # least cosine of the angle that the direction in the plane turns b
 ASIDE = 0.25  # of a step: on both sides of a special point, between which it is found again
 ROUNDS, KNOTS = 20, 4  # of secants; points that they go through
 SETTLED = 1e-9  # change of a root, in arclength
+NEAR = 1e-3  # of a step: points nearer to each other than that interpolate nothing
 BESIDE = 1e-3  # half the arclength that second derivatives of l2 are taken over
 MEETS = {
     DETERMINANT: "a locus of branch points is met",
@@ -42,6 +43,17 @@ MEETS = {
     SLOPE: "another locus of branch points is met",
 }
 DIRECTION = "direction of the locus"
+
+
+class Apart(Beside[Solution]):
+    """The same beside two points, however near to each other it has been read."""
+
+    def _nearest(self, arc: float) -> list[Probe[Solution]]:
+        found: list[Probe[Solution]] = []
+        for probe in sorted(self.known.values(), key=lambda probe: abs(probe.arc - arc)):
+            if all(abs(probe.arc - other.arc) > NEAR * abs(self.whole) for other in found):
+                found.append(probe)
+        return found[:KNOTS]
 
 
 @dataclass(frozen=True, eq=False)
@@ -82,7 +94,7 @@ def special_of(
             return Special([], (DIRECTION,), 1)
         if not names:
             return Special([])
-        beside = Beside(equations, a, b)
+        beside = Apart(equations, a, b)
         roots = {name: _root(beside, readings, name) for name in names}
     except np.linalg.LinAlgError:
         return Special([])
@@ -147,7 +159,10 @@ def _point(root: Root) -> Point[Solution]:
     if finer is not None:
         moved = np.abs(finer.unknowns[-2:] - place[-2:])
         root, place = finer, finer.unknowns
-        error = max(SAFETY * float(moved[0]), ROUNDING * abs(float(place[-2])))
+        # Of both parameters, in units of l1.
+        first, second = equations.surface.spans
+        off = max(float(moved[0]), float(moved[1]) * first / second)
+        error = max(SAFETY * off, ROUNDING * abs(float(place[-2])))
     a = root.beside.a
     solution, tangent = equations.restored(a.solution, place), root.beside.tangent(root.arc)
     nearest = min(root.beside.known.values(), key=lambda probe: abs(probe.arc - root.arc))
@@ -187,7 +202,7 @@ def _finer(root: Root) -> Root | None:
     aside = min(ASIDE * beside.whole, beside.reach(root.arc))
     try:
         sides = [_on_halves(equations, beside, root.arc + off) for off in (-aside, aside)]
-        readings, again = Readings(equations, sides[0]), Beside(equations, *sides)
+        readings, again = Readings(equations, sides[0]), Apart(equations, *sides)
         first, last = (readings.at(p.solution, p.unknowns).values[root.name] for p in sides)
         arc = _root(again, readings, root.name) if first * last < 0 else None
     except np.linalg.LinAlgError:
