@@ -23,11 +23,10 @@ from ribbonopt.solvers import Status
 from ..coordinates import reduced, row_of
 from ..trials import checked
 from ..walk.course import COSINE
-from ..walk.departure import Departure
 from ..walk.metric import Metric
-from ..walk.points import Point
-from ..walk.protocol import Passage, Trial
-from ..walk.special import Special
+from ..walk.points import Point, Special
+from ..walk.protocol import Trial
+from .alone import Alone
 from .bars import barred
 from .chart import Chart
 from .laid import Laid
@@ -41,7 +40,7 @@ RECENT = 8  # solutions whose metric is remembered
 
 
 @dataclass(frozen=True, eq=False)
-class LocusEquations:
+class LocusEquations(Alone):
     """Equations of the special points of one kind along a surface.
 
     Attributes
@@ -150,36 +149,6 @@ class LocusEquations:
         """Return what is special between two points of one layout."""
         return special_of(self, a, b)
 
-    def crossings(self, a: Point[Solution], b: Point[Solution]) -> list[Point[Solution]]:
-        """Return nothing: `special` tells all."""
-        return []
-
-    def uncounted(self, a: Solution, b: Solution, changes: int) -> str:
-        """Say nothing of counts, which are those beside the locus."""
-        return ""
-
-    def passed(
-        self, point: Point[Solution], trial: Trial[Solution], expected: Array
-    ) -> Passage[Solution] | None:
-        """Return nothing: the phases stay."""
-        return None
-
-    def leaving(self, point: Point[Solution]) -> list[Point[Solution]]:
-        """Return nothing: no branches are followed from a locus."""
-        return []
-
-    def departure(self, point: Point[Solution]) -> Departure[Solution] | None:
-        """Return nothing, as above."""
-        return None
-
-    def finer(self, origin: Solution, unknowns: Array) -> tuple[Solution, Array] | None:
-        """Return nothing: each point is as exact as asked."""
-        return None
-
-    def enough(self, error: float, position: float) -> bool:
-        """Whether an error of l1 is as small as asked."""
-        return True
-
     def restored(self, origin: Solution, unknowns: Array) -> Solution:
         """Return a solution of known unknowns on the mesh and in the phases of another."""
         return self._beside(origin, unknowns[-2:]).restored(unknowns[:-2])
@@ -209,10 +178,6 @@ class LocusEquations:
             >= COSINE * self.metric.length(here) * self.metric.length(part)
             for part in (there, gap)
         )
-
-    def elsewhere(self, origin: Point[Solution], position: float) -> Trial[Solution] | None:
-        """Return nothing: there is no other way to a point of a locus."""
-        return None
 
     def _beside(self, solution: Solution, positions: Array) -> Attempt:
         """Return the means to solve at two positions, on the mesh and in phases of a solution."""

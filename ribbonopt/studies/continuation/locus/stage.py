@@ -13,8 +13,8 @@ from ribbonopt.solution.solution import Solution
 from ..recorded import Recorder
 from ..walk.points import BUCKLING, Point
 from ..walk.protocol import Trial
-from .buckling import BucklingEquations
 from .begun import begun
+from .buckling import BucklingEquations
 from .equations import LocusEquations
 from .laid import Laid
 from .records import LocusRecords

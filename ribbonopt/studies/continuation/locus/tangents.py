@@ -9,6 +9,7 @@ from ribbonopt.classes import dataclass
 from ribbonopt.solution.solution import Solution
 
 from ..coordinates import reduced
+from ..walk.points import FOLD
 from .chart import Chart
 from .laid import Laid
 from .slices import Found
@@ -52,4 +53,5 @@ def laid_of(surface: Surface, solution: Solution, chart: Chart, found: Found) ->
     part = metric.product(n, t)
     across, n = across - part * tangent, n - part * t
     across = across / metric.length(n)
-    return Laid(tangent, across, found.slope, found.sides, doubt=found.doubt)
+    scale = 0.0 if chart.kind == FOLD else chart.scale
+    return Laid(tangent, across, found.slope, found.sides, doubt=found.doubt, scale=scale)
