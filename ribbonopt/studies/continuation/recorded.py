@@ -177,6 +177,8 @@ class StageRecords:
         if not self.stops.conditions:
             return {}
         varying = self.recorder.varying(point, self.curve)
+        if self.stops.words.intersection(self.recorder.frequencies):
+            varying |= frequencies(point.solution, self.curve.stage.modes)
         return self.stops.margins(self.recorder.named(varying, self.curve.stage))
 
 
