@@ -6,9 +6,10 @@ stable shapes is two before the first and one behind it.
 
 from collections.abc import Iterator, Sequence
 from pathlib import Path
-from typing import Any
+from typing import Any, ClassVar
 
 import numpy as np
+
 from ribbonopt.errors import ConvergenceError
 from ribbonopt.plain import Row
 from ribbonopt.studies.batch.study import StudyRibbon
@@ -49,8 +50,14 @@ def done(ribbon: StudyRibbon, slopes: Sequence[float] = SLOPES, wrong: bool = Fa
 def _line(inputs: Row, slopes: Sequence[float]) -> Row:
     y = inputs[Y]
     specials = [
-        {**inputs, X: float(c * np.sqrt(y)), "kind": "fold", "folder": "branches/1/1",
-         "near": {"point": i, "value": float(c * np.sqrt(y)) - 1}, "point": i}
+        {
+            **inputs,
+            X: float(c * np.sqrt(y)),
+            "kind": "fold",
+            "folder": "branches/1/1",
+            "near": {"point": i, "value": float(c * np.sqrt(y)) - 1},
+            "point": i,
+        }
         for i, c in enumerate(slopes)
     ]
     inside = [special for special in specials if special[X] <= 80]
@@ -60,8 +67,16 @@ def _line(inputs: Row, slopes: Sequence[float]) -> Row:
 def _locus(number: int, slopes: Sequence[float]) -> Row:
     ways = (np.linspace(0.2, 0.05, 12), np.linspace(0.2, 0.4, 12))
     points = [
-        {"number": n, "stage": 1, "branch": way, "kind": "point", "error": 1e-10,
-         "negative": number, X: float(slopes[number] * np.sqrt(y)), Y: float(y)}
+        {
+            "number": n,
+            "stage": 1,
+            "branch": way,
+            "kind": "point",
+            "error": 1e-10,
+            "negative": number,
+            X: float(slopes[number] * np.sqrt(y)),
+            Y: float(y),
+        }
         for way, ys in enumerate(ways)
         for n, y in enumerate(ys)
     ]
@@ -82,8 +97,8 @@ def _count(x: float, y: float, wrong: bool) -> Row:
 class MadeCrew:
     """Stands for `crew.Crew`: does what is asked at once, and dies when it has had enough."""
 
-    asked: list[str] = []
-    alive: int | None = None  # jobs until it dies
+    asked: ClassVar[list[str]] = []
+    alive: ClassVar[int | None] = None  # jobs until it dies
 
     def __init__(self, folder: str, jobs: int | None = None) -> None:
         self.folder = folder

@@ -1,4 +1,4 @@
-"""`ribbonopt map`: bad input is refused, work that is done is kept, what is written is read again."""
+"""`ribbonopt map`: bad input is refused, work that is done is kept, what is written is read."""
 
 import json
 import shutil
@@ -7,8 +7,9 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-import ribbonopt
 from made_maps import SCENE, MadeCrew
+
+import ribbonopt
 from ribbonopt.studies.maps import run as module
 
 Run = Callable[..., Any]
@@ -110,7 +111,7 @@ def test_a_map_is_no_shape(run: Run, scene: Path, made: type[MadeCrew]) -> None:
         assert "loci/1" in found.err
 
 
-@pytest.mark.parametrize("alive", range(0, 10, 3))
+@pytest.mark.parametrize("alive", [0, 1, 5, 9])
 def test_work_that_is_done_is_not_done_again(
     run: Run, scene: Path, made: type[MadeCrew], alive: int
 ) -> None:

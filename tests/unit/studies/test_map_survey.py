@@ -5,6 +5,7 @@ from functools import partial
 
 import pytest
 from made_maps import SCENE, SLOPES, done
+
 from ribbonopt.plain import Row
 from ribbonopt.scene import loads_scene
 from ribbonopt.studies.maps.jobs import Job
@@ -43,7 +44,7 @@ def test_each_locus_is_followed_once_and_regions_are_counted() -> None:
 
 
 def test_what_does_not_fit_is_counted_again_and_told() -> None:
-    survey, asked = surveyed(partial(done, wrong=True))
+    survey, _ = surveyed(partial(done, wrong=True))
     right, _ = surveyed()
     assert len(survey.points) > len(right.points)
     assert any("a locus or a shape was missed" in doubt for doubt in survey.doubts)
