@@ -79,13 +79,19 @@ def _figure(
     scene = continuation.scene
     return BranchFigure(
         rows,
-        tuple(pairs or _usual(rows, continuation.recorder)),
+        tuple(pairs or _planes_of(continuation) or _usual(rows, continuation.recorder)),
         title=scene.name,
         log=[stage.moved for stage in continuation.stages if stage.scale == "log"],
         jumps=[row["number"] for row in rows if JUMPED in row.get("note", "")],
         si=scene.ribbon is not None,
         labels={**scene.labels, **labels},
     )
+
+
+def _planes_of(continuation: Continuation) -> list[tuple[str, str]]:
+    """Return the planes of parameters in which loci are followed, each once."""
+    loci = (stage.paths for stage in continuation.stages if stage.is_locus)
+    return list(dict.fromkeys((first, second) for first, second in loci))[:4]
 
 
 def _usual(rows: Rows, recorder: Recorder) -> list[tuple[str, str]]:

@@ -22,7 +22,7 @@ from ribbonopt.solution.solution import Solution
 
 from .archive import Row, arrays_of
 from .declared import MODES_JSON, MODES_NPZ, MODES_PICTURES, MODES_TABLE
-from .modes_rows import COLUMNS, rows_of
+from .modes_rows import COLUMNS, rows_of, which_of
 from .places import unwritable
 from .records import checked
 from .staging import replaced, replacing
@@ -54,7 +54,7 @@ def plain_of(solution: Solution, modes: Modes) -> PlainRow:
         "verified": solution.verified,
         "message": solution.message,
         "unit": modes.unit,
-        "told": modes.told,
+        "told": which_of(solution, modes),
         "negative": modes.negative,
         "zero": list(modes.zero),
         "modes": finite(rows_of(solution, modes)),

@@ -4,8 +4,12 @@ from __future__ import annotations
 
 import math
 
+import numpy as np
+
 from ribbonopt.checks.modes import Modes
 from ribbonopt.checks.parity import parities
+from ribbonopt.checks.topology import closure
+from ribbonopt.checks.vibrations.stated import SYMMETRIC
 from ribbonopt.plain import Row
 from ribbonopt.solution.solution import Solution
 
@@ -13,9 +17,10 @@ from .digits import SMALL, digits, upwards
 
 HERTZ = "Hz"
 IN, ACROSS = "in plane", "out of plane"
-WHOLLY = 1e-6  # share of the kinetic energy that is none
+TWIST = "twist"
+WHOLLY = 1e-6  # share of the kinetic energy, or of a displacement over a turn, that is none
 #: columns of `modes.csv`, each a key of `modes` in `modes.json`
-COLUMNS = ("number", "frequency", "error", "squared", "in_plane", "symmetry", "grows")
+COLUMNS = ("number", "frequency", "error", "squared", "in_plane", "symmetry", "twist", "grows")
 
 
 def rows_of(solution: Solution, modes: Modes) -> list[Row]:
@@ -23,8 +28,13 @@ def rows_of(solution: Solution, modes: Modes) -> list[Row]:
 
     `frequency` is in `Modes.unit`, negative where the mode grows: then it is the rate; `error` is a
     bound of its relative error, `in_plane` the share of the kinetic energy in a planar ribbon's
-    plane, `symmetry` "symmetric", "antisymmetric" or "".
+    plane, `symmetry` "symmetric", "antisymmetric" or "", `twist` whether the line stays at rest.
     """
+    moved, turned = (
+        np.linalg.norm(shapes, axis=2).max(axis=1)
+        for shapes in (modes.displacement, modes.rotation)
+    )
+    still = moved <= WHOLLY * (modes.s[-1] - modes.s[0]) * turned
     return [
         {
             "number": i,
@@ -33,10 +43,21 @@ def rows_of(solution: Solution, modes: Modes) -> list[Row]:
             "squared": float(modes.squared[i - 1]),
             "in_plane": known(modes.in_plane[i - 1]),
             "symmetry": symmetry,
+            "twist": bool(still[i - 1]),
             "grows": bool(modes.squared[i - 1] < 0),
         }
         for i, symmetry in enumerate(parities(solution, modes), start=1)
     ]
+
+
+def which_of(solution: Solution, modes: Modes) -> str:
+    """Say which modes these are, where they are not all; "" where they are."""
+    start, end = solution.scene.interval
+    if modes.told or modes.s[-1] > end + WHOLLY * (end - start):
+        return modes.told
+    # A piece of a band may be told by its conditions alone, which say nothing of symmetry.
+    band = closure(solution)
+    return SYMMETRIC if band is not None and band.pieces > 1 else ""
 
 
 def known(value: float) -> float | None:
@@ -45,8 +66,10 @@ def known(value: float) -> float | None:
 
 
 def plane_of(row: Row) -> str:
-    """Say where a mode moves a planar ribbon; "" where it is not planar."""
+    """Say where a mode moves a planar ribbon, or that it only twists one; else ""."""
     share = row["in_plane"]
+    if row["twist"]:
+        return TWIST
     if share is None:
         return ""
     if share >= 1 - WHOLLY:

@@ -6,19 +6,21 @@ from collections.abc import Sequence
 
 from ribbonopt.checks.modes import Modes
 from ribbonopt.plain import Row
+from ribbonopt.solution.solution import Solution
 
-from .modes_rows import HERTZ, bar_of, value_of, words_of
+from .modes_rows import HERTZ, bar_of, value_of, which_of, words_of
 
 TITLE = "small vibrations"
 
 
-def told(name: str, modes: Modes, rows: Sequence[Row]) -> str:
-    """Return the report of modes of a ribbon by its name, with `rows_of` them."""
+def told(solution: Solution, modes: Modes, rows: Sequence[Row]) -> str:
+    """Return the report of modes of a solution, with `rows_of` them."""
     numbers = [value_of(row, modes.unit) for row in rows]
     head = "frequency" if modes.unit == HERTZ else "omega"
     wide = max(map(len, (head, *numbers)), default=0)
-    which = f" ({modes.told})" if modes.told else ""
-    lines = [f"{name}: {_counted(rows)} of {TITLE}{which}{_units(modes.unit)}"]
+    which = which_of(solution, modes)
+    lines = [f"{solution.scene.name}: {_counted(rows)} of {TITLE}{_units(modes.unit)}"]
+    lines += [f"  ({which})"] if which else []
     lines.append(f"  {'':>3}  {head:<{wide}}  rel. error")
     for row, number in zip(rows, numbers, strict=True):
         line = f"  {row['number']:>3}  {number:<{wide}}  {bar_of(row):<10}  {words_of(row)}"

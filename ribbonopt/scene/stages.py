@@ -21,7 +21,8 @@ GRAMMAR = RESERVED - OUTPUTS.keys()
 
 _AT = re.compile(r"(.*)\sat\s(.*)", re.DOTALL)
 _WORD = re.compile(r"(?<![\w.])[A-Za-z_]\w*(?:\.[A-Za-z_]\w*)*")  # not the e of 1e3
-_SPECIAL = re.compile(r"(?:([0-9]+) +)?(fold|branch point|buckling point|kink)(s?)")
+_KINDS = "fold|branch point|buckling point|kink|cusp|isola centre|crossing|double point|turn"
+_SPECIAL = re.compile(rf"(?:([0-9]+) +)?({_KINDS})(s?)")
 _STOP = (
     "expected 'A > B' or 'A < B', such as 'energy > 30'; or fold, branch point, buckling point, "
     "kink, or a number of them, such as '2 folds'"

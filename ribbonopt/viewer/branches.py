@@ -81,9 +81,10 @@ def left_out(count: int, shown: int, what: str) -> tuple[str, ...]:
 def figure_of(branch: Branch) -> BranchFigure:
     """Return what a diagram of a branch is made of; what the scene records is shown first."""
     stages, formulas = stages_of(branch.scene), branch.continuation.recorder.formulas
+    planes = tuple((stage.paths[0], stage.paths[1]) for stage in stages if stage.is_locus)
     return BranchFigure(
         branch.rows,
-        tuple((VALUE, name) for name in list(formulas)[:1]),
+        planes[:1] or tuple((VALUE, name) for name in list(formulas)[:1]),
         title=branch.scene.name,
         log=[stage.moved for stage in stages if stage.scale == "log"],
         jumps=[row["number"] for row in branch.rows if JUMPED in (row.get("note") or "")],

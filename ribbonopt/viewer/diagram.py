@@ -15,6 +15,7 @@ from ribbonopt.views.branch_axes import COUNTS, LABELS, unit_of
 from ribbonopt.views.branch_rows import KINK, VALUE, BranchFigure, Plane
 from ribbonopt.views.branch_style import marks_of
 from ribbonopt.views.columns import COSTS, columns, is_missing, is_numeric, varied
+from ribbonopt.views.locus_style import locus_of
 
 #: columns that say where a point belongs: nothing to draw
 PLACES = ("stage", "branch", "origin")
@@ -38,9 +39,10 @@ def diagram_of(figure: BranchFigure) -> Data:
     Data
         `names`, `labels` (with units), `log`, `rough` (nothing is between points) and `columns`
         (values of all rows, None where there are none) for each column; `number`, `stage`,
-        `branch`, `negative` (unstable directions, None unknown), `kind`, `mark` ("" for none) and
-        `note` for each row; `pieces`, each with `branch` and, as indices of rows, those it goes
-        through (`rows`) and those that decide how it begins (`beyond`); `corners`, indices of rows
+        `branch`, `negative` (unstable directions, None unknown), `kind`, `locus` (what it is a
+        point of, "" of a branch), `mark` ("" for none) and `note` for each row; `pieces`, each with
+        `branch` and, as indices of rows, those it goes through (`rows`) and those that decide how
+        it begins (`beyond`); `corners`, indices of rows
         where the direction may change at once; `moved`, by stage, the column of what it moves;
         `x`, `y`, the columns shown first.
     """
@@ -59,6 +61,7 @@ def diagram_of(figure: BranchFigure) -> Data:
         "columns": [[_value(row, name) for row in rows] for name in names],
         **{key: [row[key] for row in rows] for key in ("number", "stage", "branch", "negative")},
         "kind": [row["kind"] for row in rows],
+        "locus": [locus_of(row) for row in rows],
         "mark": [marks.get(row["number"], "") for row in rows],
         "note": [printable(row.get("note") or "") for row in rows],
         "pieces": [

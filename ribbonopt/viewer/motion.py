@@ -24,10 +24,11 @@ NATURAL = "√(Dw/\N{GREEK SMALL LETTER RHO}L⁴)"
 
 @dataclass(frozen=True, eq=False)
 class Motion:
-    """Modes of the ribbon of a number, and what is said of each."""
+    """Modes of the ribbon of a number, what is said of each, and which these are, if not all."""
 
     modes: Modes
     rows: Sequence[Row]
+    which: str = ""
     ribbon: int = 0
 
     def reach(self, subject: Subject, axes: Array) -> Array:
@@ -52,7 +53,7 @@ def plain_motion(motion: Motion, subject: Subject, shape: Shape) -> dict[str, An
         "list": [
             {
                 "name": named(row, motion.modes.unit),
-                "told": told_of(row, motion.modes.unit),
+                "told": told_of(row, motion.modes.unit, motion.which),
                 "grows": row["grows"],
                 "amplitude": amplitude_of(subject, motion.modes, i),
             }
@@ -71,10 +72,10 @@ def named(row: Row, unit: str) -> str:
     return f"{row['number']}: {value_of(row, unit, ROUGH)}"
 
 
-def told_of(row: Row, unit: str) -> str:
+def told_of(row: Row, unit: str, which: str) -> str:
     """Return what is said of a mode while it is seen."""
     value = value_of(row, unit)
     if not row["grows"]:
         value = f"f = {value}" if unit == HERTZ else f"ω = {value} {NATURAL}"
     error = f"relative error {'not known' if row['error'] is None else f'≤ {bar_of(row)}'}"
-    return "; ".join(filter(None, (value, words_of(row), error)))
+    return "; ".join(filter(None, (value, words_of(row), error, which)))

@@ -9,7 +9,7 @@ from typing import Any
 from ribbonopt.checks.modes import Modes, modes_of
 from ribbonopt.errors import ViewError
 from ribbonopt.output.modes_files import load_modes
-from ribbonopt.output.modes_rows import rows_of
+from ribbonopt.output.modes_rows import rows_of, which_of
 from ribbonopt.output.results import other_equilibria
 from ribbonopt.output.saved import read_summary
 from ribbonopt.output.summary import summarize
@@ -80,7 +80,7 @@ def _view(
     motion = None
     if modes is not None:
         subjects[0] = subject_with(solutions[0], modes)
-        motion = Motion(modes, rows_of(solutions[0], modes))
+        motion = Motion(modes, rows_of(solutions[0], modes), which_of(solutions[0], modes))
     ribbons = []
     for i, (subject, summary) in enumerate(zip(subjects, summaries, strict=True), start=1):
         status = status_of(summary)

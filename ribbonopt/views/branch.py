@@ -26,6 +26,7 @@ from .branch_words import caption_of, plain_of, write_legend
 from .columns import ColumnPair
 from .curves import Array, curves_through
 from .insets import draw_insets
+from .locus_style import CUSP
 from .paper_style import PAGE, PLAIN, Style, sized, thinner
 from .strip import plot_strip
 from .style import FAINT, INK, SI, SPECIAL, Drawn, blank, draw_all, tidy, title
@@ -168,9 +169,10 @@ def _draw(axes: Axes, plane: Plane, numbered: Sequence[int], written: Sequence[i
         colour = COLOURS[piece.rows[-1]["branch"] % len(COLOURS)]
         wider = ASIDE if _behind(plane, found, curves[i + 1 :]) else 1.0
         for state, curve in _stretches(piece.rows, found):
-            style = STYLES[state] | plain | (DOT if curve.shape[1] == 1 else {})
+            style = {"color": colour} | STYLES[state] | (DOT if curve.shape[1] == 1 else {})
+            style |= plain if state == UNKNOWN else {}
             style["lw"] *= wider
-            axes.plot(*curve, color=colour, label=state, **thinner(style))
+            axes.plot(*curve, label=state, **thinner(style))
     for name, chosen in marks_of(plane).items():
         if chosen:
             axes.plot(*plane.points(chosen), label=name, **thinner(STYLES[name]))
@@ -181,13 +183,17 @@ def _draw(axes: Axes, plane: Plane, numbered: Sequence[int], written: Sequence[i
 
 
 def _curves(plane: Plane, piece: Piece) -> list[Array]:
-    """Return the curve (2, m) from each point of a piece to the next; of one point itself."""
+    """Return the curve (2, m) from each point of a piece to the next; of one point itself.
+
+    In a plane of parameters, whose names are paths with dots, a locus has a corner at a cusp.
+    """
     points = plane.points(piece.rows)
     if len(piece.rows) == 1:
         return [points]
     rows = [*piece.beyond[::-1], *piece.rows]
     rough = any(name in (*COUNTS, "error") for name in plane.pair)  # nothing is between points
-    corners = [i for i, row in enumerate(rows) if row["kind"] == KINK or rough]
+    sharp = (KINK, CUSP) if all("." in name for name in plane.pair) else (KINK,)
+    corners = [i for i, row in enumerate(rows) if row["kind"] in sharp or rough]
     found = curves_through(plane.scaled(plane.points(rows)), corners)
     curves = [plane.values(curve) for curve in found[len(piece.beyond) :]]
     for i, curve in enumerate(curves):

@@ -20,8 +20,6 @@ if TYPE_CHECKING:
 COUNTS = ("number", "stage", "branch", "negative", "intervals", "iterations")
 MARGIN = 0.08  # of the axes, beside what is drawn: room for numbers
 LABELS = {"number": "point", "negative": "negative directions", "error": "estimated error"}
-#: SI units of the columns of every row
-FREQUENCY = re.compile(r"(frequency|squared)\d+")
 UNITS = {"energy": "J", "potential": "J", "H0": "N"} | {
     name: unit
     for names, unit in zip(START_VECTORS, ("N", "N m", "1/m"), strict=True)
@@ -34,12 +32,20 @@ PARTS = {
 }
 
 
+#: columns of small vibrations along a branch: the symbol and its unit in SI
+VIBRATIONS = {
+    "frequency": {False: (r"$\omega_{{{}}}$", ""), True: ("$f_{{{}}}$", "Hz")},
+    "squared": {False: (r"$\omega_{{{}}}^2$", ""), True: (r"$\omega_{{{}}}^2$", "1/s²")},
+}
+NUMBERED = re.compile(r"(frequency|squared)([1-9][0-9]*)")
+
+
 def unit_of(column: str, si: bool) -> str:
     """Return the unit of a column; "" where it has none, or none that is known."""
     if not si:
         return ""
-    if found := FREQUENCY.fullmatch(column):
-        return "Hz" if found[1] == "frequency" else "1/s²"
+    if found := NUMBERED.fullmatch(column):
+        return VIBRATIONS[found[1]][si][1]
     parts = column.split(".")
     if parts[0] == "loads":
         return "N/m" if "force" in parts else ""
@@ -51,6 +57,8 @@ def unit_of(column: str, si: bool) -> str:
 def label(column: str, si: bool, labels: Mapping[str, str] = MappingProxyType({})) -> str:
     """Return the words for a column, with its unit; `labels` are those that a scene gives."""
     unit = unit_of(column, si)
+    if (found := NUMBERED.fullmatch(column)) and column not in labels:
+        return VIBRATIONS[found[1]][si][0].format(found[2]) + (f" ({unit})" if unit else "")
     words = symbol(column, labels) if column in labels else LABELS.get(column)
     return (words or symbol(column, labels)) + (f" ({unit})" if unit else "")
 

@@ -10,6 +10,7 @@ import numpy as np
 from ribbonopt.plain import Row, Rows
 
 from .branch_rows import FOLD, KINK, POINT, Plane
+from .locus_style import MARKS, locus_of, styles_of_loci
 from .style import BENDING, FAINT, INK, TWIST
 
 #: one for each branch
@@ -24,6 +25,7 @@ STYLES: dict[str, dict[str, Any]] = {
     STABLE: {"ls": "-", "lw": 2.0},
     UNSTABLE: {"ls": (0, (3.5, 1.8)), "lw": 1.6},
     UNKNOWN: {"ls": (0, (1, 1.6)), "lw": 1.1},
+    **styles_of_loci(),
     FIRST: {"ls": "", "marker": ".", "ms": 9, "color": FAINT, "zorder": 4},
     LAST: {"ls": "", "marker": "x", "ms": 5.5, "color": FAINT, "mew": 1.2, "zorder": 4},
     NOTED: OPEN | {"marker": "^", "ms": 5.5, "mec": TWIST, "mew": 1.2, "zorder": 5},
@@ -31,6 +33,7 @@ STYLES: dict[str, dict[str, Any]] = {
     BRANCH: OPEN | {"marker": "o", "ms": 7.5},
     BUCKLING: OPEN | {"marker": "D", "ms": 6.5},
     KINK: OPEN | {"marker": "v", "ms": 7.5},
+    **MARKS,
     OTHER: OPEN | {"marker": "*", "ms": 9},
 }
 DOT: dict[str, Any] = {
@@ -41,7 +44,12 @@ DOT: dict[str, Any] = {
 
 
 def state_of(row: Row) -> str:
-    """Return the style of curves at a point."""
+    """Return the style of curves at a point: of a branch by its stability, of a locus by its kind.
+
+    What is stable beside a locus is not at the points of it, which have a neutral direction.
+    """
+    if found := locus_of(row):
+        return found
     return UNKNOWN if row["negative"] is None else UNSTABLE if row["negative"] else STABLE
 
 

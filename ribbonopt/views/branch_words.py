@@ -10,8 +10,9 @@ from ribbonopt.text import drawn
 
 from .branch_axes import label, unit_of
 from .branch_rows import POINT, BranchFigure
-from .branch_style import COLOURS, DOT, STYLES, UNKNOWN, mark_of, state_of
+from .branch_style import COLOURS, DOT, STABLE, STYLES, UNKNOWN, UNSTABLE, mark_of, state_of
 from .lettering import LETTER
+from .locus_style import locus_of
 from .paper_style import NARROW, sized, spaced, thinner
 from .style import INK
 
@@ -24,7 +25,7 @@ HANDLE = 0.65  # inches of its line or mark, and between two
 
 def plain_of(subject: BranchFigure) -> dict[str, Any]:
     """Return how curves are drawn where stability is known nowhere; nothing where it is."""
-    known = any(state_of(row) != UNKNOWN for row in subject.rows)
+    known = any(state_of(row) in (STABLE, UNSTABLE) for row in subject.rows)
     return {} if known else {"ls": "-", "lw": 1.6}
 
 
@@ -49,14 +50,18 @@ def write_legend(figure: Figure, subject: BranchFigure, numbers: str) -> None:
     planes = [plane for pair in subject.pairs for plane in subject.axes_of(pair)]
     drawn = {row["number"]: row for plane in planes for row in plane.rows}.values()
     names = {line.get_label() for axes in figure.axes for line in axes.lines}
-    branches = sorted({row["branch"] for row in drawn})
+    branches = sorted({row["branch"] for row in drawn if not locus_of(row)})
     entries: dict[str, dict[str, Any]] = {}
+    # A branch beside loci, which have colours of their own, is told by its own.
+    alone = len(branches) == 1 and any(map(locus_of, drawn))
+    line = {"color": COLOURS[branches[0] % len(COLOURS)] if alone else INK}
     for branch in branches if len(branches) > 1 else []:
         entries[f"branch {branch}"] = {"color": COLOURS[branch % len(COLOURS)], "lw": 3}
     for name in (name for name in STYLES if name in names):
         count = sum(row["kind"] != POINT and mark_of(row) == name for row in drawn)
         plain = plain_of(subject) if name == UNKNOWN else {}
-        entries[name + (f" ({count})" if count else "")] = {"color": INK} | STYLES[name] | plain
+        tone = line if name in (STABLE, UNSTABLE, UNKNOWN) else {"color": INK}
+        entries[name + (f" ({count})" if count else "")] = tone | STYLES[name] | plain
     if numbers:
         entries[f"numbers: points in {numbers}"] = {"color": INK, "ls": ""} | DOT
     handles = [Line2D([], [], label=text, **thinner(style)) for text, style in entries.items()]

@@ -11,7 +11,7 @@ import numpy as np
 
 from ribbonopt.checks.modes import Modes
 from ribbonopt.errors import ViewError
-from ribbonopt.output.modes_rows import HERTZ, plane_of, rows_of, value_of
+from ribbonopt.output.modes_rows import HERTZ, plane_of, rows_of, value_of, which_of
 from ribbonopt.plain import Row
 from ribbonopt.solution.solution import Solution
 from ribbonopt.text import drawn
@@ -105,7 +105,9 @@ def draw_modes(solution: Solution, modes: Modes, style: Style = PLAIN) -> Figure
         place(axes, drawing, box, THIN)
         axes.set_xlabel(text, fontsize=sized(8.5), color=INK)
     if style.titles:
-        _title(figure, subject, modes)
+        _title(figure, subject, modes.unit)
+        which = wrapped(which_of(solution, modes), width - MARGIN, sized(8.5))
+        figure.supxlabel(which, fontsize=sized(8.5), color=INK)
     return figure
 
 
@@ -160,14 +162,9 @@ def _caption(row: Row, unit: str, width: float) -> str:
     return "\n".join(told)
 
 
-def _title(figure: Figure, subject: Subject, modes: Modes) -> None:
-    figure.suptitle(
-        f"{drawn(subject.name, TITLE)}: small vibrations{f' ({modes.told})' if modes.told else ''}",
-        x=0.01,
-        ha="left",
-        fontsize=sized(11),
-        fontweight="bold",
-    )
-    si = modes.unit == HERTZ
-    words = SI if si else rf"{SPECIAL}, $\omega$ over $\sqrt{{Dw/(\rho L^4)}}$"
-    figure.text(0.99, 0.985, words, ha="right", va="top", fontsize=sized(8.5), color=FAINT)
+def _title(figure: Figure, subject: Subject, unit: str) -> None:
+    words = f"{drawn(subject.name, TITLE)}: small vibrations"
+    figure.suptitle(words, x=0.01, ha="left", fontsize=sized(11), fontweight="bold")
+    units = SI if subject.units.si else SPECIAL
+    units += "" if unit == HERTZ else r", $\omega$ over $\sqrt{Dw/(\rho L^4)}$"
+    figure.text(0.99, 0.985, units, ha="right", va="top", fontsize=sized(8.5), color=FAINT)

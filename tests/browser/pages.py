@@ -5,6 +5,8 @@ from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
+from made_modes import made_modes
+
 from ribbonopt import Branch, Continuation, Solution, load, load_scene, solve
 from ribbonopt.studies.batch.results import Batch
 from ribbonopt.viewer import embedded
@@ -81,6 +83,9 @@ class Pages:
         if name == "equilibria":
             first = self.solved("clamped_arch")
             return view_of(replace(first, others=(self.solved("clamped_twist"), first)))
+        if name == "modes":
+            arch = self.solved("snap")
+            return view_of(arch, modes=made_modes(arch))
         if name == "failed":
             solution = self.solved("clamped_arch", *FAILING)
             assert not solution.verified

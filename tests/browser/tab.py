@@ -30,6 +30,11 @@ NO_WEBGL = """() => {
     return /webgl/.test(kind) ? null : get.call(this, kind, ...more);
   };
 }"""
+CALM = """() => {
+  const ask = window.matchMedia.bind(window);
+  window.matchMedia = (query) =>
+    ask(/prefers-reduced-motion: *reduce/.test(query) ? "all" : query);
+}"""
 READY = """new Promise((done, fail) => {
   const look = (tries) => {
     if (document.documentElement.dataset.ready !== undefined) return done("ready");
@@ -65,21 +70,27 @@ class Tab:
         *,
         dots: float = 1,
         webgl: bool = True,
+        calm: bool = False,
         ready: str = READY,
     ) -> None:
-        """Open a file in a window of a size (pixels), with `dots` of the screen a pixel."""
+        """Open a file in a window of a size (pixels), with `dots` of the screen a pixel.
+
+        `calm` is who wants nothing to move by itself.
+        """
         shape = {"viewport": dict(zip(("width", "height"), size, strict=True))}
         given = {"context": self.context, **shape, "devicePixelRatio": dots}
         self.bidi.call("browsingContext.setViewport", given)
-        stub = None
-        if not webgl:
-            stub = self.bidi.call("script.addPreloadScript", {"functionDeclaration": NO_WEBGL})
+        stubs = [
+            self.bidi.call("script.addPreloadScript", {"functionDeclaration": text})
+            for text, wanted in ((NO_WEBGL, not webgl), (CALM, calm))
+            if wanted
+        ]
         self.bidi.events.clear()
         self.hand([{"type": "pointerMove", "x": 0, "y": 0}])
         self.at = (0, 0)
         place = {"context": self.context, "url": path.as_uri(), "wait": "complete"}
         self.bidi.call("browsingContext.navigate", place)
-        if stub:
+        for stub in stubs:
             self.bidi.call("script.removePreloadScript", {"script": stub["script"]})
         self.run(ready)
         self.settle()

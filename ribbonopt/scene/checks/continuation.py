@@ -155,11 +155,7 @@ def _bad_ends(
     else:
         ends |= {("to",): stage.to}
     trials = [
-        (
-            (*path, *key),
-            value,
-            replace(with_value(scene, stage.moved, value), continuation=None, map=None),
-        )
+        ((*path, *key), value, _alone(with_value(scene, stage.moved, value)))
         for key, value in ends.items()
         if value is not None  # else the scene's own value, or where another stage ended
     ]
@@ -172,3 +168,8 @@ def _bad_ends(
             message = "which makes no valid scene; choose another value: "
             message += f"{dotted(problem.path)}: {problem}"
             yield Problem(where, message, f"{value:g}")
+
+
+def _alone(scene: Scene) -> Scene:
+    """Return a scene without what is followed from it."""
+    return replace(scene, continuation=None, map=None)

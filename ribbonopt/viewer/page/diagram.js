@@ -8,7 +8,9 @@ const diagram = (() => {
   const STABLE = "stable";
   const UNSTABLE = "unstable";
   const UNKNOWN = "stability unknown";
-  const DASHES = { [STABLE]: "", [UNSTABLE]: "dashed", [UNKNOWN]: "dotted" };
+  const LOCI = { "locus of folds": "locus", "locus of branch points": "locus dashed",
+    "locus of buckling points": "locus dotted" };
+  const DASHES = { [STABLE]: "", [UNSTABLE]: "dashed", [UNKNOWN]: "dotted", ...LOCI };
   const BRANCHES = 8; // colours
   const HIDDEN = 0.5; // share of its points that lie under another curve: a curve is drawn wider
   const LOOKED_AT = 20; // of its points
@@ -20,6 +22,11 @@ const diagram = (() => {
     "branch point": ["dot", "ink open"],
     "buckling point": ["diamond", "ink open"],
     kink: ["triangle", "ink open"],
+    cusp: ["triangle", "ink"],
+    "isola centre": ["dot", "ink"],
+    crossing: ["cross", "ink"],
+    "double point": ["square", "ink open"],
+    turn: ["diamond", "faint"],
     "other special point": ["diamond", "ink"],
   };
 
@@ -61,6 +68,7 @@ const diagram = (() => {
     }
 
     function state(row) {
+      if (data.locus[row]) return data.locus[row];
       const count = data.negative[row];
       return count === null ? UNKNOWN : count ? UNSTABLE : STABLE;
     }
@@ -78,7 +86,7 @@ const diagram = (() => {
       const lines = [`point ${data.number[row]}${data.kind[row] === "point" ? "" : `, ${data.kind[row]}`}`];
       for (const k of [0, 1]) lines.push(`${data.labels[fields[k].value]}: ${axes.say(column(k)[row], 6)}`);
       if (count) lines.push(`unstable, ${count} direction${count > 1 ? "s" : ""}`);
-      else if (known) lines.push(state(row));
+      else if (known || data.locus[row]) lines.push(state(row));
       if (data.branch[row] || several)
         lines.push(`branch ${data.branch[row]}${several ? `, stage ${data.stage[row] + 1}` : ""}`);
       if (data.note[row]) lines.push(data.note[row]);
@@ -102,7 +110,7 @@ const diagram = (() => {
         let last = null;
         const end = () =>
           d &&
-          node("path", { d, class: `line ${last === null || known ? DASHES[last ?? UNKNOWN] : ""}` }, group);
+          node("path", { d, class: `line ${last === null || known || LOCI[last] ? DASHES[last ?? UNKNOWN] : ""}` }, group);
         if (first >= 0 && first === own.length - 1)
           node("path", { d: `M${paths.text(points[first])}h0`, class: "line alone" }, group);
         for (let i = Math.max(first, 0); i < parts.length; i++) {
@@ -149,13 +157,13 @@ const diagram = (() => {
     function key() {
       legend.replaceChildren();
       const seen = (values) => [...new Set(values)].sort((a, b) => a - b);
-      const branches = seen(data.branch);
+      const branches = seen(data.branch.filter((_, row) => !data.locus[row]));
       for (const b of branches.length > 1 ? branches : [])
         choice.key(legend, "M-10 0H10", `line branch${b % BRANCHES}`, `branch ${b}`);
       const states = new Set(
         data.pieces.flatMap(({ rows }) => rows.slice(1).map((row, i) => between(rows[i], row))),
       );
-      for (const name of known ? [STABLE, UNSTABLE, UNKNOWN] : []) {
+      for (const name of known ? Object.keys(DASHES) : Object.keys(LOCI)) {
         if (states.has(name)) choice.key(legend, "M-10 0H10", `line ${DASHES[name]}`, name);
       }
       for (const [name, [mark, className]] of Object.entries(SIGNS)) {

@@ -474,3 +474,68 @@ def test_a_branch_that_begins_with_a_jump_is_not_joined():
     axes = draw_branch(BranchFigure(rows, (("value", "u2"),), jumps=[first]), []).axes[0]
     drawn = [line for line in axes.lines if line.get_color() == COLOURS[1]]
     assert [line.get_xydata()[0].tolist() for line in drawn] == [[1.25, 0.5]]
+
+
+def locus():
+    """A branch up to its fold, then the fold in a second number: two ways, one with a cusp."""
+    first, second = "parameters.load", "parameters.depth"
+    rows = [row(i, 0.25 * i, parameter=first, **{second: 0.0}) for i in range(4)]
+    rows.append(row(4, 1.0, None, "fold", first, **{second: 0.0}))
+    for branch, sign in ((0, 1), (1, -1)):
+        for t in np.arange(1, 5) / 4:
+            cusp = (branch, t) == (1, 0.5)
+            more = {first: 1 - t * t, "stage": 1, "branch": branch, "of": "fold", "origin": 4}
+            kind = "cusp" if cusp else "point"
+            rows.append(row(len(rows), sign * t, None, kind, second, **more))
+    return rows
+
+
+def test_loci_are_lines_of_their_own() -> None:
+    subject = BranchFigure(locus(), (("parameters.load", "parameters.depth"),), "locus")
+    figure = draw_branch(subject, ())
+    (axes,) = figure.axes
+    lines = {line.get_label(): line for line in axes.lines}
+    assert {"stable", "locus of folds", "cusp", "fold"} <= set(lines)
+    assert not {"unstable", "stability unknown"} & set(lines)
+    # Black, whatever the branch; both ways are told apart by no colour.
+    colours = {line.get_color() for line in axes.lines if line.get_label() == "locus of folds"}
+    assert len(colours) == 1
+    assert colours.isdisjoint(COLOURS)
+    (legend,) = figure.legends
+    words = [text.get_text() for text in legend.get_texts()]
+    assert words[:2] == ["stable", "locus of folds"]
+    assert "cusp (1)" in words
+    assert legend.get_lines()[0].get_color() == COLOURS[0]
+    # Both ways begin at the fold, and go through their points.
+    points = np.array([[r["parameters.load"], r["parameters.depth"]] for r in locus()[4:]])
+    drawn = np.concatenate([line.get_xydata() for line in axes.lines])
+    assert np.abs(points[:, None] - drawn).max(axis=2).min(axis=1).max() < 1e-12
+
+
+def test_a_locus_has_a_corner_at_a_cusp_only_in_a_plane_of_parameters() -> None:
+    rows = [
+        row(i, t**3, None, "cusp" if t == 0 else "point", "parameters.b", of="fold")
+        | {"parameters.a": t * t, "energy": t}
+        for i, t in enumerate(np.linspace(-1, 1, 9))
+    ]
+
+    def turn(x: str, y: str) -> float:
+        """Return the cosine of the angle by which the curve turns at the cusp."""
+        figure = plot_branch(rows, x, y)
+        (line,) = (one for one in figure.axes[0].lines if one.get_label() == "locus of folds")
+        points = np.asarray(line.get_xydata(), float)
+        at = int(np.abs(points).sum(axis=1).argmin())
+        before, after = points[at] - points[at - 1], points[at + 1] - points[at]
+        return float(before @ after / np.linalg.norm(before) / np.linalg.norm(after))
+
+    assert turn("parameters.a", "parameters.b") < 0
+    assert turn("parameters.b", "energy") > 0.9
+
+
+def test_frequencies_along_a_branch_are_called_by_their_symbols() -> None:
+    rows = [row(i, float(i), frequency1=3.0 - i, squared2=-1.0 * i) for i in range(4)]
+    for si, words in ((False, (r"$\omega_{1}$", r"$\omega_{2}^2$")), (True, ("$f_{1}$ (Hz)",))):
+        for column, said in zip(("frequency1", "squared2"), words, strict=False):
+            assert plot_branch(rows, "value", column, si=si).axes[0].get_ylabel() == said
+    labels = {"frequency1": "pitch"}
+    assert plot_branch(rows, "value", "frequency1", labels=labels).axes[0].get_ylabel() == "pitch"

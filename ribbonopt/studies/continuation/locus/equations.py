@@ -22,6 +22,7 @@ from ribbonopt.solvers import Status
 
 from ..coordinates import reduced, row_of
 from ..trials import checked
+from ..walk.course import COSINE
 from ..walk.departure import Departure
 from ..walk.metric import Metric
 from ..walk.points import Point
@@ -34,6 +35,7 @@ from .slices import Found, Lost, found_on
 from .special import special_of
 from .surface import Surface
 
+ELSEWHERE = "the locus does not go on: what was found next to it goes another way"
 RECENT = 8  # solutions whose metric is remembered
 DIFFERENCE = 1e-4  # half the arclength that derivatives of the test function are taken over
 
@@ -221,11 +223,25 @@ class LocusEquations:
 
     def finished(self, origin: Point[Solution], trial: Trial[Solution]) -> Trial[Solution]:
         """Return a point on a mesh on which the error of l1 is as small as asked; verified."""
+        if not self._goes_on(origin, trial):
+            return replace(trial, converged=False, message=ELSEWHERE)
         try:
             trial = barred(self, trial)
         except (Lost, np.linalg.LinAlgError) as failure:
             return replace(trial, converged=False, message=str(failure))
         return self.verified(trial)
+
+    def _goes_on(self, origin: Point[Solution], trial: Trial[Solution]) -> bool:
+        """Whether a point lies where the locus goes from another, and goes the same way there."""
+        here = self.reduced(origin.solution, origin.tangent)
+        there = self.reduced(trial.solution, self.laid(trial.solution).tangent)
+        gap = self.reduced(trial.solution, trial.unknowns)
+        gap = gap - self.reduced(origin.solution, origin.unknowns)
+        return all(
+            abs(self.metric.product(here, part))
+            >= COSINE * self.metric.length(here) * self.metric.length(part)
+            for part in (there, gap)
+        )
 
     def elsewhere(self, origin: Point[Solution], position: float) -> Trial[Solution] | None:
         """Return nothing: there is no other way to a point of a locus."""

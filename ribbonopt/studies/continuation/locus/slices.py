@@ -28,6 +28,11 @@ CENTRED = 0.6  # of the spacing: how far the root may be from the middle
 REUSED = 0.25  # of the spacing: places that are this near are not read twice
 KNOTS = 4  # that guesses are interpolated from
 DOUBT = 1e-10  # of what counts as one: change of a parameter by the outermost places, at most
+SPREAD = 1e-9  # relative change of states by the outermost places: more, and no curve joins them
+GONE = (
+    "no branch point was found near by: where the symmetry is broken by which branches cross, it "
+    "dissolves into a fold and nothing"
+)
 DIFFERENCES = 4e-10  # relative error of tangents, as derivatives by parameters are differences
 TRUSTED = 0.05  # of that change: error of what all places say, whose order is higher by two or four
 OFF = 0.3  # most distance of a point from its guess, of the arclength to the nearest known one
@@ -142,7 +147,7 @@ class _Slice:
             pair = [self.at(t + offset * h) for offset in (-1.5, 1.5)]
             root, _ = _root(pair, t)
             if root is None or abs(root - self.middle) > REACH:
-                raise Lost("no branch point was found near by")
+                raise Lost(GONE)
             change, t = root - t, root
             if abs(change) <= 4 * h:
                 break
@@ -150,11 +155,14 @@ class _Slice:
             values = [self._near(t + offset * h, REUSED * h) for offset in OFFSETS]
             root, slope = _root(values, t)
             if root is None or abs(root - self.middle) > REACH:
-                raise Lost("no branch point was found near by")
+                raise Lost(GONE)
             change, t = root - t, root
             if abs(change) > CENTRED * h:
                 continue
-            y, doubt = self._between(values, t)
+            y, doubt, spread = self._between(values, t)
+            if h / 2 < NARROWEST and spread > SPREAD:
+                raise Lost(GONE)
+            doubt = max(doubt, spread / SPREAD * DOUBT)
             if doubt <= DOUBT or h / 2 < NARROWEST:
                 first, second = (_interpolated(values, t, name) for name in ("first", "second"))
                 sides = values[0].y, values[-1].y
@@ -162,16 +170,21 @@ class _Slice:
                 doubt = TRUSTED * doubt * self.chart.spans[0] + DIFFERENCES * h * steep
                 return Found(y, first, second, slope, sides, doubt)
             h /= 2
-        raise Lost("no branch point was found near by")
+        raise Lost(GONE)
 
-    def _between(self, values: list[Sample], t: float) -> tuple[Array, float]:
-        """Return the unknowns at a root, and what the outermost places change of the parameters."""
+    def _between(self, values: list[Sample], t: float) -> tuple[Array, float, float]:
+        """Return the unknowns at a root, and what the outermost places change of them.
+
+        That of the parameters, of what counts as one, and of the states, relative.
+        """
         y, coarser = self.unknowns(t, len(values)), self.unknowns(t, len(values) - 2)
         inner, _ = _root(values[1:-1], t)
         off = np.abs(y - coarser)[-2:]
         if inner is not None:
             off += abs(inner - t) * np.abs(_interpolated(values, t, "second")[-2:])
-        return y, float((off / np.array(self.chart.spans)).max())
+        states, others = (self.chart.line.reduced(some)[:-2] for some in (y, coarser))
+        spread = float((np.abs(states - others) / (1 + np.abs(states))).max())
+        return y, float((off / np.array(self.chart.spans)).max()), spread
 
     def _near(self, t: float, within: float) -> Sample:
         nearest = min(self.known, key=lambda place: abs(place - t))

@@ -110,7 +110,8 @@ class LocusStage:
         equations = self._of_tests(start)
         trial = equations.correct_at(start, guess)
         if trial.converged:
-            point = Point(trial.solution, trial.unknowns, across, 0.0, 1.0)
+            tangent = equations.laid(trial.solution).tangent
+            point = Point(trial.solution, trial.unknowns, tangent, 0.0, 1.0)
             trial = equations.finished(point, trial)
         return self._told(trial, special)
 

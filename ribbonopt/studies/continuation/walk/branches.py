@@ -12,7 +12,7 @@ import numpy as np
 from .endless import CLOSED, IDLE, IDLE_POINTS, comes_home, homeward, is_home, is_idle
 from .known import Atlas
 from .landing import landed
-from .points import CROSSINGS, FOLD, POINT, SPECIAL, Point, S
+from .points import CROSSINGS, OF_LOCI, POINT, SPECIAL, Point, S
 from .protocol import Records
 from .strides import Stride
 from .walk import Ending, Walk
@@ -99,13 +99,12 @@ class Branch(Generic[S]):
         self.last: Point[S] | None = None
         self.branch_points: list[Point[S]] = []
         self.special: Point[S] | None = None  # beyond the last point
-        kinds = (POINT, *SPECIAL)
+        kinds = (POINT, *SPECIAL, *OF_LOCI)
         points = [point for kind in kinds for point in common.history.points(*self.key, kind)]
         for point in sorted(points, key=lambda point: point.number):
             common.register.known(point)
             self._note(point)
-            if point.kind == FOLD:
-                walk.turned.append(walk.range.value(point.position))
+            walk.note(point)
         self.ended = common.history.endings.get(self.key)
 
     def points(self) -> Iterator[Point[S]]:

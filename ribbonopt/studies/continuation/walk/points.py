@@ -16,6 +16,7 @@ SPECIAL = (FOLD, *CROSSINGS)
 # On loci: where the fold's curve in the plane of the parameters has a point; where folds at one l2
 # meet, and the branches there are a single point, or cross; where two loci meet; where one turns.
 CUSP, ISOLA, CROSSING, DOUBLE, TURN = "cusp", "isola centre", "crossing", "double point", "turn"
+OF_LOCI = (CUSP, ISOLA, CROSSING, DOUBLE, TURN)
 TURNING = (FOLD, CUSP, ISOLA, CROSSING, TURN)  # the position turns there
 
 S = TypeVar("S")  # what a solution is, is the business of the equations

@@ -16,7 +16,7 @@ from ribbonopt.arrays import Array
 
 from .beside import strays
 from .course import Course, joined, leaving
-from .points import FOLD, POINT, Point, S, Special
+from .points import POINT, TURNING, Point, S, Special
 from .protocol import Equations, Passage, Range, Trial
 from .strides import Prediction, Stride
 from .tangents import headed, moved, renewed
@@ -204,9 +204,10 @@ class Stepper(Generic[S]):
         found = self.equations.special(point, following)
         heading = np.sign(goal - point.position)
         beyond = [p for p in found.points if heading * (p.position - goal) > 0]
-        if any(p.kind == FOLD for p in beyond):
+        turning = next((p.kind for p in beyond if p.kind in TURNING), None)
+        if turning is not None:
             # It turns there, and has passed the goal before.
-            return Special([], (f"the goal, before a {FOLD},",))
+            return Special([], (f"the goal, before a {turning},",))
         return replace(found, points=[p for p in found.points if p not in beyond])
 
     def _arrived(

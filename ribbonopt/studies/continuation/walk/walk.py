@@ -10,7 +10,7 @@ import numpy as np
 
 from ribbonopt.arrays import Array
 
-from .points import FOLD, Point, S
+from .points import FOLD, TURNING, Point, S
 from .protocol import Equations, Range
 from .steps import DIGITS, Stepper
 from .strides import Stride
@@ -35,7 +35,7 @@ class Walk(Generic[S]):
         self.equations, self.range, self.direction = equations, range_, direction
         self.stepper = Stepper(equations, range_)
         self.ending = Ending(False, "not begun")
-        self.turned: list[float] = []
+        self.turned: list[tuple[str, float]] = []
 
     def begin(self, solution: S, unknowns: Array) -> Point[S]:
         """Return the point that a stage begins with, facing its goal."""
@@ -58,8 +58,7 @@ class Walk(Generic[S]):
             step = land(point, step) if land else step
             for found in step.special:
                 yield found
-                if found.kind == FOLD:
-                    self.turned.append(self.range.value(found.position))
+                self.note(found)
             point = step.following
             yield point
 
@@ -82,10 +81,20 @@ class Walk(Generic[S]):
             return None
         return left[0] if heading == self.direction else start - self.direction * self.range.span
 
+    def note(self, point: Point[S]) -> None:
+        """Keep where the position turns."""
+        if point.kind in TURNING:
+            self.turned.append((point.kind, self.range.value(point.position)))
+
     def _turned_back(self) -> Ending:
-        folds = ", ".join(f"{value:.8g}" for value in self.turned)
-        where = f" (folds at {self.range.name} = {folds})" if folds else ""
-        return Ending(False, f"the branch turned back and left the range{where}")
+        kinds = dict.fromkeys(kind for kind, _ in self.turned)
+        at = {
+            k: ", ".join(f"{value:.8g}" for kind, value in self.turned if kind == k) for k in kinds
+        }
+        curve = "locus" if kinds.keys() - {FOLD} else "branch"
+        where = "; ".join(f"{kind}s at {self.range.name} = {at[kind]}" for kind in kinds)
+        where = f" ({where})" if where else ""
+        return Ending(False, f"the {curve} turned back and left the range{where}")
 
     def _stuck(self, point: Point[S]) -> Ending:
         return Ending(
