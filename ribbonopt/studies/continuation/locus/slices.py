@@ -28,7 +28,7 @@ CENTRED = 0.6  # of the spacing: how far the root may be from the middle
 REUSED = 0.25  # of the spacing: places that are this near are not read twice
 KNOTS = 4  # that guesses are interpolated from
 DOUBT = 1e-10  # of what counts as one: change of a parameter by the outermost places, at most
-SPREAD = 1e-6  # relative change of states by the outermost places, above which no curve joins them
+SPREAD = 1e-9  # relative change of states by the outermost places: more, and no curve joins them
 GONE = (
     "no branch point was found near by: where the symmetry is broken by which branches cross, it "
     "dissolves into a fold and nothing"

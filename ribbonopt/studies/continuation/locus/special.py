@@ -35,6 +35,8 @@ ROUND = 0.5  # least cosine of the angle that the direction in the plane turns b
 ASIDE = 0.25  # of a step: on both sides of a special point, between which it is found again
 ROUNDS, KNOTS = 20, 4  # of secants; points that they go through
 SETTLED = 1e-9  # change of a root, in arclength
+AFAR = 0.05  # arclength between places that a root is found from, where loci meet
+OFFSETS = (-3, -2, -1, 1, 2, 3)  # of these, in spacings
 NEAR = 1e-3  # of a step: points nearer to each other than that interpolate nothing
 BESIDE = 1e-3  # half the arclength that second derivatives of l2 are taken over
 MEETS = {
@@ -107,15 +109,13 @@ def special_of(
 def _root(beside: Beside[Solution], readings: Readings, name: str) -> float | None:
     """Return the arclength where a test function vanishes, None where it is not found.
 
-    On a locus of folds nothing is singular there, but where another surface crosses.
+    Where loci meet none is found next to the place: it is read from afar.
     """
 
     def test(probe: Probe[Solution]) -> float:
         return readings.at(probe.solution, probe.unknowns).values[name]
 
-    if readings.equations.kind == FOLD and name != DETERMINANT:
-        return _regular(beside, test)
-    return beside.root(test)
+    return _from_afar(beside, test) if name in MEETS else _regular(beside, test)
 
 
 def _regular(beside: Beside[Solution], test: Callable[[Probe[Solution]], float]) -> float | None:
@@ -139,6 +139,22 @@ def _regular(beside: Beside[Solution], test: Callable[[Probe[Solution]], float])
             return found
         arc = found
     return None
+
+
+def _from_afar(
+    beside: Beside[Solution], test: Callable[[Probe[Solution]], float]
+) -> float | None:
+    """Return the root of the polynomial through a test function's values at some distance."""
+    first, last = (test(probe) for probe in beside.ends)
+    root = beside.whole * first / (first - last)
+    spacing = max(abs(beside.whole) / 8, AFAR)
+    probes = [beside.at(root + offset * spacing, spacing / 2) for offset in OFFSETS]
+    values = {probe.arc: test(probe) for probe in probes if probe is not None}
+    if len(values) < KNOTS:
+        return None
+    fitted = np.polynomial.Polynomial.fit(list(values), list(values.values()), len(values) - 1)
+    roots = [float(z.real) for z in fitted.roots() if abs(z.imag) <= 1e-9]
+    return min(roots, key=lambda place: abs(place - root), default=None)
 
 
 def _inverse(values: Mapping[float, float]) -> float:
@@ -199,7 +215,8 @@ def _level(equations: LocusEquations, point: Point[Solution]) -> str:
 def _finer(root: Root) -> Root | None:
     """Return the root between two points of the locus on a mesh twice as fine."""
     equations, beside = root.equations, root.beside
-    aside = min(ASIDE * beside.whole, beside.reach(root.arc))
+    aside = 2 * AFAR if root.name in MEETS else ASIDE * beside.whole
+    aside = min(aside, beside.reach(root.arc))
     try:
         sides = [_on_halves(equations, beside, root.arc + off) for off in (-aside, aside)]
         readings, again = Readings(equations, sides[0]), Apart(equations, *sides)

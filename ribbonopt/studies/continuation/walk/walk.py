@@ -88,7 +88,9 @@ class Walk(Generic[S]):
 
     def _turned_back(self) -> Ending:
         kinds = dict.fromkeys(kind for kind, _ in self.turned)
-        at = {k: ", ".join(f"{value:.8g}" for kind, value in self.turned if kind == k) for k in kinds}
+        at = {
+            k: ", ".join(f"{value:.8g}" for kind, value in self.turned if kind == k) for k in kinds
+        }
         curve = "locus" if kinds.keys() - {FOLD} else "branch"
         where = "; ".join(f"{kind}s at {self.range.name} = {at[kind]}" for kind in kinds)
         where = f" ({where})" if where else ""
