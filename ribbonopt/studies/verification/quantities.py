@@ -131,7 +131,7 @@ class _OfLocus:
     def __call__(self, answers: Answers) -> Measured:
         stages = answers.branch.continuation.stages
         found = [
-            (float(point.row[stages[point.stage].paths[0]]), point.error)
+            (float(point.row[stages[point.stage].paths[0]]), point.row["error"])
             for point in answers.branch.of_kind(POINT)
             if stages[point.stage].is_locus and point.row[stages[point.stage].moved] == self.value
         ]
