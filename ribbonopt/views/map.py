@@ -40,12 +40,10 @@ OTHER_LINE: dict[str, Any] = {"color": FAINT, "ls": "-.", "lw": 1.5}
 POINTED: dict[str, Any] = {"ls": "", "zorder": 6, "mec": INK, "mew": 1.1, "ms": 7}
 MARKS: dict[str, dict[str, Any]] = {
     "cusp": POINTED | {"marker": "^", "mfc": "#f2c14e", "ms": 8},
-    "isola centre": POINTED | {"marker": "o", "mfc": "#f2c14e"},
-    "crossing": POINTED | {"marker": "X", "mfc": "w", "ms": 7.5},
     "double point": POINTED | {"marker": "D", "mfc": "w", "ms": 6},
 }
-#: what is special of a locus and says nothing in the plane of a map
-UNMARKED = ("turn",)
+#: what is special of a locus as the second number alone varies, and is not in a plane of both
+UNMARKED = ("turn", "isola centre", "crossing")
 OTHER_MARK = POINTED | {"marker": "*", "mfc": "w", "ms": 9}
 
 
