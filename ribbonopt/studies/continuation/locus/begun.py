@@ -9,14 +9,14 @@ from typing import Any
 import numpy as np
 
 from ribbonopt.errors import OutputError, SceneError
-from ribbonopt.output.saved import SCENE, read_scene
+from ribbonopt.output.saved import read_scene
 from ribbonopt.pipeline.prepared import Prepared
 from ribbonopt.scene import Scene
 from ribbonopt.scene.lens import value_at, with_value
 from ribbonopt.solution.solution import Solution
 from ribbonopt.transcription import Mesh
 
-from ..saved import FILE, read_branch, unpacked
+from ..saved import FILE, SCENE, read_branch, unpacked
 from ..walk.points import POINT, Point
 from .surface import Surface
 
