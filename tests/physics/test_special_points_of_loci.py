@@ -109,7 +109,7 @@ def test_the_closed_curve_of_folds_has_four_cusps() -> None:
 #: its plane too, at an angle that depends on B3
 MIRROR = """
 name: mirror
-law: {{type: kirchhoff, B2: 1, B3: 0.75}}
+law: {{type: kirchhoff, B2: 1, B3: 0.76}}
 parameters: {{angle: 34}}
 boundary:
   start: {{support: clamped, position: [0, 0, 0], directors: {{turns: [{{y: -angle*deg}}]}}}}
@@ -175,6 +175,6 @@ def test_double_points_where_loci_meet(kind: str) -> None:
     branch = Branch.of(Continuation(loads_scene(MIRROR.format(kind=kind))))
     (row,) = [row for row in branch.special if row["kind"] == "double point"]
     assert row["law.B3"] == pytest.approx(truth, abs=1e-6)
-    assert abs(row["law.B3"] - truth) <= row["error"] * row["parameters.angle"] * 0.17 / 20
+    assert abs(row["law.B3"] - truth) <= row["error"] * row["parameters.angle"] * 0.18 / 20
     assert row["parameters.angle"] == pytest.approx(np.rad2deg(a), abs=1e-7)
     assert branch.endings[1, 0].reached
