@@ -1,7 +1,7 @@
 """Numbers of maps and of vibrations, computed independently of this package.
 
-Shooting of order 8 in equal steps (`tests/independent`: `plane_loci`, `half_turn`, `vibrating`), two
-numbers of steps agree to the digits; those of the tables of folds and branch points by Taylor
+Shooting of order 8 in equal steps (`tests/independent`: `plane_loci`, `half_turn`, `vibrating`),
+two numbers of steps agree to the digits; those of the tables of folds and branch points by Taylor
 series to 50 digits besides. Units Dw = L = 1, mass per length one; angles in degrees.
 """
 
@@ -32,7 +32,7 @@ ONE_CLAMP = {
     0.5: 71.0964462129,
 }
 
-#: both clamps turned against the bow: where a leaning branch crosses, and where the symmetric one folds
+#: both clamps turned against the bow: a leaning branch crosses, the symmetric one folds
 MIRROR = {
     1e-4: (1.1459264629, 1.1527488924),
     1e-3: (3.6240471298, 3.6456555419),
@@ -79,7 +79,7 @@ CURVE = (
 )
 CUSPS = ((36.5843542629, 36.5843542629), (36.6242808043, -36.6242808043))
 
-#: by shortening: ways across at which the sheared arch, Kirchhoff 1, 2, loses and regains its symmetry
+#: by shortening: where the sheared arch, Kirchhoff 1, 2, loses and regains its symmetry
 SHEARED = {
     0.1: (0.10638603759, 0.29666159426),
     0.15: (0.15220879613, 0.36779401613),
@@ -133,7 +133,7 @@ def _arch(shortening: float, angle: float) -> str:
     )
 
 
-#: nothing of these is in a table elsewhere: loads, natural curvature, width that tapers, clamps turned
+#: in no other table: loads, natural curvature, width that tapers, clamps turned
 VIBRATIONS = {
     "heavy": Vibrations(
         f"{FREE}\nloads: {{force: {{x: -5}}}}",

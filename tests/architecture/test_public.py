@@ -14,8 +14,8 @@ PUBLIC = {
     *("Scene", "load_scene", "loads_scene", "dump_scene", "json_schema"),
     *("Solution", "prepare", "solve", "save_solution", "load_solution", "summarize"),
     *("Continuation", "load_branch", "load_study", "run_batch", "load_batch", "compare"),
-    *("load", "Branch", "Batch", "export"),
-    "buckling_loads",
+    *("load", "Branch", "Batch", "Map", "export"),
+    *("all_equilibria", "buckling_loads"),
     *("plot_ribbon", "plot_plane", "plot_strains", "save_figures"),
     "__version__",
 }

@@ -1,5 +1,6 @@
 """Natural frequencies over the whole of the tables: arches, folds, pitchforks, a Moebius band."""
 
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -8,8 +9,10 @@ from test_vibrations import ARCH, ROD, agree, arch_text, modes, solved_text
 
 from ribbonopt.checks.modes import modes_of
 from ribbonopt.checks.stability import second_variation
+from ribbonopt.pipeline.prepared import prepare
 from ribbonopt.scene import load_scene, loads_scene
 from ribbonopt.scene.inertia import Inertia
+from ribbonopt.scene.laws import Variational
 from ribbonopt.studies.continuation.continuation import Continuation
 
 pytestmark = pytest.mark.slow
@@ -192,6 +195,20 @@ def test_bands_of_which_a_piece_is_solved(half_twists: int, negative: int) -> No
         assert (apart <= (one.errors + found[-1].errors) * np.abs(one.frequencies)).all()
         assert one.errors.max() < 1e-6
         assert one.zero == found[-1].zero and len(one.zero) == 7 and one.negative == negative
+
+
+@pytest.mark.parametrize("name", ["clamped_arch", "clamped_quarter", "clamped_twist"])
+def test_the_limit_of_smooth_laws_across_switches(name: str) -> None:
+    """Sadowsky's law, its switches moving, is the limit of the variational law."""
+    scene = replace(load_scene(CONFIGS / f"{name}.yaml"), continuation=None)
+    kinked = prepare(scene).solve()
+    assert len(kinked.sheets) > 2
+    limit, off = modes(kinked, 6), []
+    for delta in (0.01, 0.001):
+        smooth = prepare(replace(scene, law=Variational(delta=delta), tolerance=1e-7)).solve()
+        assert smooth.verified
+        off.append(np.abs(modes(smooth, 6).frequencies / limit.frequencies - 1))
+    assert off[1].max() < 2e-4 and (off[1] < off[0] / 8).all()
 
 
 CONTINUED = sorted(

@@ -81,6 +81,10 @@ class Vibrating:
 def stated(solution: Solution, *, planar: bool) -> Vibrating | str:
     """Return what of a solution vibrates or, in words, why nothing does."""
     energy = energy_in_plane(solution) if planar else energy_of(solution)
+    if isinstance(energy, str) and not planar:
+        # A ribbon that is held in a plane may have an energy there alone.
+        inside = energy_in_plane(solution)
+        energy = energy if isinstance(inside, str) else inside
     if isinstance(energy, str):
         return energy
     told = [IN_PLANE] if energy.posed.scene.states == "planar" else []

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 from itertools import chain
 
 import numpy as np
@@ -13,6 +13,7 @@ from ribbonopt.pipeline.prepared import Prepared, prepare
 from ribbonopt.problem import Posed
 from ribbonopt.scene import Scene
 from ribbonopt.scene.equilibria import Equilibria
+from ribbonopt.scene.lens import paths_of
 from ribbonopt.scene.stages import located_stages
 from ribbonopt.solution.solution import Solution
 from ribbonopt.starts.equilibria import distinct
@@ -20,11 +21,11 @@ from ribbonopt.starts.equilibria import distinct
 from .found import Equilibrium, Found
 from .line import Line
 from .search import AGREES, Search, Tell, quiet
-from .seeds import first_load_energy, seeds
+from .seeds import first_load_energy, seeds, waves
 from .symmetry import symmetry_of
 from .told import told
 
-PARAMETERS = "parameters."
+PARAMETERS, END = "parameters.", "boundary.end."
 LEAST, ONE_TURN = 1e-6, 2 * np.pi**2  # energies, Dw = L = 1: none, of a strip bent to a ring
 LOADS = 5.0  # times the energy of the strip as it buckles first: the limit, where none is given
 GAP, COARSE = 1e-5, 1e-3  # of two that are images: relative, without a tolerance
@@ -75,6 +76,8 @@ def all_equilibria(
     for name, solution in started:
         search.enter(solution, name)
     lines = list(_lines(prepared, scene, settings, started[0][1]))
+    if len(started) <= 2 * settings.modes:
+        _from_home(search, lines, settings.modes)
     search.run(lines)
     return _found(search, lines, len(started))
 
@@ -111,7 +114,8 @@ def _lines(
     if not ranges:
         stages = [stage.parameter for _, stage in located_stages(scene)]
         named = [f"{PARAMETERS}{name}" for name in scene.parameters]
-        ranges = dict.fromkeys(stages or named)
+        ends = [path for path in paths_of(scene) if path.startswith(END)]
+        ranges = dict.fromkeys(stages or named or ends)
     for path, range_ in ranges.items():
         line = Line.of(prepared, scene, path, range_, first)
         if line is not None:
@@ -124,13 +128,21 @@ def _lines(
             )
 
 
+def _from_home(search: Search, lines: Sequence[Line], modes: int) -> None:
+    """Enter buckled shapes at zero of the numbers that move, where they led nowhere as it is."""
+    for line in lines:
+        if line.home is not None:
+            for name, solution in waves(line.prepared, line.curve.posed_at(line.home), modes):
+                search.enter(solution, name, line.name)
+
+
 def _found(search: Search, lines: Sequence[Line], starts: int) -> Found:
     """Return what a search has come to, of all within its limit of energy."""
     tolerance = search.posed.scene.tolerance
     gap = COARSE if tolerance is None else max(GAP, AGREES * tolerance)
-    nodes = [node for node in search.nodes if node.solution.energy <= search.below]
-    above = len(search.nodes) - len(nodes)
-    nodes = nodes or [min(search.nodes, key=lambda node: node.solution.energy)]
+    nodes = [node for node in search.nodes.all if node.solution.energy <= search.below]
+    above = len(search.nodes.all) - len(nodes)
+    nodes = nodes or [min(search.nodes.all, key=lambda node: node.solution.energy)]
     kinds = []
     for kind in distinct([node.solution for node in nodes], gap):
         members = [nodes[i] for image in kind for i in image]

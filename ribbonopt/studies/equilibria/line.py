@@ -17,8 +17,8 @@ from ribbonopt.classes import dataclass
 from ribbonopt.errors import RibbonoptError
 from ribbonopt.pipeline.prepared import Prepared
 from ribbonopt.problem.wellposed.examine import refuse_unreachable
-from ribbonopt.scene import ContinuationStage, Scene
-from ribbonopt.scene.lens import value_at
+from ribbonopt.scene import ContinuationStage, Scene, validate_scene
+from ribbonopt.scene.lens import value_at, with_value
 from ribbonopt.solution.solution import Solution
 from ribbonopt.studies.continuation.coordinates import metric_at, reduced
 from ribbonopt.studies.continuation.curve import Curve
@@ -29,6 +29,7 @@ from ribbonopt.studies.continuation.walk.walk import Walk
 
 FAR = 8.0  # times what changes the states by as much as they are: range where none is given
 LARGEST, FIRST, SMALLEST = 0.35, 0.15, 1e-5  # steps, in the same measure
+LEAST = 1e-9  # of that size: beyond the own value, where it may go no further to one side
 HALVINGS = 12  # to where a range must end because there is no scene beyond
 MOST = 400  # points of one walk
 CELL, KNOTS = 0.5, 10  # ranges, in the same measure, on which theta is a polynomial through so many
@@ -128,13 +129,17 @@ class Line:
         `first` is an equilibrium of the scene, by which steps are measured, and the range where
         none is given.
         """
-        loose, own = replace(scene, tolerance=None, continuation=None), value_at(scene, path)
+        loose, own = (
+            replace(scene, tolerance=None, continuation=None, equilibria=None),
+            value_at(scene, path),
+        )
         size = _size_of(prepared, loose, path, first)
         if size is None:
             return None
         low, high = range_ or (own - FAR * size, own + FAR * size)
         low, high = (_within(prepared, loose, path, own, end) for end in (low, high))
-        size = min(size, (high - low) / 2)
+        size = min(size, (high - low) / 2) or size
+        low, high = min(low, own - LEAST * size), max(high, own + LEAST * size)
         stage = ContinuationStage(
             path,
             to=(low, high),
@@ -162,15 +167,21 @@ class Line:
         """Return the equations of the branches, measured at a solution."""
         return RibbonEquations(self.prepared, self.curve, metric_at(solution, self.curve))
 
-    def begun(self, solution: Solution, sign: int) -> Point[Solution]:
-        """Return an equilibrium as the point of a branch that goes to one side.
+    @property
+    def home(self) -> float | None:
+        """Zero, where other shapes are known, if it is another value of the range; else None."""
+        low, high = sorted((self.curve.start, self.curve.goals[-1]))
+        return 0.0 if low < 0.0 < high and self.own != 0.0 else None
+
+    def begun(self, solution: Solution, sign: int, position: float) -> Point[Solution]:
+        """Return an equilibrium at a position as the point of a branch that goes to one side.
 
         LinAlgError where the branch turns at this very value, or others cross.
         """
-        search = self.prepared.search(self.curve.posed_at(self.own))
+        search = self.prepared.search(self.curve.posed_at(position))
         on_mesh = search.on_mesh(solution.sheets, solution.mesh, solution.trajectory.ends[1:-1])
         loose = on_mesh.restored(solution.dense.w)
-        equations, unknowns = self.equations(loose), np.append(loose.dense.w, self.own)
+        equations, unknowns = self.equations(loose), np.append(loose.dense.w, position)
         ahead = np.zeros_like(reduced(loose, unknowns))
         ahead[-1] = sign
         found, tangent = near(equations, loose, unknowns, ahead)
@@ -197,7 +208,7 @@ def _size_of(prepared: Prepared, scene: Scene, path: str, first: Solution) -> fl
     line = Line(prepared, SearchCurve(scene, stage))
     if not line.curve.moves(prepared.problem):
         return None
-    point = line.begun(first, 1)
+    point = line.begun(first, 1, own)
     parts: Array = reduced(first, point.tangent) / line.equations(first).metric.sizes
     states = float(np.linalg.norm(parts[:-1]))
     return abs(float(parts[-1])) / states if states > 0 else None
@@ -205,11 +216,10 @@ def _size_of(prepared: Prepared, scene: Scene, path: str, first: Solution) -> fl
 
 def _within(prepared: Prepared, scene: Scene, path: str, own: float, end: float) -> float:
     """Return the end of a range, or as far towards it as there are scenes: by halving."""
-    curve = Curve(scene, ContinuationStage(path, to=end, from_=own))
 
     def there(value: float) -> bool:
         try:
-            refuse_unreachable(curve.posed_at(value))
+            refuse_unreachable(prepared.posed(validate_scene(with_value(scene, path, value))))
         except (RibbonoptError, ArithmeticError, ValueError):
             return False
         return True

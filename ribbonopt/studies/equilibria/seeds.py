@@ -99,13 +99,13 @@ def seeds(prepared: Prepared, posed: Posed, modes: int) -> Iterator[tuple[str, S
             yield AUTOMATIC, found
     except ConvergenceError:  # of this start: others may lead somewhere
         found = None
-    yield from _waves(prepared, posed, modes)
+    yield from waves(prepared, posed, modes)
     attempt = partial(prepared.polish, scene=posed)
     more = more_starts(posed, prepared.automatic, attempt, range(1, posed.scene.starts))
     yield from ((f"start {i}", found) for i, found in enumerate(more, start=2))
 
 
-def _waves(prepared: Prepared, posed: Posed, modes: int) -> Iterator[tuple[str, Solution]]:
+def waves(prepared: Prepared, posed: Posed, modes: int) -> Iterator[tuple[str, Solution]]:
     """Yield the verified solutions that shapes of one to so many half waves lead to."""
     chord = chord_of(posed)
     if chord is None:

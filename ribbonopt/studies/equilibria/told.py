@@ -1,4 +1,4 @@
-"""What a search for all equilibria says of itself: what was followed, how far, what is not known."""
+"""What a search for all equilibria says of itself: what was followed, and how far."""
 
 from __future__ import annotations
 
@@ -10,17 +10,21 @@ from .search import Search
 
 def told(search: Search, lines: Sequence[Line], starts: int, above: int) -> str:
     """Return what was searched, in a few sentences; `above` were found beyond its limit."""
-    ranges = []
+    ways = []
     for line in lines:
-        low, high = (line.curve.value(end) for end in (line.curve.start, line.curve.goals[-1]))
-        ranges.append(f"{line.name} ({low:.5g} to {high:.5g})")
-    along = f"along {' and '.join(ranges)}" if ranges else "along nothing, as no number moves"
+        low, high = search.reached.get(line.name, (line.own, line.own))
+        ways.append(f"{line.name} (which came from {low:.5g} to {high:.5g})")
+    along = f"along {' and '.join(ways)}" if ways else "along nothing, as no number moves"
     begun = "1 start" if starts == 1 else f"{starts} starts"
     said = [
         f"a search below the strain energy {search.below:.6g}, from {begun}, {along}: "
-        f"{search.points} points on {search.walks} branches"
+        f"{search.points} points on {search.walks} branch{'es' * (search.walks != 1)}"
     ]
-    said += [f"{count} {how}" for how, count in search.endings.items()]
+    if search.endings:
+        ends = ", ".join(f"{count} {how}" for how, count in search.endings.items())
+        said.append(f"of the branches {ends}")
+    if search.cut:
+        said.append(f"more were to be followed than the {search.most} points that `points` allows")
     if search.lost:
         said.append(f"{search.lost} times an equilibrium was passed that was not solved for")
     if above:

@@ -32,7 +32,7 @@ from .alone import Alone
 from .laid import Laid
 from .surface import Surface
 
-LOST = "the buckling load was not found again from the one before"
+NOT_FOUND_AGAIN = "the buckling load was not found again from the one before"
 
 
 class Buckled(NamedTuple):
@@ -158,7 +158,7 @@ class BucklingEquations(Alone):
         except np.linalg.LinAlgError as lost:
             return Trial(origin, guess, False, str(lost))
         if load is None:
-            return Trial(origin, guess, False, LOST)
+            return Trial(origin, guess, False, NOT_FOUND_AGAIN)
         found = self._straight(origin, load.place)
         found.trajectory.found[Buckled] = Buckled(load)
         unknowns = np.concatenate([found.dense.w, load.place])
@@ -187,7 +187,7 @@ class BucklingEquations(Alone):
         place = np.array([value_at(scene, surface.other), l2])
         found = self.plane.found(np.array([[l1, l2] for l1 in surface.between]))
         if not found:
-            raise np.linalg.LinAlgError(LOST)
+            raise np.linalg.LinAlgError(NOT_FOUND_AGAIN)
         return min(found, key=lambda one: self.metric.length(one.place - place))
 
     def _straight(self, origin: Solution, place: Array) -> Solution:

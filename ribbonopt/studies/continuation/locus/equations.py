@@ -24,32 +24,19 @@ from ..coordinates import reduced, row_of
 from ..trials import checked
 from ..walk.course import COSINE
 from ..walk.metric import Metric
-from ..walk.points import FOLD, Point, Special
+from ..walk.points import Point, Special
 from ..walk.protocol import Trial
 from .alone import Alone
 from .bars import barred
 from .chart import Chart
 from .laid import Laid
-from .slices import Found, Lost, found_on
+from .slices import LostError, found_on
 from .special import special_of
 from .surface import Surface
+from .tangents import Ahead, laid_of
 
 ELSEWHERE = "the locus does not go on: what was found next to it goes another way"
 RECENT = 8  # solutions whose metric is remembered
-DIFFERENCE = 1e-4  # half the arclength that derivatives of the test function are taken over
-
-
-@dataclass(frozen=True, eq=False)
-class Ahead:
-    """Where a locus goes at one of its points; its equations have no determinant to tell."""
-
-    direction: Array
-    sign: float = 0.0
-    log: float = 0.0
-
-    def kernel(self) -> Array:
-        """No null direction is known."""
-        raise np.linalg.LinAlgError("no branch leaves a locus")
 
 
 @dataclass(frozen=True, eq=False)
@@ -144,8 +131,8 @@ class LocusEquations(Alone):
             if exact:
                 found.y[-1] = guess[-1]  # to the last digit
             solution = self.restored(origin, found.y)
-            solution.trajectory.found[Laid] = self._laid(solution, chart, found)
-        except (Lost, np.linalg.LinAlgError) as failure:
+            solution.trajectory.found[Laid] = laid_of(self.surface, solution, chart, found)
+        except (LostError, np.linalg.LinAlgError) as failure:
             return Trial(origin, guess, False, str(failure))
         return Trial(solution, found.y, True, Status.CONVERGED.value)
 
@@ -157,28 +144,6 @@ class LocusEquations(Alone):
         nlp = self._beside(solution, origin[-2:]).nlp
         line = self.surface.line(solution)
         return Chart(nlp, line, self.kind, self.surface.spans, origin, *rows)
-
-    def _laid(self, solution: Solution, chart: Chart, found: Found) -> Laid:
-        """Return how the locus lies at a point that was found."""
-        metric = self.surface.metric_at(solution, found.y)
-        y1, y2 = (self.reduced(solution, part) for part in (found.first, found.second))
-        h = DIFFERENCE / metric.length(y1)
-        ahead, behind = (chart.read(found.y + s * h * found.first).test for s in (1, -1))
-        # The surface's direction in which the test function stays zero, and the one across.
-        rate = (ahead - behind) / (2 * h)
-        tangent = found.slope * found.first - rate * found.second
-        t = found.slope * y1 - rate * y2
-        length = metric.length(t)
-        tangent, t = tangent / length, t / length
-        across, n = found.second, y2
-        if abs(metric.product(n, t)) > 0.9 * metric.length(n):
-            across, n = found.first, y1
-        part = metric.product(n, t)
-        across, n = across - part * tangent, n - part * t
-        size = metric.length(n)
-        scale = 0.0 if self.kind == FOLD else chart.scale
-        parts = found.slope, found.sides
-        return Laid(tangent, across / size, *parts, doubt=found.doubt, scale=scale)
 
     def special(self, a: Point[Solution], b: Point[Solution]) -> Special[Solution]:
         """Return what is special between two points of one layout."""
@@ -198,7 +163,7 @@ class LocusEquations(Alone):
             return replace(trial, converged=False, message=ELSEWHERE)
         try:
             trial = barred(self, trial)
-        except (Lost, np.linalg.LinAlgError) as failure:
+        except (LostError, np.linalg.LinAlgError) as failure:
             return replace(trial, converged=False, message=str(failure))
         return self.verified(trial)
 

@@ -10,8 +10,9 @@ import numpy as np
 
 from ribbonopt.arrays import Array
 
+from .asked import Range
 from .points import FOLD, TURNING, Point, S
-from .protocol import Equations, Range
+from .protocol import Equations
 from .steps import DIGITS, Stepper
 from .strides import Stride
 from .tangents import near
