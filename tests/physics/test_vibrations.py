@@ -138,6 +138,23 @@ def test_bars_hold_on_coarse_meshes(degree: int, intervals: int) -> None:
     assert (found.errors[inside][:3] <= 1e3 * apart[:3] + 1e-6).all()
 
 
+@pytest.mark.parametrize(
+    "how",
+    [
+        "{type: collocation, scheme: lobatto, degree: 4, intervals: 10}",
+        "{type: shooting, intervals: 4, steps: 2}",
+        "{type: collocation, degree: 6, intervals: 3}\n    formulation: energy",
+    ],
+)
+def test_bars_hold_whatever_found_the_shape(how: str) -> None:
+    """Where its stages are not those of the second variation, or it is a minimum."""
+    text, _, _ = arch_text(0.1).partition("transcription")
+    found = modes(solved_text(f"{text}transcription: {how}\n"), 7)
+    inside = np.flatnonzero(found.in_plane > 0.5)[:4]
+    apart = np.abs(found.frequencies[inside] / ARCH[: len(inside)] - 1)
+    assert (apart <= found.errors[inside]).all()
+
+
 def test_a_planar_scene_in_its_plane_alone() -> None:
     text = arch_text(0.1) + "planar: true\n"
     solution = solved_text(text)
