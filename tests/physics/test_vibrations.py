@@ -297,3 +297,19 @@ def test_all_modes_of_a_strip_of_which_a_half_is_solved() -> None:
         if not count:  # the whole goes over to another shape beyond the pitchfork
             other = modes(whole, 5, Inertia(1e-3, 1e-2))
             np.testing.assert_allclose(found.frequencies, other.frequencies, rtol=1e-8)
+
+
+@pytest.mark.slow
+@pytest.mark.parametrize("half", [False, True])
+def test_an_isotropic_rod_spins_at_no_cost(half: bool) -> None:
+    """About its clamp, of the whole or put together of a half; a ring about its line."""
+    rod = "{type: rod, B: [1, 1, 0.8]}"
+    text = arch_text(0.2, 8, 10, rod) + "symmetric: d1\n" * half
+    for inertia in (Inertia(), Inertia(1e-3, 1e-3)):
+        found = modes(solved_text(text), 4, inertia)
+        assert found.zero == ("the rod, isotropic, turns about the tangent of its clamp",)
+        assert found.squared[0] > 1e3 and found.negative == 0
+    ring = solved_text(ring_text("{half_twists: 0}", "[0, 1]", 8).replace(ROD, rod))
+    found = modes(ring, 4, Inertia(1e-3, 1e-3))
+    assert len(found.zero) == 7 and found.zero[-1] == "sections turning about the line"
+    assert len(found.squared) == 4 and found.squared[0] > 1e4

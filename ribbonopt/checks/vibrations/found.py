@@ -84,7 +84,7 @@ def vibrations(
     neutral = Neutral.of(what, variation, energy)
     scale = 1 / (variation.largest * what.length**4)
     pencil = Pencil(variation.form, energy.rows, SOFT * variation.largest)
-    first = pencil.lowest(count + len(neutral.words), scale)
+    first = pencil.lowest(count + neutral.most, scale)
     if isinstance(first, str):
         return first
     kept = np.flatnonzero(~neutral.among(first, energy))[:count]
