@@ -32,8 +32,8 @@ HEIGHT = 5.6  # inches
 STABLE = ("#f7f7f7", "#dfeaf5", "#b0cde8", "#85b0d8", "#5f93c4", "#4076ab", "#2d5a8e")
 UNKNOWN: dict[str, Any] = {"fc": "white", "hatch": "////", "ec": "#bbbbbb"}
 THIN: dict[str, Any] = {"lw": 0.8, "alpha": 0.75}
-#: what is special of a locus and says nothing in the plane of a map
-UNMARKED = ("turn",)
+#: what is special of a locus as the second number alone varies, and is not in a plane of both
+UNMARKED = ("turn", "isola centre", "crossing")
 OTHER_MARK = POINTED | {"marker": "*", "mfc": "w", "ms": 9}
 
 
