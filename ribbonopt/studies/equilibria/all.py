@@ -112,7 +112,8 @@ def _lines(
     """
     ranges = settings.ranges
     if not ranges:
-        stages = [stage.parameter for _, stage in located_stages(scene)]
+        moved = [stage.parameter for _, stage in located_stages(scene)]
+        stages = [path for one in moved for path in ((one,) if isinstance(one, str) else one)]
         named = [f"{PARAMETERS}{name}" for name in scene.parameters]
         ends = [path for path in paths_of(scene) if path.startswith(END)]
         ranges = dict.fromkeys(stages or named or ends)
