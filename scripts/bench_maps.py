@@ -1,12 +1,12 @@
-"""What loci and maps cost, in CPU seconds: a point of a locus beside a branch point with its location.
+"""What loci and maps cost, in CPU time: a point of a locus beside a branch point and its location.
 
     python scripts/bench_maps.py [--repeat 3] [--map] [--out results/maps]
 
 A branch is followed over its special point twice, by turns: with that point located, and without;
 the difference is the location, which together with a point of the branch is what a point of a locus
-is measured by (at most three times as much is asked). With `--map` the map of `configs/maps` is made
-in a process of its own (at most 60 s are asked). Medians of CPU time; the loads of the machine are
-told. Writes `bench_maps.json` and `bench_maps.png`.
+is measured by (at most three times as much is asked). With `--map` the map of `configs/maps` is
+made in a process of its own (at most 60 s are asked). Medians of CPU time; the loads of the machine
+are told. Writes `bench_maps.json` and `bench_maps.png`.
 """
 
 from __future__ import annotations
@@ -74,7 +74,7 @@ def main() -> None:
 
 
 def measured(name: str, case: Case, repeat: int) -> dict[str, Any]:
-    """Measure a locus and its branch, by turns; the first turn, in which all is built, is left out."""
+    """Measure a locus and its branch, by turns; the first, in which all is built, is left out."""
     path = str(MAPS / f"{case.scene}.yaml")
     low, high = case.branch
     parameter = load_scene(path).continuation
@@ -153,7 +153,7 @@ def draw(loci: dict[str, dict[str, Any]], path: Path) -> None:
     figure = Figure(figsize=(8, 3.4), layout="constrained")
     FigureCanvasAgg(figure)
     axes = figure.subplots()
-    for row, (name, one) in enumerate(loci.items()):
+    for row, one in enumerate(loci.values()):
         told = row == 0
         axes.barh(
             row - 0.2,

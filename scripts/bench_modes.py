@@ -2,9 +2,9 @@
 
     python scripts/bench_modes.py [--count 8] [--repeat 9] [--out results/modes]
 
-One ribbon clamped at both ends, bent and twisted, on meshes of degree 6 from 10 to 160 elements; its
-solution is there before. The dense contender begins where ours does, with the chain of elements of
-the second variation, writes both matrices of the problem down on what the conditions leave free,
+One ribbon clamped at both ends, bent and twisted, on meshes of degree 6 from 10 to 160 elements;
+its solution is there before. The dense contender begins where ours does, with the chain of elements
+of the second variation, writes both matrices of the problem down on what the conditions leave free,
 and solves all of it; it has no bounds of errors, which ours has from a second mesh. Contenders
 take turns; medians of CPU time are told, and the loads of the machine. Writes `bench_modes.json`
 and `bench_modes.png`.

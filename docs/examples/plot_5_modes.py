@@ -21,7 +21,8 @@ tolerance: 1e-9
 """)
 arch = solve(scene)
 modes = arch.modes(count=4)
-list(zip(modes.frequencies.round(6), modes.errors, strict=True))
+for omega, error in zip(modes.frequencies, modes.errors, strict=True):
+    print(f"{omega:.6f}  relative bar {error:.0e}")
 
 # %%
 # How much of the kinetic energy is in the plane: 1 or 0 here.

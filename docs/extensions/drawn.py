@@ -21,13 +21,15 @@ class Drawn:
     report: str
     study: bool
     continued: bool
+    mapped: bool
 
     @classmethod
     def of(cls, folder: Path) -> Drawn:
         """Return what `draw` has written to a folder."""
         kind = (folder / "kind.txt").read_text(encoding="utf-8").split()
         text = (folder / "report.txt").read_text(encoding="utf-8")
-        return cls(folder / "ribbon.png", text, "study" in kind, "continued" in kind)
+        of_kind = ("study" in kind, "continued" in kind, "mapped" in kind)
+        return cls(folder / "ribbon.png", text, *of_kind)
 
 
 def draw(path: Path, folder: Path) -> None:
@@ -41,7 +43,8 @@ def draw(path: Path, folder: Path) -> None:
     if not solution.verified:
         raise RuntimeError(f"{path}: {solution.message}")
     solution.plot("ribbon").savefig(folder / "ribbon.png", dpi=DPI, bbox_inches="tight")
-    kind = "study" if study else "continued" if scene.continuation else "plain"
+    alone = {"continued": scene.continuation, "mapped": scene.map}
+    kind = "study" if study else " ".join(name for name, value in alone.items() if value)
     (folder / "kind.txt").write_text(kind, encoding="utf-8")
     text = report(summarize(solution))
     (folder / "report.txt").write_text(text, encoding="utf-8")  # last: then all is there

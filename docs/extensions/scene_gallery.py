@@ -28,6 +28,7 @@ GROUPS = {
     "": "Scenes",
     "paper": "Scenes of the paper's figures",
     "shear": "The sheared arch",
+    "maps": "Maps of two numbers",
     "studies": "Studies",
 }
 
@@ -102,6 +103,7 @@ def _page(path: Path, drawn: Drawn) -> str:
         f"```{{code-block}} text\n:class: says\n\n{says}\n```",
         fenced(f"ribbonopt {verb} {shown} --plot", "sh"),
         fenced(f"ribbonopt continue {shown} --plot", "sh") if drawn.continued else "",
+        fenced(f"ribbonopt map {shown}", "sh") if drawn.mapped else "",
         fenced(drawn.report),
         fenced("\n".join(lines[first:]), "yaml"),
     )

@@ -73,6 +73,13 @@ class Modes:
     told: str
     bounds: Array
 
+    def __repr__(self) -> str:
+        """Say what they are in one line."""
+        count = len(self.squared)
+        some = ", ".join(f"{value:.6g}" for value in self.frequencies[:4])
+        more = ", ..." if count > 4 else ""
+        return f"<{count} modes: {some}{more} {self.unit}; {self.negative} grow>"
+
 
 def modes_of(
     solution: Solution, count: int = COUNT, inertia: Inertia | None = None, planar: bool = False

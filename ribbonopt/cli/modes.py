@@ -7,7 +7,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from ribbonopt.classes import dataclass
-from ribbonopt.errors import ConvergenceError, ModelError, SceneError
+from ribbonopt.errors import ConvergenceError, SceneError
 from ribbonopt.reading import is_file
 
 from .common import default_folder, drawn, listing, load, say_left_out
@@ -16,7 +16,6 @@ from .values import count
 
 if TYPE_CHECKING:
     from ribbonopt.checks.modes import Modes
-    from ribbonopt.scene import Scene
     from ribbonopt.solution.solution import Solution
 
 MOST = 200
@@ -50,7 +49,6 @@ def modes(options: argparse.Namespace) -> int:
     if given.is_dir() or (is_file(given) and given.suffix not in YAML):
         return _saved(options, number)
     scene, _ = load(options)
-    _refuse_massless(scene)
     from ribbonopt.pipeline.prepared import solve
 
     if not (options.out or options.plot):
@@ -69,16 +67,6 @@ def modes(options: argparse.Namespace) -> int:
         known = found.refuse(written)
         status = drawn(lambda: _draw(found.solution, known, written)) if options.plot else 0
     return _tell(options, found, known, written) or status
-
-
-def _refuse_massless(scene: Scene) -> None:
-    """Refuse a scene in SI units that does not say what it weighs, before it is solved."""
-    if scene.ribbon is not None and scene.ribbon.density is None:
-        raise ModelError(
-            "ribbon.density: missing; frequencies in Hz need the mass of the ribbon: expected its "
-            "density in kg/m^3, such as 1200",
-            "ribbon.density",
-        )
 
 
 def _saved(options: argparse.Namespace, number: int) -> int:

@@ -19,8 +19,8 @@ def told(solution: Solution, modes: Modes, rows: Sequence[Row]) -> str:
     head = "frequency" if modes.unit == HERTZ else "omega"
     wide = max(map(len, (head, *numbers)), default=0)
     which = which_of(solution, modes)
-    which = f" {which}" if which else ""
-    lines = [f"{solution.scene.name}: {_counted(rows)} of {TITLE}{which}{_units(modes.unit)}"]
+    lines = [f"{solution.scene.name}: {_counted(rows)} of {TITLE}{_units(modes.unit)}"]
+    lines += [f"  ({which})"] if which else []
     lines.append(f"  {'':>3}  {head:<{wide}}  rel. error")
     for row, number in zip(rows, numbers, strict=True):
         line = f"  {row['number']:>3}  {number:<{wide}}  {bar_of(row):<10}  {words_of(row)}"

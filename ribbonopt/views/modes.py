@@ -105,7 +105,9 @@ def draw_modes(solution: Solution, modes: Modes, style: Style = PLAIN) -> Figure
         place(axes, drawing, box, THIN)
         axes.set_xlabel(text, fontsize=sized(8.5), color=INK)
     if style.titles:
-        _title(figure, subject.name, which_of(solution, modes), modes.unit)
+        _title(figure, subject, modes.unit)
+        which = wrapped(which_of(solution, modes), width - MARGIN, sized(8.5))
+        figure.supxlabel(which, fontsize=sized(8.5), color=INK)
     return figure
 
 
@@ -160,9 +162,9 @@ def _caption(row: Row, unit: str, width: float) -> str:
     return "\n".join(told)
 
 
-def _title(figure: Figure, name: str, which: str, unit: str) -> None:
-    words = f"{drawn(name, TITLE)}: small vibrations"
-    look = {"fontsize": sized(11), "fontweight": "bold"}
-    figure.suptitle(f"{words}\n{which}" if which else words, x=0.01, ha="left", **look)
-    units = SI if unit == HERTZ else rf"{SPECIAL}, $\omega$ over $\sqrt{{Dw/(\rho L^4)}}$"
+def _title(figure: Figure, subject: Subject, unit: str) -> None:
+    words = f"{drawn(subject.name, TITLE)}: small vibrations"
+    figure.suptitle(words, x=0.01, ha="left", fontsize=sized(11), fontweight="bold")
+    units = SI if subject.units.si else SPECIAL
+    units += "" if unit == HERTZ else r", $\omega$ over $\sqrt{Dw/(\rho L^4)}$"
     figure.text(0.99, 0.985, units, ha="right", va="top", fontsize=sized(8.5), color=FAINT)

@@ -98,6 +98,14 @@ def test_a_saved_result_has_its_modes_beside_it(run: Run, saved: Path) -> None:
     assert {path.name for path in Path("here").iterdir()} == FILES | RESULT
     after = run("modes", "here/summary.json", "--count", 3, "--json").out  # any file of it
     assert json.loads(before) == json.loads(after)
+    # Nor do they stay beside another solution.
+    assert run("solve", saved / "strip.yaml", "--out", "here", "--quiet") == (0, "", "")
+    assert {path.name for path in Path("here").iterdir()} == RESULT
+
+
+@pytest.mark.slow
+def test_modes_of_a_result_are_drawn_with_it(run: Run, saved: Path) -> None:
+    shutil.copytree(saved / "strip", "here")
     assert run("modes", "here", "--count", 1, "--plot", "--quiet") == (0, "", "")
     assert Path("here/modes.png").stat().st_size > 10_000
     # What is drawn of a result, and looked at, has the modes that stand there.
@@ -105,11 +113,9 @@ def test_a_saved_result_has_its_modes_beside_it(run: Run, saved: Path) -> None:
     assert "here/modes.png" in out.splitlines()
     assert run("view", "here")[0] == 0
     assert '"modes":{"shape":0' in Path("here/view.html").read_text()
-    # A picture of other modes does not stay; nor do modes of another solution.
+    # A picture of other modes does not stay.
     assert run("modes", "here", "--quiet") == (0, "", "")
     assert not Path("here/modes.png").exists()
-    assert run("solve", saved / "strip.yaml", "--out", "here", "--quiet") == (0, "", "")
-    assert {path.name for path in Path("here").iterdir()} == RESULT
 
 
 def test_modes_are_seen_where_they_are_asked_for(run: Run, saved: Path) -> None:
@@ -149,7 +155,24 @@ def test_what_was_not_solved_has_none(run: Run, strip: str) -> None:
     assert {path.name for path in Path("kept.not-converged").iterdir()} == RESULT
 
 
-SI = "ribbon={length: 0.3, width: 0.01, thickness: 1e-4, youngs_modulus: 2e9, poisson_ratio: 0.3}"
+SIZES = "length: 0.3, width: 0.01, thickness: 1e-4, youngs_modulus: 2e9, poisson_ratio: 0.3"
+LENGTH = ("--set", "interval=[0, 0.3]")
+
+
+def test_frequencies_are_in_hertz_where_the_mass_is_known(run: Run, strip: str) -> None:
+    """Of a strip whose stiffness Dw is E w h^3 / 12 (1 - nu^2), of its mass per length rho w h."""
+    words = ("modes", strip, *LENGTH, "--count", 2, "--json")
+    told = json.loads(run(*words, "--set", f"ribbon={{{SIZES}, density: 1200}}").out)
+    stiffness, mass = 2e9 * 0.01 * 1e-12 / 12 / (1 - 0.3**2), 1200 * 0.01 * 1e-4
+    unit = (stiffness / mass) ** 0.5 / 0.3**2
+    assert told["unit"] == "Hz"
+    for mode, truth in zip(told["modes"], BEAM, strict=False):
+        assert mode["frequency"] == pytest.approx(truth * unit / (2 * np.pi), rel=1e-8)
+        assert mode["squared"] == pytest.approx((truth * unit) ** 2, rel=1e-8)
+    without = json.loads(run(*words, "--set", f"ribbon={{{SIZES}}}").out)
+    assert without["unit"] == "sqrt(Dw/(rho L^4))"
+    for mode, truth in zip(without["modes"], BEAM, strict=False):
+        assert mode["frequency"] == pytest.approx(truth, rel=1e-8)
 
 
 @pytest.mark.parametrize(
@@ -162,7 +185,6 @@ SI = "ribbon={length: 0.3, width: 0.01, thickness: 1e-4, youngs_modulus: 2e9, po
         (("saved", "--set", "tolerance=1e-9"), "--set: saved is a saved result; expected a scene"),
         (("branch",), "branch: is a branch or a batch, expected a scene or the result of one"),
         ((".",), ".: is a folder without a result of ribbonopt"),
-        (("strip.yaml", "--set", SI), "ribbon.density: missing; frequencies in Hz need the mass"),
     ],
 )
 def test_bad_input_is_refused(

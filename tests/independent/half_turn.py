@@ -19,7 +19,7 @@ from .vibrating import Ribbon
 
 @dataclass(frozen=True)
 class Sheared:
-    """An arch of a law (see `Ribbon`), shortened by d, integrated in so many steps to its middle."""
+    """An arch of a law (see `Ribbon`), shortened by d, in so many steps to its middle."""
 
     law: tuple[float, float] | float
     d: float

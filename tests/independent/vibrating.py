@@ -25,9 +25,9 @@ IN_PLANE, OUT_OF_PLANE = [0, 2, 4], [1, 3, 5]
 class Ribbon:
     """A ribbon that starts at the origin, clamped; its end is clamped at a place, or free.
 
-    `law` is (B2, B3) of a rod, or the number delta of the smooth law of ribbons. `weight` is a force
-    per length where the width is one, and follows the width; `curl` a natural curvature; `taper`
-    the part of the width lost from end to end; `inertia` (J1, J3) per length.
+    `law` is (B2, B3) of a rod, or the number delta of the smooth law of ribbons. `weight` is a
+    force per length where the width is one, and follows the width; `curl` a natural
+    curvature; `taper` the part of the width lost from end to end; `inertia` (J1, J3) per length.
     """
 
     law: tuple[float, float] | float = (1.0, 2.0)
@@ -105,7 +105,7 @@ class Ribbon:
     ) -> Numbers:
         """Signed roots of squared frequencies, ascending, up to `most`.
 
-        The grid is even in the frequency itself; two roots between neighbours of it would be missed.
+        The grid is even in the frequency itself; two roots between neighbours are missed.
         """
         omega = np.linspace(-most / 4, most, grid)
         squared = omega * np.abs(omega)

@@ -19,12 +19,15 @@ from ..stability import MOST, too_coarse
 from ..variation import Variation
 from .interpolated import interpolated
 from .kinetic import Gyration, Kinetic, kinetic
-from .lowest import Spectrum, improved, lowest
+from .lowest import Pencil, Spectrum
 from .stated import Vibrating, stated
 from .zero import Neutral
 
 MARGIN = 3.0  # bounds over what two opinions differ by
 SHAPE = 10.0  # bounds over the error of the shape
+LARGEST = 1e12  # compliance: a stage is where the law is singular
+SINGULAR = "the law is singular where the ribbon is all but straight"
+SOFT = 1e-13  # of the largest eigenvalue: what has no stiffness and no mass
 ROUNDING = 1e-12  # of omega^2 and the shift: least bound
 
 
@@ -74,10 +77,13 @@ def vibrations(
     variation = what.variation(again=False)
     if not variation.error < MOST:
         return too_coarse(variation)
+    if not variation.largest < LARGEST:
+        return SINGULAR
     energy = _kinetic(what, variation, gyration)
     neutral = Neutral.of(what, variation, energy)
     scale = 1 / (variation.largest * what.length**4)
-    first = lowest(variation.form, energy.rows, count + len(neutral.words), scale)
+    pencil = Pencil(variation.form, energy.rows, SOFT * variation.largest)
+    first = pencil.lowest(count + len(neutral.words), scale)
     if isinstance(first, str):
         return first
     kept = np.flatnonzero(~neutral.among(first, energy))[:count]
@@ -115,19 +121,22 @@ def _bounds(
     """Bounds (k,) of the errors of omega^2; infinite where the second opinion has no such mode."""
     again = what.variation(again=True)
     rows = _kinetic(what, again, gyration).rows
+    pencil = Pencil(again.form, rows, SOFT * again.largest)
     near = interpolated(first.modes, variation, again)
     if near is not None:
-        other = improved(again.form, rows, near, first.shift)
+        other = pencil.improved(near, first.shift)
     else:
-        found = lowest(again.form, rows, len(first.squared), scale)
+        found = pencil.lowest(len(first.squared), scale)
         other = np.empty(0) if isinstance(found, str) else found.squared
     apart = np.full(len(first.squared), np.inf)
     both = min(len(apart), len(other))
-    apart[:both] = np.abs(first.squared[:both] - other[:both])
+    if first.complete:
+        apart[:both] = np.abs(first.squared[:both] - other[:both])
     nx = variation.form.A.shape[1]
     own, compliance = first.modes[:, nx:], np.diagonal(variation.form.Q, axis1=1, axis2=2)[:, nx:]
     strained = np.einsum("eyk,ey->k", own**2, np.abs(compliance))
     parts = np.abs(first.squared) + 2 * strained
     least = SHAPE * variation.stages.error * parts + ROUNDING * (parts + first.shift)
+    least += SOFT * variation.largest * (own**2).sum(axis=(0, 1))
     bounds: Array = MARGIN * apart + least
     return bounds

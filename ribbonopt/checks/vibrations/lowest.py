@@ -10,11 +10,13 @@ more than were found, another block would go on.
 from __future__ import annotations
 
 from dataclasses import replace
+from functools import cached_property
 from typing import NamedTuple
 
 import numpy as np
 
 from ribbonopt.arrays import Array
+from ribbonopt.classes import dataclass
 
 from ..chain_form import ChainForm
 from ..elimination import Elimination, factored
@@ -33,62 +35,80 @@ class Spectrum(NamedTuple):
     """Eigenvalues omega^2 (k,) in order, their modes, and how far below all the shift was.
 
     `modes` (N, nx + m, k) are the states before each element and its own variables, of kinetic
-    energy one half at unit frequency.
+    energy one half at unit frequency. `complete` says that none is missed.
     """
 
     squared: Array
     modes: Array
     shift: float
+    complete: bool
 
 
-def lowest(form: ChainForm, rows: Array, count: int, scale: float) -> Spectrum | str:
-    """Return the `count` lowest eigenvalues, fewer where not so many move, or why there are none.
+@dataclass(frozen=True, eq=False)
+class Pencil:
+    """K and M = R^T R along a chain of elements.
 
-    `rows` (N, c, nx + m) give what moves at the stages, M = rows^T rows; `scale` is a stiffness
-    over a mass and the fourth power of a length.
+    `rows` (N, c, nx + m) are R by element, what moves at the stages; `soft`, next to nothing of the
+    largest eigenvalue of K, is added to K times the metric of its form: variables without any
+    effect are no disturbances.
     """
-    mass: Array = rows.swapaxes(1, 2) @ rows
-    found = _shifted(form, mass, scale)
-    if isinstance(found, str):
+
+    form: ChainForm
+    rows: Array
+    soft: float
+
+    @cached_property
+    def mass(self) -> Array:
+        """Hessians (N, nx + m, nx + m) of the elements."""
+        found: Array = self.rows.swapaxes(1, 2) @ self.rows
         return found
-    factors, shift = found
-    krylov = _Krylov(factors, rows)
-    krylov.grow(count)
-    while True:
-        mu = krylov.values[:count]
-        squared = 1 / mu - shift
-        if len(squared) < count:  # all that moves has been found
-            break
-        beyond = squared[-1] + BESIDE / mu[-1]
-        below = factored(replace(form, Q=form.Q - beyond * mass), 0.0).negative
-        if below <= int((1 / krylov.values - shift < beyond).sum()) or not krylov.again(count):
-            break
-    return Spectrum(squared, krylov.modes(len(squared)), shift)
 
+    def factored(self, sigma: float) -> Elimination:
+        """Return the elimination of K + sigma M."""
+        return factored(replace(self.form, Q=self.form.Q + sigma * self.mass), self.soft)
 
-def improved(form: ChainForm, rows: Array, near: Array, shift: float) -> Array:
-    """Return the eigenvalues omega^2 (k,) of modes near to `near` (N, nx + m, k).
+    def lowest(self, count: int, scale: float) -> Spectrum | str:
+        """Return the `count` lowest eigenvalues, all that move if fewer, or why there are none.
 
-    `shift` is one below all of them. One step of the inverse iteration in all of the space of these
-    modes: errors of the eigenvalues are of the order of the squares of those of the modes.
-    """
-    mass: Array = rows.swapaxes(1, 2) @ rows
-    factors = factored(replace(form, Q=form.Q + shift * mass), 0.0)
-    krylov = _Krylov(factors, rows)
-    moved, _ = np.linalg.qr((rows @ near).reshape(krylov.size, -1))
-    krylov.enlarge(moved)
-    return 1 / krylov.values - shift
+        `scale` is a stiffness over a mass and the fourth power of a length.
+        """
+        found = self._shifted(SHIFT * scale)
+        if isinstance(found, str):
+            return found
+        factors, shift = found
+        krylov = _Krylov(factors, self.rows)
+        krylov.grow(count)
+        while True:
+            mu = krylov.values[:count]
+            squared, complete = 1 / mu - shift, True
+            if len(squared) < count:  # all that moves has been found
+                break
+            beyond = squared[-1] + BESIDE / mu[-1]
+            known = int((1 / krylov.values - shift < beyond).sum())
+            complete = self.factored(-beyond).negative <= known
+            if complete or not krylov.again(count):
+                break
+        return Spectrum(squared, krylov.modes(len(squared)), shift, complete)
 
+    def improved(self, near: Array, shift: float) -> Array:
+        """Return the eigenvalues omega^2 (k,) of modes near to `near` (N, nx + m, k).
 
-def _shifted(form: ChainForm, mass: Array, scale: float) -> tuple[Elimination, float] | str:
-    """Return the factors of K + sigma M, positive, and sigma."""
-    shift = SHIFT * scale
-    for _ in range(SHIFTS):
-        factors = factored(replace(form, Q=form.Q + shift * mass), 0.0)
-        if not factors.negative:
-            return factors, shift
-        shift *= FARTHER
-    return "something gives way that has no mass (inertia: d3 or d1)"
+        `shift` is one below all of them. One step of the inverse iteration in all of the space of
+        these modes: errors of the eigenvalues are of the order of the squares of theirs.
+        """
+        krylov = _Krylov(self.factored(shift), self.rows)
+        moved, _ = np.linalg.qr((self.rows @ near).reshape(krylov.size, -1))
+        krylov.enlarge(moved)
+        return 1 / krylov.values - shift
+
+    def _shifted(self, shift: float) -> tuple[Elimination, float] | str:
+        """Return the factors of K + sigma M, positive, and sigma."""
+        for _ in range(SHIFTS):
+            factors = self.factored(shift)
+            if not factors.negative:
+                return factors, shift
+            shift *= FARTHER
+        return "something gives way that has no mass (inertia: d3 or d1)"
 
 
 class _Krylov:

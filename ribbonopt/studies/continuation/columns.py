@@ -17,9 +17,9 @@ COLUMNS: Mapping[str, str] = {
     "error": "bound of the relative error of the answer; of the place of a special point, relative "
     "to the parameter there; empty: not known",
     "softest": "smallest eigenvalue of the second variation, where `stability: eigenvalue` asks",
-    "frequency1, ...": "natural frequencies, lowest first, where `modes` asks: in Hz, or "
+    "frequency1": "lowest natural frequency, where `modes` asks, and so on: in Hz, or "
     "sqrt(Dw/(rho L^4)); negative: a rate of growth",
-    "squared1, ...": "their squares omega^2, in (rad/s)^2 or Dw/(rho L^4); negative: unstable",
+    "squared1": "its omega^2, and so on, in (rad/s)^2 or Dw/(rho L^4); negative: unstable",
     "energy": "energy of the whole ribbon",
     "potential": "energy less the work of dead loads; empty: some load has no potential",
     "H0": "H = W_Leg + n3 at the start, constant without dead loads",

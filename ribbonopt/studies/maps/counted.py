@@ -26,8 +26,3 @@ def counted(scene: Scene, prepared: Prepared) -> tuple[list[Solution], Row]:
         shapes += [{**row, "image": image} for image in range(len(kind.images))]
     row = {"count": found.count, "stable": found.stable, "below": found.below}
     return list(found.solutions), {**row, "shapes": shapes, "told": found.told}
-
-
-def all_of(scene: Scene, prepared: Prepared) -> list[Solution]:
-    """Return the equilibria that branches begin at, as `counted` does."""
-    return list(all_equilibria(scene, prepared).solutions)

@@ -16,7 +16,7 @@ from ribbonopt.scene.lens import with_value
 from ribbonopt.scene.maps import MapPlan
 from ribbonopt.studies.batch.study import Source, StudyRibbon
 
-LINES, LOCI, POINTS = "branches", "loci", "points"
+LINES, LOCI, POINTS = "map-branches", "map-loci", "map-points"
 FOLDERS = (LINES, LOCI, POINTS)
 LINE, LOCUS, SHAPES = "line", "locus", "shapes"
 BEYOND = 3.0  # times the way from the point before to a special one: where a branch would go

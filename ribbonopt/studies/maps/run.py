@@ -53,7 +53,8 @@ def plan_of(scene: Scene) -> MapPlan:
         for value in plan.parameters[other]:
             there = with_value(bare, other, value)
             try:
-                refuse_far_goals(replace(with_value(there, path, begin), continuation=stage))
+                for far in (stage, replace(stage, from_=end, to=begin)):
+                    refuse_far_goals(replace(there, continuation=far))
                 problem = problem or prepare(with_value(there, path, begin)).problem
                 refuse_idle(Curve(there, stage), problem)
             except ModelError as error:

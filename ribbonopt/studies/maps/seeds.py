@@ -1,21 +1,51 @@
-"""Which equilibria at the beginning of a line no branch has led to yet."""
+"""What the branches of a line begin with, and whether one of them has led there already."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Sequence
+from dataclasses import replace
 from itertools import pairwise
 
 import numpy as np
 
+from ribbonopt.errors import ConvergenceError, SceneError
+from ribbonopt.pipeline.prepared import Prepared
 from ribbonopt.plain import Row
+from ribbonopt.scene import Scene, validate_scene
+from ribbonopt.scene.equilibria import Equilibria
 from ribbonopt.scene.quantities import START_VECTORS
 from ribbonopt.solution.solution import Solution
 from ribbonopt.studies.continuation.recorded import numbers_of
 from ribbonopt.studies.continuation.walk.points import POINT
+from ribbonopt.studies.equilibria.all import all_equilibria
 
 SAME = 0.02  # of the largest: what polynomials between points of a branch are trusted with
 TOLD = ("energy", *(name for names in START_VECTORS for name in names))
+BESIDE = 0.01  # of a range: how far beyond its ends is looked
 ABOUT = 4  # points of a branch that its values between two of them are taken from
+
+
+def seeds_at(
+    scene: Scene, prepared: Prepared, along: str, limits: tuple[float, float]
+) -> tuple[tuple[Solution, ...], float | None]:
+    """Return the equilibria at a place of a line, looked for along this line alone.
+
+    None where there is none; and the strain energy below which was looked.
+    """
+    low, high = limits
+    more = BESIDE * (high - low)  # a range has the place itself inside
+    asked = scene
+    if not isinstance(scene.equilibria, Equilibria):
+        asked = replace(scene, equilibria=Equilibria(along={along: (low - more, high + more)}))
+        try:
+            validate_scene(asked)
+        except SceneError:  # there is nothing beyond the end
+            asked = replace(scene, equilibria=Equilibria(along=(along,)))
+    try:
+        found = all_equilibria(asked, prepared)
+    except ConvergenceError:
+        return (), None
+    return found.solutions, found.below
 
 
 def is_known(seed: Solution, branches: Iterable[Sequence[Row]], parameter: str, at: float) -> bool:

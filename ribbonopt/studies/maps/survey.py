@@ -26,6 +26,8 @@ from .regions import Region, regions_of
 Do = Callable[[str, Sequence[Job]], list[Row]]
 INSIDE = 1e-9  # of the square: what is on the border is inside
 MOST = 200  # loci
+AT_ONCE = 2  # of the loci of a line, however many workers there are
+IMAGE = 1e-6  # of the square: special points nearer than this are of mirror images
 
 
 @dataclass(frozen=True, eq=False)
@@ -79,17 +81,34 @@ class Survey:
         self.lines.extend(self.do("lines", asked))
 
     def _follow_loci(self, line: Row) -> None:
-        """Follow the loci of the special points of a line that are on none of those known."""
+        """Follow the loci of the special points of a line that are on none of those known.
+
+        A few at once: one that was followed may lead through the others.
+        """
+        left = self._begins(line)
+        while left and len(self.loci) < MOST:
+            self._follow(left[:AT_ONCE])
+            left = [
+                begin
+                for begin in left[AT_ONCE:]
+                if not self._is_known(begin["kind"], np.array(at(begin, self.plan)))
+            ]
+
+    def _begins(self, line: Row) -> list[Row]:
+        """Return the special points of a line from which loci are to be followed."""
         begins: list[Row] = []
         for special in line.get("specials", ()):
             place = np.array(at(special, self.plan))
             if special["kind"] not in self.plan.of or not _inside(place):
                 continue
             same = [b for b in begins if b["kind"] == special["kind"]]
-            if any(np.hypot(*(np.array(at(b, self.plan)) - place)) < 1e-6 for b in same):
+            if any(np.hypot(*(np.array(at(b, self.plan)) - place)) < IMAGE for b in same):
                 continue  # of a mirror image
             if not self._is_known(special["kind"], place):
                 begins.append(special)
+        return begins
+
+    def _follow(self, begins: Sequence[Row]) -> None:
         first = len(self.loci) + 1
         asked = [
             jobs.locus(self.scene, self.plan, number, begin)

@@ -17,7 +17,6 @@ from ribbonopt.output.staging import staged_result
 from ribbonopt.pipeline.prepared import Prepared
 from ribbonopt.plain import Row
 from ribbonopt.scene import Scene
-from ribbonopt.scene.equilibria import Equilibria
 from ribbonopt.scene.lens import with_value
 from ribbonopt.scene.stages import ends_of, stages_of
 from ribbonopt.solution.solution import Solution
@@ -27,9 +26,9 @@ from ribbonopt.studies.continuation.continuation import Continuation
 from ribbonopt.studies.continuation.files import BranchFolder
 from ribbonopt.studies.continuation.walk.points import POINT
 
-from .counted import all_of, counted
+from .counted import counted
 from .jobs import LINE, LOCUS, SHAPES
-from .seeds import branches_of, is_known
+from .seeds import branches_of, is_known, seeds_at
 
 MOST = 200  # branches of a line, shapes at a point: numbers are names of their folders
 NUMBERED = frozenset(str(number) for number in range(1, MOST + 1))
@@ -52,39 +51,43 @@ class Place:
 
 
 def follow_line(scene: Scene, prepare: Prepare, place: Place, inputs: Row) -> Row:
-    """Follow the branches of all equilibria at the beginning of a line.
+    """Follow the branches of all equilibria at both ends of a line and in its middle.
 
     Those that another one has led to are not followed again. Its row says of all special points
     where they are, in which folder, and the number of their points there.
     """
     along = inputs["along"]
     (stage,) = stages_of(scene)
-    begin, end = stage.from_ or 0.0, ends_of(stage)[-1]
-    bare = with_value(replace(scene, continuation=None), along, begin)
-    prepared, rows, told = prepare(bare), list[list[Row]](), list[str]()
+    low, high = sorted((stage.from_ or 0.0, *ends_of(stage)))
+    bare = replace(scene, continuation=None)
+    prepared, rows, told, count = prepare(bare), list[list[Row]](), list[str](), 0
     specials: list[Row] = []
-    if not isinstance(bare.equilibria, Equilibria):
-        bare = replace(bare, equilibria=Equilibria(along={along: (begin, end)}))
-    seeds = all_of(bare, prepared)
     with staged_result(place.path, NUMBERED, wait=place.wait, durable=False) as staged:
-        for seed in seeds[:MOST]:
-            if is_known(seed, rows, along, begin):
-                continue
-            name = str(len(told) + 1)
-            found, ending = _followed(scene, prepared, staged.folder / name, seed)
-            rows += branches_of(found)
-            told.append(ending)
-            said: Row = {**inputs, "folder": f"{place.name}/{name}"}
-            specials += [
-                {**said, **row, "near": _beside(found, i, along)}
-                for i, row in enumerate(found)
-                if row["kind"] != POINT
-            ]
+        for at, to in ((low, high), (high, low), ((low + high) / 2, (low, high))):
+            seeds, below = seeds_at(with_value(bare, along, at), prepared, along, (low, high))
+            # Without a limit a branch may go through the folds of all modes there are.
+            limit = () if below is None else (f"energy > {below!r}",)
+            asked = replace(stage, from_=at, to=to, stop=limit)
+            there = replace(scene, continuation=asked)
+            for seed in seeds:
+                count += 1
+                if is_known(seed, rows, along, at) or len(told) == MOST:
+                    continue
+                name = str(len(told) + 1)
+                found, ending = _followed(there, prepared, staged.folder / name, seed)
+                rows += branches_of(found)
+                told.append(ending)
+                said: Row = {**inputs, "folder": f"{place.name}/{name}"}
+                specials += [
+                    {**said, **row, "near": _beside(found, i, along)}
+                    for i, row in enumerate(found)
+                    if row["kind"] != POINT
+                ]
         staged.commit()
     return {
         **DONE,
         "branches": len(told),
-        "seeds": len(seeds),
+        "seeds": count,
         "endings": told,
         "specials": specials,
     }

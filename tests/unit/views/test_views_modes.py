@@ -76,13 +76,16 @@ def test_a_panel_for_each_mode() -> None:
         "25 % in plane, antisymmetric",
         "antisymmetric",
     ]
-    # Each panel has as many ribbons as there are phases, in one order from far to near.
+    # Each panel has as many ribbons as there are phases, the one that is not faded over all.
     (one,) = figure.axes[0].collections
-    alone = plot_modes(solution, made_modes(solution, 1))
-    assert len(one.get_paths()) == len(alone.axes[0].collections[0].get_paths())
-    assert len(one.get_paths()) % len(PHASES) == 0
-    narrow = plot_modes(solution, made_modes(solution), Style(width=3.35))
-    assert len({axes.get_position().x0 for axes in narrow.axes}) == 2
+    each = len(one.get_paths()) // len(PHASES)
+    assert len(one.get_paths()) == each * len(PHASES)
+    faces = np.split(np.asarray(one.get_facecolor()), len(PHASES))
+    pale = [part[part[:, 3] > 0, :3].mean() for part in faces]
+    assert max(pale[1:3]) < pale[0]
+    assert pale[4] < pale[3] - 0.1 < min(pale[:3]) - 0.15
+    narrow = plot_modes(solution, made_modes(solution, 3), Style(width=3.35))
+    assert len({axes.get_subplotspec().colspan.start for axes in narrow.axes}) == 2
 
 
 def test_what_only_twists_says_so() -> None:

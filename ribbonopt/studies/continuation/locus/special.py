@@ -11,7 +11,6 @@ closed one, if H is definite: an isola centre; else two branches cross there.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -22,20 +21,18 @@ from ribbonopt.arrays import Array
 from ribbonopt.classes import dataclass
 from ribbonopt.solution.solution import Solution
 
-from ..walk.beside import ENOUGH, Beside, Probe
+from ..walk.beside import ENOUGH, Probe
 from ..walk.points import CROSSING, CUSP, DOUBLE, FOLD, ISOLA, TURN, Point, Special
 from .bars import ROUNDING, SAFETY, halved
 from .laid import Laid
 from .readings import AREA, DETERMINANT, SLOPE, SPEED, Readings
+from .roots import AFAR, Apart, from_afar, regular
 
 if TYPE_CHECKING:
     from .equations import LocusEquations
 
 ROUND = 0.5  # least cosine of the angle that the direction in the plane turns by in one step
 ASIDE = 0.25  # of a step: on both sides of a special point, between which it is found again
-ROUNDS, KNOTS = 20, 4  # of secants; points that they go through
-SETTLED = 1e-9  # change of a root, in arclength
-NEAR = 1e-3  # of a step: points nearer to each other than that interpolate nothing
 BESIDE = 1e-3  # half the arclength that second derivatives of l2 are taken over
 MEETS = {
     DETERMINANT: "a locus of branch points is met",
@@ -45,23 +42,12 @@ MEETS = {
 DIRECTION = "direction of the locus"
 
 
-class Apart(Beside[Solution]):
-    """The same beside two points, however near to each other it has been read."""
-
-    def _nearest(self, arc: float) -> list[Probe[Solution]]:
-        found: list[Probe[Solution]] = []
-        for probe in sorted(self.known.values(), key=lambda probe: abs(probe.arc - arc)):
-            if all(abs(probe.arc - other.arc) > NEAR * abs(self.whole) for other in found):
-                found.append(probe)
-        return found[:KNOTS]
-
-
 @dataclass(frozen=True, eq=False)
 class Root:
     """Where a test function vanishes between two points."""
 
     equations: LocusEquations
-    beside: Beside[Solution]
+    beside: Apart
     arc: float
     name: str
 
@@ -104,51 +90,21 @@ def special_of(
     return Special(points, unresolved, len(names))
 
 
-def _root(beside: Beside[Solution], readings: Readings, name: str) -> float | None:
+def _root(beside: Apart, readings: Readings, name: str) -> float | None:
     """Return the arclength where a test function vanishes, None where it is not found.
 
-    On a locus of folds nothing is singular there, but where another surface crosses.
+    Where loci meet none is found next to the place: it is read from afar.
     """
 
     def test(probe: Probe[Solution]) -> float:
         return readings.at(probe.solution, probe.unknowns).values[name]
 
-    if readings.equations.kind == FOLD and name != DETERMINANT:
-        return _regular(beside, test)
-    return beside.root(test)
-
-
-def _regular(beside: Beside[Solution], test: Callable[[Probe[Solution]], float]) -> float | None:
-    """Return the root of a test function that can be read next to it, by secants of its inverse."""
-    values = {probe.arc: test(probe) for probe in beside.ends}
-    low, high = sorted(values)
-    if values[low] * values[high] > 0:
-        return None
-    arc = low + (high - low) * values[low] / (values[low] - values[high])
-    for _ in range(ROUNDS):
-        probe = beside.at(arc, 0.0)
-        if probe is None:
-            return None
-        values[arc] = test(probe)
-        low, high = (arc, high) if values[arc] * values[low] > 0 else (low, arc)
-        nearest = sorted(values, key=lambda place: abs(values[place]))[:KNOTS]
-        found = _inverse({place: values[place] for place in nearest})
-        if not low < found < high:
-            found = (low + high) / 2
-        if abs(found - arc) <= SETTLED:
-            return found
-        arc = found
-    return None
-
-
-def _inverse(values: Mapping[float, float]) -> float:
-    """Return where a function vanishes, by the polynomial of its inverse through some values."""
-    found = 0.0
-    for place, value in values.items():
-        others = (other for other in values.values() if other != value)
-        weight = float(np.prod([other / (other - value) for other in others]))
-        found += weight * place
-    return found
+    if name not in MEETS:
+        return regular(beside, test)
+    first, last = (readings.at(end.solution, end.unknowns).values[name] for end in beside.ends)
+    if name == SLOPE:
+        return from_afar(beside, readings.slope, (first, last))
+    return from_afar(beside, test, (first, last))
 
 
 def _point(root: Root) -> Point[Solution]:
@@ -158,6 +114,7 @@ def _point(root: Root) -> Point[Solution]:
     finer = _finer(root)
     if finer is not None:
         moved = np.abs(finer.unknowns[-2:] - place[-2:])
+        moved += finer.beside.doubt * np.abs(finer.beside.tangent(finer.arc)[-2:])
         root, place = finer, finer.unknowns
         # Of both parameters, in units of l1.
         first, second = equations.surface.spans
@@ -199,7 +156,8 @@ def _level(equations: LocusEquations, point: Point[Solution]) -> str:
 def _finer(root: Root) -> Root | None:
     """Return the root between two points of the locus on a mesh twice as fine."""
     equations, beside = root.equations, root.beside
-    aside = min(ASIDE * beside.whole, beside.reach(root.arc))
+    aside = 2 * AFAR if root.name in MEETS else ASIDE * beside.whole
+    aside = min(aside, beside.reach(root.arc))
     try:
         sides = [_on_halves(equations, beside, root.arc + off) for off in (-aside, aside)]
         readings, again = Readings(equations, sides[0]), Apart(equations, *sides)
@@ -210,7 +168,7 @@ def _finer(root: Root) -> Root | None:
     return None if arc is None else Root(equations, again, arc, root.name)
 
 
-def _on_halves(equations: LocusEquations, beside: Beside[Solution], arc: float) -> Point[Solution]:
+def _on_halves(equations: LocusEquations, beside: Apart, arc: float) -> Point[Solution]:
     """Return the point of a locus at an arclength on halved elements; LinAlgError for none."""
     a = beside.a
     trial = equations.correct_along(a, a.tangent, arc, beside.unknowns(arc), ENOUGH)

@@ -27,6 +27,8 @@ from ..walk.metric import Metric
 from ..walk.points import Point
 from .laid import Laid
 
+SMALLEST = 1e-4  # of the first step
+
 
 @dataclass(frozen=True, eq=False)
 class Surface(Curve):
@@ -50,9 +52,19 @@ class Surface(Curve):
         return Surface(self.scene, back, self.units), self
 
     @property
+    def rounds(self) -> bool:
+        """A locus that closes has nothing more to be found."""
+        return True
+
+    @property
     def other(self) -> str:
         """Path of l1."""
         return self.stage.paths[0]
+
+    @cached_property
+    def smallest(self) -> float:
+        """Change of l2 below which a step is not tried: next to its end nothing is to be seen."""
+        return self.stage.smallest or SMALLEST * min(self.span, self.first)
 
     @cached_property
     def between(self) -> tuple[float, float]:
