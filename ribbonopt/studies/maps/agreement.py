@@ -28,10 +28,9 @@ def disagreement(kind: str, negative: int | None, here: Row, there: Row) -> str:
     """
     if negative is None:
         return ""
-    counts = [_by_negative(row["shapes"]) for row in (here, there)]
-    if any(count is None for count in counts):
+    one, other = (_by_negative(row["shapes"]) for row in (here, there))
+    if one is None or other is None:
         return ""
-    one, other = (count or {} for count in counts)
     for below in range(negative):
         if one.get(below, 0) != other.get(below, 0):
             word = "stable shapes" if below == 0 else f"shapes with {below} negative directions"

@@ -65,12 +65,13 @@ class MapFolder:
 
     def keep(self, job: Job, row: Row) -> None:
         """Add the row of a job, which whatever ends this process spares."""
-        line = {"place": job.place, "digest": digest_of(job), "row": row}
+        digest = digest_of(job)
+        line = {"place": job.place, "digest": digest, "row": row}
         try:
             self._file.write(json.dumps(line) + "\n")
         except OSError as error:
             raise self._full(error) from error
-        self.known[line["digest"]] = row
+        self.known[digest] = row
 
     def write(self, data: Mapping[str, Any], rows: Rows) -> None:
         """Write the map, and the table of the points of its loci."""

@@ -122,7 +122,8 @@ class Survey:
             place = np.array(at(begin, self.plan))
             again = self._is_known(begin["kind"], place)
             points = [begin] if again or not found else found
-            ending = "the same as one before" if again else row.get("ending", row["message"])
+            ended = str(row.get("ending", row["message"]))
+            ending = "the same as one before" if again else ended
             self.loci.append(Locus.of(number, begin["kind"], points, self.plan, ending))
 
     def _is_known(self, kind: str, place: Array) -> bool:
