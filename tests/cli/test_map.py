@@ -115,7 +115,7 @@ def test_a_map_is_no_shape(run: Run, scene: Path, undrawn: type[MadeCrew]) -> No
         found = run(verb, "results/made-map")
         assert found.status in (2, 3)
         assert "is a map" in found.err
-        assert "loci/1" in found.err
+        assert "map-loci/1" in found.err
 
 
 @pytest.mark.parametrize("alive", [0, 5])
@@ -143,10 +143,10 @@ def test_work_whose_files_are_gone_is_done_again(
     run: Run, scene: Path, undrawn: type[MadeCrew]
 ) -> None:
     run("map", scene)
-    shutil.rmtree("results/made-map/loci/2")
+    shutil.rmtree("results/made-map/map-loci/2")
     undrawn.asked = []
     assert run("map", scene, "--resume").status == 0
-    assert undrawn.asked == ["loci/2"]
+    assert undrawn.asked == ["map-loci/2"]
 
 
 def test_a_map_of_another_scene_is_not_gone_on_with(
@@ -173,7 +173,7 @@ def test_lines_that_find_nothing(
     assert found.status == 3
     assert found.err.count("\n") == 1
     assert "no fold" in found.err and "kept in results/made-map" in found.err
-    assert Path("results/made-map/branches/1").is_dir()
+    assert Path("results/made-map/map-branches/1").is_dir()
 
 
 def test_damaged_files_are_told(run: Run, scene: Path, undrawn: type[MadeCrew]) -> None:

@@ -17,7 +17,7 @@ from ribbonopt.scene import Scene
 from ribbonopt.scene.maps import MapPlan
 
 from . import jobs
-from .agreement import disagreement, pairs_of
+from .agreement import disagreement, pairs_of, partial
 from .inner import innermost
 from .jobs import Job
 from .loci import Locus, at, value_of
@@ -51,6 +51,7 @@ class Survey:
     regions: list[Region] = field(default_factory=list)
     points: list[Row] = field(default_factory=list)
     doubts: list[str] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)
 
     def explore(self) -> None:
         """Do all of it."""
@@ -60,6 +61,7 @@ class Survey:
         self.regions.extend(regions_of([locus.curve for locus in self._drawn]))
         self._count()
         self._agree()
+        self._note()
 
     @property
     def found(self) -> int:
@@ -163,6 +165,13 @@ class Survey:
             f"regions {a + 1} and {b + 1}: {fault}: a locus or a shape was missed"
             for (a, b), fault in self._faults()
         )
+
+    def _note(self) -> None:
+        """Tell where counts of neighbours cannot be compared as they are."""
+        for a, b, number in pairs_of([region.beside for region in self.regions]):
+            here, there = self.best(a), self.best(b)
+            if here and there and (why := partial(self._drawn[number].kind, here, there)):
+                self.notes.append(f"regions {a + 1} and {b + 1}: {why}")
 
     def _faults(self) -> list[tuple[tuple[int, int], str]]:
         """Return pairs of regions whose counts do not fit what is between them."""

@@ -29,7 +29,7 @@ def surveyed(do: Callable[..., Row] = done, text: str = SCENE) -> tuple[Survey, 
 
 def test_each_locus_is_followed_once_and_regions_are_counted() -> None:
     survey, asked = surveyed()
-    assert [place for place in asked if place.startswith("loci")] == ["loci/1", "loci/2", "loci/3"]
+    assert [place for place in asked if place.startswith("map-loci")] == ["map-loci/1", "map-loci/2", "map-loci/3"]
     assert len(survey.lines) == 3
     data = data_of(survey)
     assert data["status"] == "converged"
@@ -54,14 +54,14 @@ def test_lines_without_special_points_say_so() -> None:
     survey, _ = surveyed(partial(done, slopes=()))
     data = data_of(survey)
     assert data["status"] == NOTHING
-    assert "no fold and branch point" in data["message"] or "no fold" in data["message"]
+    assert "no fold or branch point" in data["message"]
     assert len(data["regions"]) == 1
 
 
 def test_a_line_that_fails_is_told_and_the_others_go_on() -> None:
     def lose(ribbon: object) -> Row:
         row = done(ribbon)  # type: ignore[arg-type]
-        if ribbon.place == "branches/2":  # type: ignore[attr-defined]
+        if ribbon.place == "map-branches/2":  # type: ignore[attr-defined]
             row |= {"verified": False, "status": "crashed", "message": "gone", "specials": []}
         return row
 
