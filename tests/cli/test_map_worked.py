@@ -1,4 +1,4 @@
-"""A map of true ribbons, ended at any moment and gone on with; the arch's map against its tables."""
+"""A map of true ribbons, ended at any moment and gone on with; the arch's map against truth."""
 
 import json
 import os
@@ -56,7 +56,12 @@ def test_killed_and_gone_on_with(tmp_path: Path) -> None:
     said = last.communicate()[1]
     assert (last.returncode, said) == (0, "")
     places = [json.loads(line)["place"] for line in open(tmp_path / "out" / "jobs.jsonl")]
-    assert sorted(places) == ["map-branches/1", "map-loci/1", "map-points/1", "map-points/2"]  # each once
+    assert sorted(places) == [
+        "map-branches/1",
+        "map-loci/1",
+        "map-points/1",
+        "map-points/2",
+    ]  # each once
     found = ribbonopt.load(tmp_path / "out")
     assert isinstance(found, ribbonopt.Map)
     assert [(region["count"], region["stable"]) for region in found.regions] == [(3, 2), (1, 1)]

@@ -54,8 +54,8 @@ def partial(kind: str, here: Row, there: Row) -> str:
         return ""
     return (
         f"{counts[0]} and {counts[1]} shapes on both sides of a fold, of which {CHANGE} come or go "
-        f"there: they are counted below the energies {limits[0]:.6g} and {limits[1]:.6g}, and others "
-        "are above"
+        f"there: they are counted below the energies {limits[0]:.6g} and {limits[1]:.6g}, and "
+        "others are above"
     )
 
 

@@ -29,7 +29,11 @@ def surveyed(do: Callable[..., Row] = done, text: str = SCENE) -> tuple[Survey, 
 
 def test_each_locus_is_followed_once_and_regions_are_counted() -> None:
     survey, asked = surveyed()
-    assert [place for place in asked if place.startswith("map-loci")] == ["map-loci/1", "map-loci/2", "map-loci/3"]
+    assert [place for place in asked if place.startswith("map-loci")] == [
+        "map-loci/1",
+        "map-loci/2",
+        "map-loci/3",
+    ]
     assert len(survey.lines) == 3
     data = data_of(survey)
     assert data["status"] == "converged"
