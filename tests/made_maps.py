@@ -54,6 +54,7 @@ def _line(inputs: Row, slopes: Sequence[float]) -> Row:
             **inputs,
             X: float(c * np.sqrt(y)),
             "kind": "fold",
+            "branch": 0,
             "folder": "map-branches/1/1",
             "near": {"point": i, "value": float(c * np.sqrt(y)) - 1},
             "point": i,

@@ -8,6 +8,7 @@ from made_maps import SCENE, SLOPES, done
 
 from ribbonopt.plain import Row
 from ribbonopt.scene import loads_scene
+from ribbonopt.studies.batch.study import StudyRibbon
 from ribbonopt.studies.maps.jobs import Job
 from ribbonopt.studies.maps.survey import Survey
 from ribbonopt.studies.maps.written import NOTHING, data_of, rows_of
@@ -81,3 +82,31 @@ def test_other_points_are_counted_in_their_region() -> None:
     (far, near) = survey.points[-2:]
     assert survey.regions[far["region"]].face.area < 0.5
     assert (far["count"], near["count"]) == (1, 7)
+
+
+def test_another_image_is_tried_where_a_locus_leads_nowhere() -> None:
+    def twice(ribbon: StudyRibbon) -> Row:
+        row = done(ribbon)
+        if ribbon.task == "line":
+            images = [{**s, "near": {**s["near"], "point": s["point"]}} for s in row["specials"]]
+            row["specials"] += [{**image, "folder": "map-branches/1/2"} for image in images]
+        if ribbon.task == "locus" and ribbon.inputs["folder"] == "map-branches/1/1":
+            row |= {"verified": False, "status": "not_followed", "message": "no", "points": []}
+        return row
+
+    survey, asked = surveyed(twice)
+    assert [place for place in asked if "loci" in place] == [f"map-loci/{i}" for i in range(1, 7)]
+    assert survey.doubts == []
+    assert len(survey.regions) == 4
+
+
+def test_a_locus_that_leads_nowhere_is_told() -> None:
+    def lose(ribbon: StudyRibbon) -> Row:
+        row = done(ribbon)
+        if ribbon.task == "locus":
+            row |= {"verified": False, "status": "not_followed", "message": "no", "points": []}
+        return row
+
+    survey, _ = surveyed(lose)
+    assert len([doubt for doubt in survey.doubts if doubt.startswith("locus at")]) == 8
+    assert len(survey.regions) == 1
