@@ -7,8 +7,9 @@ from typing import NamedTuple
 import numpy as np
 
 from ribbonopt.studies.continuation.walk.metric import Metric
-from ribbonopt.studies.continuation.walk.points import Point
+from ribbonopt.studies.continuation.walk.points import Point, Special
 from ribbonopt.studies.continuation.walk.protocol import Trial
+from ribbonopt.studies.continuation.walk.special import special_points
 
 Array = np.ndarray
 
@@ -74,6 +75,9 @@ class Dense:
         row = self.metric.dual(self.reduced(origin.solution, direction))
         value = row @ self.reduced(origin.solution, origin.unknowns) + arc
         return self._newton(origin.solution, guess, row, value)
+
+    def special(self, a: Point[Unit], b: Point[Unit]) -> Special[Unit]:
+        return special_points(self, a, b)
 
     def crossings(self, a: Point[Unit], b: Point[Unit]) -> list[Point[Unit]]:
         return []
@@ -144,6 +148,7 @@ class Straight:
     first: float = 0.1
     smallest: float = 1e-6
     special: bool = True
+    rounds: bool = False
     most: int = 200
     name: str = "l"
 
@@ -186,6 +191,7 @@ class DenseStage:
     begin: Array
     records: Plain = Plain()
     switch: int = 0
+    missing: str = ""
     both: bool = False
 
     @property

@@ -39,7 +39,9 @@ def run(
     `known` are points of a history, `ended` its endings.
     """
 
-    def stage_after(number: int, before: Point[Unit] | None) -> DenseStage:
+    def stage_after(
+        number: int, before: Point[Unit] | None, special: Point[Unit] | None
+    ) -> DenseStage:
         stage = stages[number]
         if before is None or len(stage.begin):
             return stage

@@ -11,6 +11,7 @@ from typing import TYPE_CHECKING, Any
 
 from ribbonopt.checks.stability import stability_in_words
 from ribbonopt.output.digits import SMALL, digits, upwards
+from ribbonopt.studies.continuation.locus.surface import Surface
 from ribbonopt.studies.continuation.recorded import value_of
 from ribbonopt.text import one_line
 
@@ -32,15 +33,19 @@ def report(folder: BranchFolder, continuation: Continuation) -> str:
         lines = [f"{folder.scene.name}: no points"]
     for (stage, branch), ending in continuation.endings.items():
         rows = [r for r in folder.rows if (r["stage"], r["branch"]) == (stage, branch)]
-        lines.append(f"  {_which(stage, branch)}: {_extent(rows)}: {ending.reason}")
-        lines += _notes(rows)
         curve = continuation.curve(stage, continuation.scene)
+        which = _which(stage, branch) + _followed(curve)
+        lines.append(f"  {which}: {_extent(rows)}: {ending.reason}")
+        lines += _notes(rows)
         for before, row in zip([None, *rows], rows, strict=False):
             if row["kind"] != "point":
                 more = _more(row, before, continuation.stages[stage].switch)
                 lines.append(f"    {row['kind']} at {_place(row, curve)}{more}")
         told = list(_stability(rows))
-        lines += [f"    {each}" for each in told]
+        beside = (
+            "on the side with fewer negative directions: " if isinstance(curve, Surface) else ""
+        )
+        lines += [f"    {beside}{each}" for each in told]
         if told and continuation.prepared.scene.boundary.repeats:
             lines.append("    (among disturbances with the symmetry of which a piece is solved)")
     return "\n".join([*lines, f"  written: {one_line(listing(folder.folder))}"])
@@ -69,14 +74,33 @@ def _which(stage: int, branch: int) -> str:
     return f"stage {stage + 1}" + (f", branch {branch}" if branch else "")
 
 
+def _followed(curve: Curve) -> str:
+    """Say what a stage follows where it is a locus."""
+    if not isinstance(curve, Surface):
+        return ""
+    return f", locus of {curve.stage.of}s in {curve.other} and {curve.name}"
+
+
 def _place(row: Row, curve: Curve) -> str:
     """Return where a special point is, with the bar of that where it is known."""
+    if isinstance(curve, Surface):
+        return _in_plane(row, curve)
     value, relative = value_of(row), row["error"]
     if relative is None:
         return f"{row['parameter']} = {value:.10g} +- not known"
     bar = relative * curve.measure(value)
     number = digits(value, bar, 0 < abs(value) < SMALL)
     return f"{row['parameter']} = {number} +- {upwards(bar)}"
+
+
+def _in_plane(row: Row, surface: Surface) -> str:
+    """Return where a special point of a locus is: l1 with its bar, and l2."""
+    value, relative = float(row[surface.other]), row["error"]
+    told = f"{value:.10g} +- not known"
+    if relative is not None:
+        bar = relative * surface.measure(value)
+        told = f"{digits(value, bar, 0 < abs(value) < SMALL)} +- {upwards(bar)}"
+    return f"{surface.other} = {told}, {surface.name} = {value_of(row):.10g}"
 
 
 def _more(row: Row, before: Row | None, switch: bool | int) -> str:

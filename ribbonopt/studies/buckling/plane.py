@@ -94,13 +94,13 @@ class LoadsInPlane:
 
         By increasing way from its first end; empty where there is no straight state.
         """
-        states, result, way = self._states(line), [], line[1] - line[0]
+        states, way = self._states(line), line[1] - line[0]
         # A rod may buckle beyond the line, as a ribbon is softer than the rod with its stiffnesses.
         spans = ((-share, 1 + share) for share in BEYOND)
-        loads = next((found for span in spans if (found := states.between(*span)) is not None), [])
-        for load in sorted(
-            (one for one in loads if 0 <= one.value <= 1), key=lambda one: one.value
-        ):
+        loads = next((some for span in spans if (some := states.between(*span)) is not None), [])
+        inside = sorted((one for one in loads if 0 <= one.value <= 1), key=lambda one: one.value)
+        result = []
+        for load in inside:
             place = line[0] + load.value * way
             found = self.crossed(load.mode, self.across(place, way))
             result += [] if found is None else [found]
@@ -167,7 +167,7 @@ class LoadsInPlane:
             (ahead.nodes - behind.nodes) / 2,
             (ahead.conditions - behind.conditions) / 2,
         )
-        residuals, derivatives = blocks.linearize(output.w, output.p)
+        _, derivatives = blocks.linearize(output.w, output.p)
         step = factored(blocks, derivatives, output.p, slope).solve(slope)
         _, _, constants = layout.unpack(step)
         found = aside + float(constants[self._deflected.sizes[1]]) * one.span

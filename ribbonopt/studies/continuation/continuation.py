@@ -124,7 +124,8 @@ class Continuation:
         """
         ways = [max(1, len(ends_of(stage))) for stage in self.stages]
         mains = {key: e for key, e in self.endings.items() if key[1] < ways[key[0]]}
-        short = next((ending for ending in mains.values() if not ending.reached), None)
+        reasons = [ending.reason for ending in mains.values() if not ending.reached]
+        short = Ending(False, "; ".join(reasons)) if reasons else None
         last = mains.get((len(ways) - 1, ways[-1] - 1))
         if ending := short or last:
             return ending

@@ -110,6 +110,11 @@ class Curve:
         return self.stage.special
 
     @property
+    def rounds(self) -> bool:
+        """A branch that closes has not reached its goal."""
+        return False
+
+    @property
     def most(self) -> int:
         """Most points."""
         return self.stage.points

@@ -1,9 +1,8 @@
-"""What is recorded of the points of a branch, and the conditions that end it."""
+"""What is recorded of the points of a branch: rows of plain numbers, and their names."""
 
 from __future__ import annotations
 
 from collections.abc import Iterable, Mapping
-from functools import cached_property
 from itertools import chain
 from typing import Any
 
@@ -12,7 +11,6 @@ import numpy as np
 from ribbonopt.accuracy.compared import alone
 from ribbonopt.accuracy.estimate import analyse, relative_error
 from ribbonopt.checks.zero_moment import lacks_linearisation, unknown_of
-from ribbonopt.classes import dataclass
 from ribbonopt.errors import ModelError
 from ribbonopt.plain import Row, finite
 from ribbonopt.scene import ContinuationStage, Scene
@@ -25,7 +23,7 @@ from ribbonopt.solution.solution import Solution
 
 from .curve import Curve
 from .frequencies import frequencies, names_of
-from .stops import Stops, conditions_of
+from .stops import conditions_of
 from .walk.points import POINT, Point
 
 #: numbers that every row has, besides the parameters and what the scene records
@@ -150,43 +148,6 @@ class Recorder:
         solution, value = point.solution, curve.value(point.position)
         found = numbers_of(solution) | sampled(solution, self.formulas)
         return {**self._parameters(solution.scene, curve.stage, value), **found}
-
-
-@dataclass(frozen=True, eq=False)
-class StageRecords:
-    """What is recorded of the points of one stage."""
-
-    recorder: Recorder
-    curve: Curve
-
-    def row(self, point: Point[Solution]) -> Row:
-        """Return what is recorded of a point."""
-        return self.recorder.row(point, self.curve)
-
-    @cached_property
-    def stops(self) -> Stops:
-        """What ends the stage."""
-        return Stops(self.curve.stage)
-
-    def stopped(self, row: Mapping[str, Any]) -> str:
-        """Return the condition of the stage that a row meets, "" if none."""
-        if not self.stops.conditions:
-            return ""
-        return self.stops.met(self.recorder.named(row, self.curve.stage))
-
-    def stopped_at(self, kind: str, count: int) -> str:
-        """Return what ends the stage at the special point of a kind and number, "" if nothing."""
-        return self.stops.met_at(kind, count)
-
-    def margins(self, point: Point[Solution]) -> dict[str, float]:
-        """Return how far a point is beyond the conditions on what varies along the branch.
-
-        Counts jump, and bounds of the error are none: conditions on them are met as they come.
-        """
-        if not self.stops.conditions:
-            return {}
-        varying = self.recorder.varying(point, self.curve)
-        return self.stops.margins(self.recorder.named(varying, self.curve.stage))
 
 
 def value_of(row: Mapping[str, Any]) -> float:

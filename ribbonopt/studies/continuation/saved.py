@@ -48,8 +48,16 @@ class SavedRow:
     branch: Count
     parameter: str
     kind: Literal[
-        *("point", "fold", "branch point", "buckling point", "kink"),
-        *("cusp", "isola centre", "crossing", "double point", "turn"),
+        "point",
+        "fold",
+        "branch point",
+        "buckling point",
+        "kink",
+        "cusp",
+        "isola centre",
+        "crossing",
+        "double point",
+        "turn",
     ]
     negative: Count | None
     error: float | None
@@ -208,7 +216,8 @@ def _refuse_state(state: SavedState) -> None:
     refuse_mesh(state.sheets, state.elements, arrays["widths"], arrays["w"])
     count = 1 if state.across is None else 2
     if len(arrays["tangent"]) != len(arrays["w"]) + count:
-        raise ValueError(f"state.tangent: expected {count} more numbers than unknowns")
+        more = "one number" if count == 1 else "two numbers"
+        raise ValueError(f"state.tangent: expected {more} more than unknowns")
     if state.across is not None and state.first_position is None:
         raise ValueError("state.first_position: missing beside across")
     if state.across is not None and len(unpacked(state.across)) != len(arrays["tangent"]):

@@ -13,8 +13,9 @@ from ribbonopt.solution.solution import Solution
 
 from .coordinates import metric_at
 from .curve import Curve
-from .recorded import Recorder, StageRecords
+from .recorded import Recorder
 from .ribbons import RibbonEquations
+from .stage_records import StageRecords
 
 
 @dataclass(frozen=True, eq=False)

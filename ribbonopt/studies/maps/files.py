@@ -1,8 +1,8 @@
 """Maps on disk: the rows of what was done, appended as they come, and the map once it is whole.
 
-`jobs.jsonl` holds the row of each piece of work; `map-branches/N/M`, `map-loci/N` and
-`map-points/N/M` what it found, each a folder that can be drawn and looked at by itself; `map.json`
-the map; `map.csv` the points of all loci.
+`jobs.jsonl` holds the row of each piece of work; `map-branches/N/M`, `map-loci/N`, `map-points/N/M`
+what it found, each a folder that can be drawn and looked at by itself; `map.json` the map;
+`map.csv` the points of all loci.
 """
 
 from __future__ import annotations

@@ -9,10 +9,10 @@ import pytest
 
 from ribbonopt.problem import Posed, Ribbon
 from ribbonopt.scene import loads_scene
-from ribbonopt.studies.buckling.buckling import SETTLED, _States
 from ribbonopt.studies.buckling.mode import Mode
 from ribbonopt.studies.buckling.rod import pure_compliances
 from ribbonopt.studies.buckling.square import Pieces
+from ribbonopt.studies.buckling.straight import SETTLED, StraightStates
 
 TEXT = """
 name: strip
@@ -89,7 +89,7 @@ def test_phases_of_a_mode_meet_at_stations_too(
 def test_the_bar_of_a_load_is_the_error_of_its_mode_on_the_range(low: float, high: float) -> None:
     """Loads are known as fractions of the range, and no better than they are settled."""
 
-    class Straight(_States):
+    class Straight(StraightStates):
         ribbon: Any = None
 
         def at(self, value: float) -> np.ndarray:
@@ -102,7 +102,7 @@ def test_the_bar_of_a_load_is_the_error_of_its_mode_on_the_range(low: float, hig
     search: Any = SimpleNamespace(at=lambda load: np.array([low + load * (high - low)]))
     for error in (1e-6, 0.0):
         mode = Mode(0.25, error, nothing)
-        found = Straight(nothing, nothing, "parameters.P").settled(search, mode, low, high)
+        found = Straight(nothing, nothing, nothing).settled(search, mode, low, high)
         assert found is not None
         assert found.value == pytest.approx(low + 0.25 * (high - low))
         assert found.error >= max(error, SETTLED) * (high - low)

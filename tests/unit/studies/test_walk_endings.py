@@ -133,7 +133,7 @@ class Halting:
     """A range whose steps are short but for a few: as at a wall that nothing tells of."""
 
     start, goals, span, first, smallest = 0.0, (0.9,), 0.9, 0.1, 1e-9
-    special, most, name = True, 1000, "l"
+    special, most, rounds, name = True, 1000, False, "l"
 
     def __init__(self, long: int) -> None:
         self.long = long

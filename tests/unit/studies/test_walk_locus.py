@@ -19,8 +19,9 @@ from ribbonopt.solvers import NewtonSolver
 from ribbonopt.solvers.extended import Line
 from ribbonopt.solvers.locus import LocusFactors, LocusSystem, fold_test
 from ribbonopt.studies.continuation.walk.metric import Metric
-from ribbonopt.studies.continuation.walk.points import FOLD, POINT, Point
+from ribbonopt.studies.continuation.walk.points import FOLD, POINT, Point, Special
 from ribbonopt.studies.continuation.walk.protocol import Trial
+from ribbonopt.studies.continuation.walk.special import special_points
 from ribbonopt.studies.continuation.walk.walk import Walk
 from ribbonopt.transcription import NLP, CollocationMethod, Mesh, MultipleShooting
 
@@ -97,6 +98,9 @@ class FoldLocus:
         row = self.metric.dual(self.line.reduced(direction))
         start = self.line.reduced(origin.unknowns)
         return self._solved(guess, lambda z: row @ (self.line.reduced(z) - start) - arc)
+
+    def special(self, a: Point[None], b: Point[None]) -> Special[None]:
+        return special_points(self, a, b)
 
     def crossings(self, a: Point[None], b: Point[None]) -> list[Point[None]]:
         return []

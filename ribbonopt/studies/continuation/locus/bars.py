@@ -21,7 +21,7 @@ from ..walk.points import FOLD
 from ..walk.protocol import Trial
 from .chart import Row
 from .laid import Laid
-from .slices import Lost
+from .slices import LostError
 
 if TYPE_CHECKING:
     from .equations import LocusEquations
@@ -72,7 +72,7 @@ def _moved(equations: LocusEquations, trial: Trial[Solution], laid: Laid) -> Arr
     if equations.kind == FOLD:
         return better.near(trial.unknowns)[0].step[-2:]
     if laid.sides is None:
-        raise Lost("the branch point is not known on both sides")
+        raise LostError("the branch point is not known on both sides")
     own = equations.chart(
         solution,
         trial.unknowns,

@@ -24,11 +24,11 @@ from ribbonopt.studies.buckling.plane import Crossing, LoadsInPlane
 from ribbonopt.studies.buckling.twin import has_twin, twin_of, twin_scene
 
 from ..trials import checked
-from ..walk.departure import Departure
 from ..walk.metric import Metric
 from ..walk.points import TURN, Point, Special
-from ..walk.protocol import Passage, Trial
+from ..walk.protocol import Trial
 from ..walk.special import special_points
+from .alone import Alone
 from .laid import Laid
 from .surface import Surface
 
@@ -55,7 +55,7 @@ class Slope:
 
 
 @dataclass(frozen=True, eq=False)
-class BucklingEquations:
+class BucklingEquations(Alone):
     """Equations of one locus of buckling loads; unknowns [w, l1, l2], w of the straight state.
 
     Attributes
@@ -138,36 +138,6 @@ class BucklingEquations:
         found = special_points(self, a, b)
         return replace(found, points=[self._turned(point) for point in found.points])
 
-    def crossings(self, a: Point[Solution], b: Point[Solution]) -> list[Point[Solution]]:
-        """Return none."""
-        return []
-
-    def uncounted(self, a: Solution, b: Solution, changes: int) -> str:
-        """Say nothing: negative directions are not known where there is no linearisation."""
-        return ""
-
-    def passed(
-        self, point: Point[Solution], trial: Trial[Solution], expected: Array
-    ) -> Passage[Solution] | None:
-        """Return None: phases of a mode are its own business."""
-        return None
-
-    def leaving(self, point: Point[Solution]) -> list[Point[Solution]]:
-        """Return none."""
-        return []
-
-    def departure(self, point: Point[Solution]) -> Departure[Solution] | None:
-        """Return None."""
-        return None
-
-    def finer(self, origin: Solution, unknowns: Array) -> tuple[Solution, Array] | None:
-        """Return None: modes have meshes of their own, as fine as their loads ask for."""
-        return None
-
-    def enough(self, error: float, position: float) -> bool:
-        """Whether a position is as exact as asked."""
-        return True
-
     def restored(self, origin: Solution, unknowns: Array) -> Solution:
         """Return the straight state at a place, on the mesh of another."""
         return self._straight(origin, unknowns[-2:])
@@ -180,10 +150,6 @@ class BucklingEquations:
     def finished(self, origin: Point[Solution], trial: Trial[Solution]) -> Trial[Solution]:
         """Return a trial verified: its load is as exact already as it will be."""
         return self.verified(trial)
-
-    def elsewhere(self, origin: Point[Solution], position: float) -> Trial[Solution] | None:
-        """Return None."""
-        return None
 
     def _on(self, origin: Solution, line: Array, guess: Array) -> Trial[Solution]:
         """Find the load on a line from that of an origin."""

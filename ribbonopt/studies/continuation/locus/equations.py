@@ -23,38 +23,24 @@ from ribbonopt.solvers import Status
 from ..coordinates import reduced, row_of
 from ..trials import checked
 from ..walk.course import COSINE
-from ..walk.departure import Departure
 from ..walk.metric import Metric
-from ..walk.points import Point
-from ..walk.protocol import Passage, Trial
-from ..walk.special import Special
+from ..walk.points import Point, Special
+from ..walk.protocol import Trial
+from .alone import Alone
 from .bars import barred
 from .chart import Chart
 from .laid import Laid
-from .slices import Found, Lost, found_on
+from .slices import LostError, found_on
 from .special import special_of
 from .surface import Surface
+from .tangents import Ahead, laid_of
 
 ELSEWHERE = "the locus does not go on: what was found next to it goes another way"
 RECENT = 8  # solutions whose metric is remembered
-DIFFERENCE = 1e-4  # half the arclength that derivatives of the test function are taken over
 
 
 @dataclass(frozen=True, eq=False)
-class Ahead:
-    """Where a locus goes at one of its points; its equations have no determinant to tell."""
-
-    direction: Array
-    sign: float = 0.0
-    log: float = 0.0
-
-    def kernel(self) -> Array:
-        """No null direction is known."""
-        raise np.linalg.LinAlgError("no branch leaves a locus")
-
-
-@dataclass(frozen=True, eq=False)
-class LocusEquations:
+class LocusEquations(Alone):
     """Equations of the special points of one kind along a surface.
 
     Attributes
@@ -145,8 +131,8 @@ class LocusEquations:
             if exact:
                 found.y[-1] = guess[-1]  # to the last digit
             solution = self.restored(origin, found.y)
-            solution.trajectory.found[Laid] = self._laid(solution, chart, found)
-        except (Lost, np.linalg.LinAlgError) as failure:
+            solution.trajectory.found[Laid] = laid_of(self.surface, solution, chart, found)
+        except (LostError, np.linalg.LinAlgError) as failure:
             return Trial(origin, guess, False, str(failure))
         return Trial(solution, found.y, True, Status.CONVERGED.value)
 
@@ -159,59 +145,9 @@ class LocusEquations:
         line = self.surface.line(solution)
         return Chart(nlp, line, self.kind, self.surface.spans, origin, *rows)
 
-    def _laid(self, solution: Solution, chart: Chart, found: Found) -> Laid:
-        """Return how the locus lies at a point that was found."""
-        metric = self.surface.metric_at(solution, found.y)
-        y1, y2 = (self.reduced(solution, part) for part in (found.first, found.second))
-        h = DIFFERENCE / metric.length(y1)
-        ahead, behind = (chart.read(found.y + s * h * found.first).test for s in (1, -1))
-        # The surface's direction in which the test function stays zero, and the one across.
-        rate = (ahead - behind) / (2 * h)
-        tangent = found.slope * found.first - rate * found.second
-        t = found.slope * y1 - rate * y2
-        length = metric.length(t)
-        tangent, t = tangent / length, t / length
-        across, n = found.second, y2
-        if abs(metric.product(n, t)) > 0.9 * metric.length(n):
-            across, n = found.first, y1
-        part = metric.product(n, t)
-        across, n = across - part * tangent, n - part * t
-        size = metric.length(n)
-        return Laid(tangent, across / size, found.slope, found.sides, doubt=found.doubt)
-
     def special(self, a: Point[Solution], b: Point[Solution]) -> Special[Solution]:
         """Return what is special between two points of one layout."""
         return special_of(self, a, b)
-
-    def crossings(self, a: Point[Solution], b: Point[Solution]) -> list[Point[Solution]]:
-        """Return nothing: `special` tells all."""
-        return []
-
-    def uncounted(self, a: Solution, b: Solution, changes: int) -> str:
-        """Say nothing of counts, which are those beside the locus."""
-        return ""
-
-    def passed(
-        self, point: Point[Solution], trial: Trial[Solution], expected: Array
-    ) -> Passage[Solution] | None:
-        """Return nothing: the phases stay."""
-        return None
-
-    def leaving(self, point: Point[Solution]) -> list[Point[Solution]]:
-        """Return nothing: no branches are followed from a locus."""
-        return []
-
-    def departure(self, point: Point[Solution]) -> Departure[Solution] | None:
-        """Return nothing, as above."""
-        return None
-
-    def finer(self, origin: Solution, unknowns: Array) -> tuple[Solution, Array] | None:
-        """Return nothing: each point is as exact as asked."""
-        return None
-
-    def enough(self, error: float, position: float) -> bool:
-        """Whether an error of l1 is as small as asked."""
-        return True
 
     def restored(self, origin: Solution, unknowns: Array) -> Solution:
         """Return a solution of known unknowns on the mesh and in the phases of another."""
@@ -227,7 +163,7 @@ class LocusEquations:
             return replace(trial, converged=False, message=ELSEWHERE)
         try:
             trial = barred(self, trial)
-        except (Lost, np.linalg.LinAlgError) as failure:
+        except (LostError, np.linalg.LinAlgError) as failure:
             return replace(trial, converged=False, message=str(failure))
         return self.verified(trial)
 
@@ -242,10 +178,6 @@ class LocusEquations:
             >= COSINE * self.metric.length(here) * self.metric.length(part)
             for part in (there, gap)
         )
-
-    def elsewhere(self, origin: Point[Solution], position: float) -> Trial[Solution] | None:
-        """Return nothing: there is no other way to a point of a locus."""
-        return None
 
     def _beside(self, solution: Solution, positions: Array) -> Attempt:
         """Return the means to solve at two positions, on the mesh and in phases of a solution."""

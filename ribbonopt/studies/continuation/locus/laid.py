@@ -24,6 +24,8 @@ class Laid:
         Bound of the error of l1; None where it is not known.
     doubt : float
         What of that error no finer scheme tells, as it comes from interpolation.
+    scale : float
+        Logarithm of what the test function is relative to.
     negative : int or None
         Negative directions beside; None where they are not counted.
     """
@@ -34,4 +36,5 @@ class Laid:
     sides: tuple[Array, Array] | None = None
     error: float | None = None
     doubt: float = 0.0
+    scale: float = 0.0
     negative: int | None = None

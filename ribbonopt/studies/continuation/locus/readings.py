@@ -24,6 +24,7 @@ from ribbonopt.classes import dataclass
 from ribbonopt.solution.solution import Solution
 from ribbonopt.solution.trajectory import Trajectory
 
+from ..walk.beside import Probe
 from ..walk.points import BRANCH_POINT, FOLD, Point
 from .chart import Chart
 
@@ -31,6 +32,7 @@ if TYPE_CHECKING:
     from .equations import LocusEquations
 
 STEP = 1e-4  # half the arclength that derivatives of test functions are taken over
+NONE = 1e-6  # area, over the product of the sides, that is none: it may vanish all along
 ASIDE = 6e-3  # the same across a locus of branch points, on which the chart is singular
 
 
@@ -57,6 +59,7 @@ class Readings:
         self.chart: Chart = equations.chart(origin.solution, origin.unknowns, *self.sides)
         self.determinants = replace(self.chart, kind=BRANCH_POINT, _scale=[])
         self.way: Array | None = None
+        self.scale: float | None = None
         self.known: dict[Trajectory, Reading] = {}
 
     def signs(self, point: Point[Solution]) -> Reading:
@@ -79,6 +82,13 @@ class Readings:
             read = self._of_folds(unknowns) if fold else self._of_crossings(solution, unknowns)
             self.known[key] = read
         return self.known[key]
+
+    def slope(self, probe: Probe[Solution]) -> float:
+        """Return the slope of the determinant at a point that was found from this chart's."""
+        laid = self.equations.laid(probe.solution)
+        if self.scale is None:
+            self.scale = laid.scale
+        return laid.slope * float(np.exp(laid.scale - self.scale))
 
     def _of_folds(self, y: Array) -> Reading:
         here = self.chart.read(y)
@@ -103,9 +113,11 @@ class Readings:
         ahead, behind = (self.determinants.read(y + s * ASIDE * across).test for s in (1, -1))
         p1, p2 = along[-2:] / self.spans, across[-2:] / self.spans
         e = p1 / np.linalg.norm(p1)
+        size = float(np.linalg.norm(p1) * np.linalg.norm(p2))
+        area = float(p1[0] * p2[1] - p1[1] * p2[0])
         values = {
             TURN: float(p1[1]),
-            AREA: float(p1[0] * p2[1] - p1[1] * p2[0]),
+            AREA: area if abs(area) > NONE * size else 0.0,
             SLOPE: (ahead - behind) / (2 * ASIDE),
         }
         return Reading(e, values)

@@ -10,7 +10,7 @@ from ribbonopt.classes import dataclass
 from ribbonopt.plain import Row
 from ribbonopt.solution.solution import Solution
 
-from ..recorded import StageRecords
+from ..stage_records import StageRecords
 from ..walk.points import Point
 from .laid import Laid
 from .surface import Surface

@@ -62,7 +62,7 @@ class Found:
     doubt: float = 0.0
 
 
-class Lost(Exception):
+class LostError(Exception):
     """There is no special point on a slice; says why."""
 
 
@@ -73,7 +73,7 @@ def found_on(chart: Chart, s: float, guess: Array, way: Array) -> Found:
 
     Raises
     ------
-    Lost
+    LostError
         If the test function has no zero near by.
     LinAlgError
         If the surface is not found, or singular.
@@ -126,7 +126,7 @@ class _Slice:
                 sides = self._beside(nearest, -SIDE), self._beside(nearest, SIDE)
                 return Found(nearest.y, nearest.first, nearest.second, slope, sides)
             self.at(root)
-        raise Lost("no fold was found near by")
+        raise LostError("no fold was found near by")
 
     def _beside(self, one: Sample, off: float) -> Array:
         """Return the surface at a distance across from a sample."""
@@ -147,7 +147,7 @@ class _Slice:
             pair = [self.at(t + offset * h) for offset in (-1.5, 1.5)]
             root, _ = _root(pair, t)
             if root is None or abs(root - self.middle) > REACH:
-                raise Lost(GONE)
+                raise LostError(GONE)
             change, t = root - t, root
             if abs(change) <= 4 * h:
                 break
@@ -155,13 +155,13 @@ class _Slice:
             values = [self._near(t + offset * h, REUSED * h) for offset in OFFSETS]
             root, slope = _root(values, t)
             if root is None or abs(root - self.middle) > REACH:
-                raise Lost(GONE)
+                raise LostError(GONE)
             change, t = root - t, root
             if abs(change) > CENTRED * h:
                 continue
             y, doubt, spread = self._between(values, t)
             if h / 2 < NARROWEST and spread > SPREAD:
-                raise Lost(GONE)
+                raise LostError(GONE)
             doubt = max(doubt, spread / SPREAD * DOUBT)
             if doubt <= DOUBT or h / 2 < NARROWEST:
                 first, second = (_interpolated(values, t, name) for name in ("first", "second"))
@@ -170,7 +170,7 @@ class _Slice:
                 doubt = TRUSTED * doubt * self.chart.spans[0] + DIFFERENCES * h * steep
                 return Found(y, first, second, slope, sides, doubt)
             h /= 2
-        raise Lost(GONE)
+        raise LostError(GONE)
 
     def _between(self, values: list[Sample], t: float) -> tuple[Array, float, float]:
         """Return the unknowns at a root, and what the outermost places change of them.

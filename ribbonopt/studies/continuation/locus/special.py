@@ -11,7 +11,6 @@ closed one, if H is definite: an isola centre; else two branches cross there.
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
 from dataclasses import replace
 from functools import cached_property
 from typing import TYPE_CHECKING
@@ -22,22 +21,18 @@ from ribbonopt.arrays import Array
 from ribbonopt.classes import dataclass
 from ribbonopt.solution.solution import Solution
 
-from ..walk.beside import ENOUGH, Beside, Probe
+from ..walk.beside import ENOUGH, Probe
 from ..walk.points import CROSSING, CUSP, DOUBLE, FOLD, ISOLA, TURN, Point, Special
 from .bars import ROUNDING, SAFETY, halved
 from .laid import Laid
 from .readings import AREA, DETERMINANT, SLOPE, SPEED, Readings
+from .roots import AFAR, Apart, from_afar, regular
 
 if TYPE_CHECKING:
     from .equations import LocusEquations
 
 ROUND = 0.5  # least cosine of the angle that the direction in the plane turns by in one step
 ASIDE = 0.25  # of a step: on both sides of a special point, between which it is found again
-ROUNDS, KNOTS = 20, 4  # of secants; points that they go through
-SETTLED = 1e-9  # change of a root, in arclength
-AFAR = 0.05  # arclength between places that a root is found from, where loci meet
-OFFSETS = (-3, -2, -1, 1, 2, 3)  # of these, in spacings
-NEAR = 1e-3  # of a step: points nearer to each other than that interpolate nothing
 BESIDE = 1e-3  # half the arclength that second derivatives of l2 are taken over
 MEETS = {
     DETERMINANT: "a locus of branch points is met",
@@ -47,23 +42,12 @@ MEETS = {
 DIRECTION = "direction of the locus"
 
 
-class Apart(Beside[Solution]):
-    """The same beside two points, however near to each other it has been read."""
-
-    def _nearest(self, arc: float) -> list[Probe[Solution]]:
-        found: list[Probe[Solution]] = []
-        for probe in sorted(self.known.values(), key=lambda probe: abs(probe.arc - arc)):
-            if all(abs(probe.arc - other.arc) > NEAR * abs(self.whole) for other in found):
-                found.append(probe)
-        return found[:KNOTS]
-
-
 @dataclass(frozen=True, eq=False)
 class Root:
     """Where a test function vanishes between two points."""
 
     equations: LocusEquations
-    beside: Beside[Solution]
+    beside: Apart
     arc: float
     name: str
 
@@ -106,7 +90,7 @@ def special_of(
     return Special(points, unresolved, len(names))
 
 
-def _root(beside: Beside[Solution], readings: Readings, name: str) -> float | None:
+def _root(beside: Apart, readings: Readings, name: str) -> float | None:
     """Return the arclength where a test function vanishes, None where it is not found.
 
     Where loci meet none is found next to the place: it is read from afar.
@@ -115,56 +99,12 @@ def _root(beside: Beside[Solution], readings: Readings, name: str) -> float | No
     def test(probe: Probe[Solution]) -> float:
         return readings.at(probe.solution, probe.unknowns).values[name]
 
-    return _from_afar(beside, test) if name in MEETS else _regular(beside, test)
-
-
-def _regular(beside: Beside[Solution], test: Callable[[Probe[Solution]], float]) -> float | None:
-    """Return the root of a test function that can be read next to it, by secants of its inverse."""
-    values = {probe.arc: test(probe) for probe in beside.ends}
-    low, high = sorted(values)
-    if values[low] * values[high] > 0:
-        return None
-    arc = low + (high - low) * values[low] / (values[low] - values[high])
-    for _ in range(ROUNDS):
-        probe = beside.at(arc, 0.0)
-        if probe is None:
-            return None
-        values[arc] = test(probe)
-        low, high = (arc, high) if values[arc] * values[low] > 0 else (low, arc)
-        nearest = sorted(values, key=lambda place: abs(values[place]))[:KNOTS]
-        found = _inverse({place: values[place] for place in nearest})
-        if not low < found < high:
-            found = (low + high) / 2
-        if abs(found - arc) <= SETTLED:
-            return found
-        arc = found
-    return None
-
-
-def _from_afar(
-    beside: Beside[Solution], test: Callable[[Probe[Solution]], float]
-) -> float | None:
-    """Return the root of the polynomial through a test function's values at some distance."""
-    first, last = (test(probe) for probe in beside.ends)
-    root = beside.whole * first / (first - last)
-    spacing = max(abs(beside.whole) / 8, AFAR)
-    probes = [beside.at(root + offset * spacing, spacing / 2) for offset in OFFSETS]
-    values = {probe.arc: test(probe) for probe in probes if probe is not None}
-    if len(values) < KNOTS:
-        return None
-    fitted = np.polynomial.Polynomial.fit(list(values), list(values.values()), len(values) - 1)
-    roots = [float(z.real) for z in fitted.roots() if abs(z.imag) <= 1e-9]
-    return min(roots, key=lambda place: abs(place - root), default=None)
-
-
-def _inverse(values: Mapping[float, float]) -> float:
-    """Return where a function vanishes, by the polynomial of its inverse through some values."""
-    found = 0.0
-    for place, value in values.items():
-        others = (other for other in values.values() if other != value)
-        weight = float(np.prod([other / (other - value) for other in others]))
-        found += weight * place
-    return found
+    if name not in MEETS:
+        return regular(beside, test)
+    first, last = (readings.at(end.solution, end.unknowns).values[name] for end in beside.ends)
+    if name == SLOPE:
+        return from_afar(beside, readings.slope, (first, last))
+    return from_afar(beside, test, (first, last))
 
 
 def _point(root: Root) -> Point[Solution]:
@@ -174,6 +114,7 @@ def _point(root: Root) -> Point[Solution]:
     finer = _finer(root)
     if finer is not None:
         moved = np.abs(finer.unknowns[-2:] - place[-2:])
+        moved += finer.beside.doubt * np.abs(finer.beside.tangent(finer.arc)[-2:])
         root, place = finer, finer.unknowns
         # Of both parameters, in units of l1.
         first, second = equations.surface.spans
@@ -227,7 +168,7 @@ def _finer(root: Root) -> Root | None:
     return None if arc is None else Root(equations, again, arc, root.name)
 
 
-def _on_halves(equations: LocusEquations, beside: Beside[Solution], arc: float) -> Point[Solution]:
+def _on_halves(equations: LocusEquations, beside: Apart, arc: float) -> Point[Solution]:
     """Return the point of a locus at an arclength on halved elements; LinAlgError for none."""
     a = beside.a
     trial = equations.correct_along(a, a.tangent, arc, beside.unknowns(arc), ENOUGH)

@@ -13,6 +13,7 @@ from ribbonopt.solution.solution import Solution
 from ..recorded import Recorder
 from ..walk.points import BUCKLING, Point
 from ..walk.protocol import Trial
+from .begun import begun
 from .buckling import BucklingEquations
 from .equations import LocusEquations
 from .laid import Laid
@@ -70,11 +71,18 @@ class LocusStage:
         """Why there is nothing to begin with; "" where there is."""
         if self.special is not None and self.special.kind == self.kind:
             return ""
+        if self.surface.stage.branch is not None:
+            return ""  # which is read when it is wanted
         low, high = self.surface.between
         other = self.surface.other
+        number = self.surface.stage.number
+        which, found = f"no {self.kind}", "none was"
+        if number > 1:
+            which, found = f"no {self.kind} number {number}", "fewer were"
         return (
-            f"no {self.kind} to begin the locus with: the branch has none from {other} = {low:g} "
-            f"to {high:g} at which it stopped; follow the branch alone to see what it has"
+            f"{which} to begin the locus with: {found} found on the branch from {other} = {low:g} "
+            f"to {high:g}; choose another range or kind, or follow the branch alone to see what it "
+            "has"
         )
 
     def first(self) -> tuple[Solution, Array]:
@@ -84,13 +92,20 @@ class LocusStage:
         ------
         ConvergenceError
             If it is not found so.
+        SceneError
+            If a saved branch is none to begin with.
         """
         special, before = self.special, self.before
+        if self.surface.stage.branch is not None:
+            before, special = begun(self.surface)
         assert special is not None and before is not None
         if self.kind == BUCKLING:
             return self._begun(self._buckling(special.solution), special)
         l2 = self.surface.begin
-        positions = np.array([special.position, l2])
+        l1 = float(special.row[self.surface.other])
+        # On a branch by the logarithm of l1 its tangent is by that too.
+        rate = 1.0 if l1 == special.position else l1 * np.log(10)
+        positions = np.array([l1, l2])
         search = self.prepared.search(self.surface.posed_at(*map(float, positions)))
         like = before.solution
         attempt = search.on_mesh(like.sheets, like.mesh, like.trajectory.ends[1:-1])
@@ -105,7 +120,7 @@ class LocusStage:
         ahead = (moved(w + h * tangent[:-1]) - moved(w - h * tangent[:-1])) / (2 * h)
         guess = np.append(moved(w), positions)
         start = attempt.restored(guess[:-2])
-        across = np.concatenate([ahead, [tangent[-1], 0.0]])
+        across = np.concatenate([ahead, [rate * tangent[-1], 0.0]])
         start.trajectory.found[Laid] = Laid(np.zeros_like(guess), across)
         equations = self._of_tests(start)
         trial = equations.correct_at(start, guess)

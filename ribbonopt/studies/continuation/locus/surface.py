@@ -52,6 +52,11 @@ class Surface(Curve):
         return Surface(self.scene, back, self.units), self
 
     @property
+    def rounds(self) -> bool:
+        """A locus that closes has nothing more to be found."""
+        return True
+
+    @property
     def other(self) -> str:
         """Path of l1."""
         return self.stage.paths[0]

@@ -9,11 +9,11 @@ from typing import Generic, Protocol
 
 import numpy as np
 
+from .asked import Records
 from .endless import CLOSED, IDLE, IDLE_POINTS, comes_home, homeward, is_home, is_idle
 from .known import Atlas
 from .landing import landed
 from .points import CROSSINGS, OF_LOCI, POINT, SPECIAL, Point, S
-from .protocol import Records
 from .strides import Stride
 from .walk import Ending, Walk
 
@@ -185,7 +185,7 @@ class Branch(Generic[S]):
         elif point.kind != POINT:
             return False
         elif self.closed:
-            self.walk.ending = Ending(False, CLOSED)
+            self.walk.ending = Ending(self.walk.range.rounds, CLOSED)
         elif is_idle(self.common.atlas, self.trace, point):
             self.walk.ending = Ending(
                 False,

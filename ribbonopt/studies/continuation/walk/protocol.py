@@ -5,14 +5,13 @@
 the position, which is the last parameter lk (natural continuation), or the arclength along a
 direction (pseudo-arclength continuation, after Keller), regular at folds too. A branch of
 equilibria has one parameter, k = 1; the locus of its fold has k = 2 and a test function g2 that
-vanishes at folds. The walk sees the vector of unknowns [w, l1 .. lk] and asks for what is below.
+vanishes at folds. The walk sees the vector [w, l1 .. lk] and asks for what is below.
 """
 
 from __future__ import annotations
 
-from collections.abc import Mapping
 from dataclasses import dataclass
-from typing import Any, Generic, Protocol
+from typing import Generic, Protocol
 
 from ribbonopt.arrays import Array
 
@@ -174,62 +173,3 @@ class Equations(Protocol[S]):
 
         What comes back is finished.
         """
-
-
-class Range(Protocol):
-    """Where one stage goes, and in which steps; the position is the parameter, or a scale of it."""
-
-    @property
-    def start(self) -> float:
-        """Position where it begins."""
-
-    @property
-    def goals(self) -> tuple[float, ...]:
-        """Positions that must be met exactly, in order; the last is the end."""
-
-    @property
-    def span(self) -> float:
-        """Distance from the start to the end."""
-
-    @property
-    def first(self) -> float:
-        """Change of the position in the first step."""
-
-    @property
-    def largest(self) -> float:
-        """Largest change of the position in a step."""
-
-    @property
-    def smallest(self) -> float:
-        """Change of the position below which a step is not tried."""
-
-    @property
-    def special(self) -> bool:
-        """Whether folds and branch points are located."""
-
-    @property
-    def most(self) -> int:
-        """Most points."""
-
-    @property
-    def name(self) -> str:
-        """What the position is called."""
-
-    def value(self, position: float) -> float:
-        """Return the parameter at a position."""
-
-
-class Records(Protocol[S]):
-    """What is recorded of the points of a stage."""
-
-    def row(self, point: Point[S]) -> Mapping[str, Any]:
-        """Return what is recorded of a point."""
-
-    def stopped(self, row: Mapping[str, Any]) -> str:
-        """Return the condition that ends a branch at a row, "" if it goes on."""
-
-    def margins(self, point: Point[S]) -> Mapping[str, float]:
-        """Return how far a point is beyond each condition that is met exactly; > 0 where met."""
-
-    def stopped_at(self, kind: str, count: int) -> str:
-        """Return what ends a branch at its special point of a kind and number from 1, or ""."""

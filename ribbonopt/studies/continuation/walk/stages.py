@@ -14,11 +14,12 @@ from typing import Generic, Protocol
 
 from ribbonopt.arrays import Array
 
+from .asked import Range, Records
 from .branches import Branch, Common, History, Register
 from .endless import CLOSED
 from .known import Atlas
 from .points import POINT, Point, S
-from .protocol import Equations, Range, Records
+from .protocol import Equations
 from .switching import switched
 from .walk import Ending, Walk
 
@@ -87,10 +88,13 @@ def followed(
         yield from ways.points()
         if stage.switch:
             yield from ways.crossing()
-        if not all(register.endings[number, way].reached for way in range(len(stage.ways))):
-            return
         main = ways.branches[len(stage.ways) - 1]
         before, special = main.last or ways.branches[0].first, main.special
+        if not all(register.endings[number, way].reached for way in range(len(stage.ways))):
+            # What the next one would have needed tells more than how far this one came.
+            if number + 1 < count and (why := stage_after(number + 1, before, None).missing):
+                register.endings[number + 1, 0] = Ending(False, why)
+            return
 
 
 class _Ways(Generic[S]):
@@ -119,7 +123,7 @@ class _Ways(Generic[S]):
 
             branch = self._branch(walk, begin, first)
             if first is not None and self.branches[0].closed:
-                branch.ended = Ending(False, f"is branch 0 already, which is {CLOSED}")
+                branch.ended = Ending(way.rounds, f"is branch 0 already, which is {CLOSED}")
             yield from branch.points()
 
     def crossing(self) -> Iterator[Point[S]]:

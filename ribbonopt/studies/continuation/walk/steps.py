@@ -14,10 +14,11 @@ import numpy as np
 
 from ribbonopt.arrays import Array
 
+from .asked import Range
 from .beside import strays
 from .course import Course, joined, leaving
 from .points import POINT, TURNING, Point, S, Special
-from .protocol import Equations, Passage, Range, Trial
+from .protocol import Equations, Passage, Trial
 from .strides import Prediction, Stride
 from .tangents import headed, moved, renewed
 

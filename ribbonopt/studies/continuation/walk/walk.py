@@ -10,8 +10,9 @@ import numpy as np
 
 from ribbonopt.arrays import Array
 
+from .asked import Range
 from .points import FOLD, TURNING, Point, S
-from .protocol import Equations, Range
+from .protocol import Equations
 from .steps import DIGITS, Stepper
 from .strides import Stride
 from .tangents import near
@@ -87,12 +88,12 @@ class Walk(Generic[S]):
             self.turned.append((point.kind, self.range.value(point.position)))
 
     def _turned_back(self) -> Ending:
-        kinds = dict.fromkeys(kind for kind, _ in self.turned)
-        at = {
-            k: ", ".join(f"{value:.8g}" for kind, value in self.turned if kind == k) for k in kinds
-        }
-        curve = "locus" if kinds.keys() - {FOLD} else "branch"
-        where = "; ".join(f"{kind}s at {self.range.name} = {at[kind]}" for kind in kinds)
+        at: dict[str, list[str]] = {}
+        for kind, value in self.turned:
+            at.setdefault(kind, []).append(f"{value:.8g}")
+        curve = "locus" if at.keys() - {FOLD} else "branch"
+        name = self.range.name
+        where = "; ".join(f"{kind}s at {name} = {', '.join(at[kind])}" for kind in at)
         where = f" ({where})" if where else ""
         return Ending(False, f"the {curve} turned back and left the range{where}")
 
