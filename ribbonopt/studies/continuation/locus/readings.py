@@ -32,7 +32,7 @@ if TYPE_CHECKING:
     from .equations import LocusEquations
 
 STEP = 1e-4  # half the arclength that derivatives of test functions are taken over
-NONE = 1e-6  # area, over the product of the sides, that is none: it may vanish all along
+NONE = 1e-6  # area, over the side along the locus, that is none: it may vanish all along
 ASIDE = 6e-3  # the same across a locus of branch points, on which the chart is singular
 
 
@@ -113,7 +113,8 @@ class Readings:
         ahead, behind = (self.determinants.read(y + s * ASIDE * across).test for s in (1, -1))
         p1, p2 = along[-2:] / self.spans, across[-2:] / self.spans
         e = p1 / np.linalg.norm(p1)
-        size = float(np.linalg.norm(p1) * np.linalg.norm(p2))
+        # Across goes a unit of arclength: what of it is in the plane may be rounding alone.
+        size = float(np.linalg.norm(p1))
         area = float(p1[0] * p2[1] - p1[1] * p2[0])
         values = {
             TURN: float(p1[1]),

@@ -18,7 +18,7 @@ ROUNDS, KNOTS = 20, 4  # of secants; points that they go through
 SETTLED = 1e-9  # change of a root, in arclength
 AFAR = 0.02  # arclength between places that a root is found from, where loci meet
 OFFSETS = (-3, -2, -1, 1, 2, 3)  # of these, in spacings
-NEAR = 1e-3  # of a step: points nearer to each other than that interpolate nothing
+NEAR = 0.05  # of a step: points nearer to each other than that interpolate nothing
 
 Test = Callable[[Probe[Solution]], float]
 
