@@ -18,7 +18,7 @@ from ribbonopt.solvers.status import Status
 from ribbonopt.text import one_line
 
 from .batch.saved import ROWS, STUDY
-from .continuation.files import FILE
+from .continuation.saved import FILE
 from .maps.saved import FILE as MAP
 from .maps.saved import JOBS
 

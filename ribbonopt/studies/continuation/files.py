@@ -29,7 +29,8 @@ from ribbonopt.scene import Scene, dump_scene
 from ribbonopt.solution.solution import Solution
 
 from .continuation import Continuation
-from .saved import FILE, SCENE, read_branch
+from .saved import FILE as FILE
+from .saved import SCENE, read_branch
 from .stored import Stored, state_of
 from .walk.branches import Key
 from .walk.points import Point

@@ -22,7 +22,8 @@ APART = 1e-4  # arclength between places that a polynomial goes through
 SETTLED = 1e-9  # change of the place of a fold, in arclength: there parameters change by its square
 ROUNDS = 12
 NARROW = 0.0025  # spacing of the places beside a branch point; halved while these are too far
-NARROWEST = 6e-4
+NARROWEST = 2e-4
+SPACINGS = NARROW, NARROW / 4
 OFFSETS = (-3, -2, -1, 1, 2, 3)  # of these, in spacings
 CENTRED = 0.6  # of the spacing: how far the root may be from the middle
 REUSED = 0.25  # of the spacing: places that are this near are not read twice
@@ -141,8 +142,17 @@ class _Slice:
         return found[:KNOTS]
 
     def crossing(self) -> Found:
-        """Return the branch point on this slice."""
-        t, h = self.middle, NARROW
+        """Return the branch point on this slice, where the surface may be narrow too."""
+        for h in SPACINGS[:-1]:
+            try:
+                return self._crossing(h)
+            except (LostError, np.linalg.LinAlgError):
+                self.known.clear()
+        return self._crossing(SPACINGS[-1])
+
+    def _crossing(self, h: float) -> Found:
+        """Return the branch point, looked for with a spacing."""
+        t = self.middle
         for _ in range(ROUNDS):
             pair = [self.at(t + offset * h) for offset in (-1.5, 1.5)]
             root, _ = _root(pair, t)
