@@ -35,7 +35,7 @@ RESERVED_NAMES = frozenset(
         *("verification.csv", "verification.json", "verification.md"),
         *("stress.csv", "stress.json", "stress.png", "view.html"),
         *("map.json", "map.csv", "map.png", "map.svg", "map.pdf", "jobs.jsonl"),
-        *("branches", "loci", "points"),
+        *("map-branches", "map-loci", "map-points"),
     )
 )
 _EXECUTED = frozenset("=+-@")

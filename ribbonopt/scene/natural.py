@@ -2,12 +2,16 @@
 
 from __future__ import annotations
 
-from typing import Annotated
+from typing import TYPE_CHECKING, Annotated
 
 from ribbonopt.classes import dataclass
 
-from .along import Along
+from .along import Along, scaled
 from .schema.bounds import Bounds
+
+if TYPE_CHECKING:
+    from .model import RibbonSizes
+    from .units import Units
 
 
 @dataclass(frozen=True)
@@ -31,3 +35,19 @@ class Natural:
     twist: Along = 0.0
     across: Along = 0.0
     poisson_ratio: Annotated[float, Bounds(gt=-1, le=0.5)] | None = None
+
+
+def strains_in_units(
+    natural: Natural | None, units: Units, ribbon: RibbonSizes | None
+) -> Natural | None:
+    """Return natural strains in units inside; a Poisson's ratio that is not said is the ribbon's.
+
+    A curvature is one over a length, and varies along one.
+    """
+    if natural is None:
+        return None
+    curvatures = natural.curvature, natural.twist, natural.across
+    along, twist, across = (scaled(some, units.strain, units.length) for some in curvatures)
+    said = natural.poisson_ratio
+    ratio = ribbon.poisson_ratio if said is None and ribbon is not None else said
+    return Natural(along, twist, across, ratio)

@@ -26,8 +26,8 @@ from .inertia import in_units as turning
 from .laws import Law, OwnLaw, Stiff
 from .loads import AlongAxes, AlongVector, Loads
 from .membrane import in_units
-from .model import Reference, RibbonSizes, Scene
-from .natural import Natural
+from .model import Reference, Scene
+from .natural import strains_in_units
 from .quantities import dimension
 from .sized import Sized
 from .stations import InteriorSupport, PointLoad
@@ -124,7 +124,7 @@ def in_special_units(scene: Scene, units: Units | None = None) -> Scene:
         width=scaled(scene.width, 1.0, units.length),
         guess=_guess(scene.guess, units),
         reference=_reference(scene.reference, units),
-        natural=_natural(scene.natural, units, scene.ribbon),
+        natural=strains_in_units(scene.natural, units, scene.ribbon),
         membrane=in_units(scene.membrane, units, scene.ribbon),
         inertia=turning(scene.inertia, units, scene.ribbon),
         switching=switches if isinstance(switches, str) else _over(switches, units.length),
@@ -196,17 +196,6 @@ def _support(
 ) -> InteriorSupport:
     at = _over(support.at, units.length, parameters)
     return InteriorSupport(at, _over(support.position, units.length, parameters))
-
-
-def _natural(natural: Natural | None, units: Units, ribbon: RibbonSizes | None) -> Natural | None:
-    """Return natural strains; a Poisson's ratio that is not said is the ribbon's."""
-    if natural is None:
-        return None
-    curvatures = natural.curvature, natural.twist, natural.across
-    along, twist, across = (scaled(some, units.strain, units.length) for some in curvatures)
-    said = natural.poisson_ratio
-    ratio = ribbon.poisson_ratio if said is None and ribbon is not None else said
-    return Natural(along, twist, across, ratio)
 
 
 def _end(end: End, units: Units, parameters: Mapping[str, float]) -> End:

@@ -17,9 +17,10 @@ import numpy as np
 from ribbonopt.plain import Row
 from ribbonopt.solution.solution import Solution
 
+from .locus_style import LINES, MARKS, OTHER_LINE, POINTED
 from .map_shapes import draw_shapes
 from .paper_style import PAGE, PLAIN, Style, sized, spaced, stroke, thinner
-from .style import FAINT, INK, SI, SPECIAL, TWIST, Drawn, blank, draw_all, tidy, title
+from .style import FAINT, SI, SPECIAL, Drawn, blank, draw_all, tidy, title
 from .symbols import symbol
 
 if TYPE_CHECKING:
@@ -30,22 +31,9 @@ HEIGHT = 5.6  # inches
 #: of regions with 0, 1, 2, ... stable shapes; the last one stands for more as well
 STABLE = ("#f7f7f7", "#dfeaf5", "#b0cde8", "#85b0d8", "#5f93c4", "#4076ab", "#2d5a8e")
 UNKNOWN: dict[str, Any] = {"fc": "white", "hatch": "////", "ec": "#bbbbbb"}
-LINES: dict[str, dict[str, Any]] = {
-    "fold": {"color": INK, "ls": "-", "lw": 1.8},
-    "branch point": {"color": TWIST, "ls": (0, (4, 1.8)), "lw": 1.8},
-    "buckling point": {"color": "#0b7a53", "ls": (0, (1, 1.4)), "lw": 2.0},
-}
 THIN: dict[str, Any] = {"lw": 0.8, "alpha": 0.75}
-OTHER_LINE: dict[str, Any] = {"color": FAINT, "ls": "-.", "lw": 1.5}
-POINTED: dict[str, Any] = {"ls": "", "zorder": 6, "mec": INK, "mew": 1.1, "ms": 7}
-MARKS: dict[str, dict[str, Any]] = {
-    "cusp": POINTED | {"marker": "^", "mfc": "#f2c14e", "ms": 8},
-    "isola centre": POINTED | {"marker": "o", "mfc": "#f2c14e"},
-    "crossing": POINTED | {"marker": "X", "mfc": "w", "ms": 7.5},
-    "double point": POINTED | {"marker": "D", "mfc": "w", "ms": 6},
-}
-#: what is special of a locus and says nothing in the plane of a map
-UNMARKED = ("turn",)
+#: what is special of a locus as the second number alone varies, and is not in a plane of both
+UNMARKED = ("turn", "isola centre", "crossing")
 OTHER_MARK = POINTED | {"marker": "*", "mfc": "w", "ms": 9}
 
 

@@ -12,18 +12,19 @@ from ribbonopt.solution.solution import Solution
 
 from .album import Album, album_of, place
 from .curves import Array
-from .map_places import places_of, samples_of
+from .map_places import Inside, places_of, samples_of
 from .paper_style import Style, sized, stroke
 from .style import FAINT, INK
 
 if TYPE_CHECKING:
     from matplotlib.axes import Axes
-    from matplotlib.path import Path
+    from numpy.typing import NDArray
 
 MOST = 4  # shapes pictured in one region
 LARGEST, LEAST = 0.17, 0.085  # of the axes: width or height of one picture
 ROOM = 2.2  # of the distance to the nearest locus: pictures fit into that
 WORDS = 0.045  # of the axes: height of words below pictures
+WIDE = 0.115  # and their width
 BELOW = 0.05  # of their size: room below ribbons
 THIN = 0.5  # lines of ribbons, of the width of others
 
@@ -45,12 +46,12 @@ def draw_shapes(
     one = _size(axes, album)
     scales = [_scale(one, len(shown[p["number"]]), clear.get(p["region"], 0.0)) for p in points]
     sizes = [
-        np.array([s * one[0] * len(shown[p["number"]]), s * one[1] + WORDS])
+        np.array([max(s * one[0] * len(shown[p["number"]]), WIDE), s * one[1] + WORDS])
         for s, p in zip(scales, points, strict=True)
     ]
     lines = [np.array([_share(at, data) for at in locus["curve"]]) for locus in data["loci"]]
-    rings = {r["number"]: _outline(r, data) for r in data["regions"]}
-    inside = [rings[point["region"]].contains_points for point in points]
+    regions = {region["number"]: _inside_of(region, data) for region in data["regions"]}
+    inside = [regions[point["region"]] for point in points]
     corners = places_of(marks, sizes, samples_of(lines), inside)
     drawings = iter(album.drawings)
     for point, corner, size, mark in zip(points, corners, sizes, marks, strict=True):
@@ -62,6 +63,9 @@ def draw_shapes(
             inset.patch.set_alpha(0.0)
             place(inset, next(drawings), album.box(BELOW), THIN)
         _words(axes, point, corner, size)
+        away = bool((np.clip(mark, corner, corner + size) != mark).any())
+        if away or not regions[point["region"]]((corner + size / 2)[None])[0]:
+            _card(axes, corner, size)
         _join(axes, mark, corner, size)
     if album.tint:
         album.tint.bar(axes.figure.axes)
@@ -69,7 +73,7 @@ def draw_shapes(
 
 def _words(axes: Axes, point: Row, corner: Array, size: Array) -> None:
     stable, count = point["stable"], point["count"]
-    text = f"{stable} of {count} stable" if count > 1 else "1 stable" if stable else "1, unstable"
+    text = f"{stable} stable of {count}" if count > 1 else "1 stable" if stable else "1, unstable"
     axes.text(
         float(corner[0] + size[0] / 2),
         float(corner[1] + WORDS / 2),
@@ -83,10 +87,27 @@ def _words(axes: Axes, point: Row, corner: Array, size: Array) -> None:
     )
 
 
+def _card(axes: Axes, corner: Array, size: Array) -> None:
+    """Put what stands away from its point on a card, to which a line leads."""
+    from matplotlib.patches import Rectangle
+
+    card = Rectangle(
+        (float(corner[0]), float(corner[1])),
+        *(float(size[0]), float(size[1])),
+        transform=axes.transAxes,
+        fc="white",
+        ec=FAINT,
+        lw=stroke(0.7),
+        alpha=0.9,
+        zorder=3.8,
+    )
+    axes.add_patch(card)
+
+
 def _join(axes: Axes, mark: Array, corner: Array, size: Array) -> None:
     """Mark the point, and join its pictures to it where they stand elsewhere."""
     near = np.clip(mark, corner, corner + size)
-    look: dict[str, Any] = {"transform": axes.transAxes, "color": INK, "zorder": 3.5}
+    look: dict[str, Any] = {"transform": axes.transAxes, "color": INK, "zorder": 3.7}
     inside = bool((near == mark).all())
     if inside:
         return
@@ -94,13 +115,20 @@ def _join(axes: Axes, mark: Array, corner: Array, size: Array) -> None:
     axes.plot(*np.stack([mark, near]).T, lw=stroke(0.7), **(look | {"color": FAINT}))
 
 
-def _outline(region: Row, data: Mapping[str, Any]) -> Path:
-    """Return the border of a region in shares of the axes, its holes too."""
+def _inside_of(region: Row, data: Mapping[str, Any]) -> Inside:
+    """Return what says of points (n, 2), in shares of the axes, whether a region has them."""
     from matplotlib.path import Path
 
-    rings = [_share([*ring, ring[0]], data) for ring in region["rings"]]
-    codes = [[Path.MOVETO] + [Path.LINETO] * (len(ring) - 1) for ring in rings]
-    return Path(np.concatenate(rings), np.concatenate(codes))
+    rings = [Path(_share(ring, data)) for ring in region["rings"]]
+
+    def inside(points: Array) -> NDArray[np.bool_]:
+        # In an odd number of rings: holes are none of it.
+        found = np.zeros(len(points), bool)
+        for ring in rings:
+            found ^= ring.contains_points(points)
+        return found
+
+    return inside
 
 
 def _share(at: Sequence[Any], data: Mapping[str, Any]) -> Array:

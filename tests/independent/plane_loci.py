@@ -1,9 +1,10 @@
 """Folds and branch points of strips in a plane by shooting: clamps a chord apart, turned by angles.
 
 theta is the angle of the tangent (sin theta, 0, cos theta), m the moment about y:
-theta' = m / B + c, m' = n_z sin theta - n_x cos theta, n' = -f. Unknown: m(0), n(0). A point is singular where the
-determinant of the three end values by the three unknowns vanishes; where a reflection about the
-middle holds, that of the block which breaks it. Units Dw = L = 1, angles in radians.
+theta' = m / B + c, m' = n_z sin theta - n_x cos theta, n' = -f. Unknown: m(0), n(0). A
+point is singular where the determinant of the three end values by the three unknowns vanishes;
+where a reflection about the middle holds, that of the block which breaks it. Units Dw = L = 1,
+angles in radians.
 """
 
 from __future__ import annotations

@@ -26,8 +26,8 @@ class Ribbon:
     """A ribbon that starts at the origin, clamped; its end is clamped at a place, or free.
 
     `law` is (B2, B3) of a rod, or the number delta of the smooth law of ribbons. `weight` is a
-    force per length where the width is one, and follows the width; `curl` a natural curvature; `taper`
-    the part of the width lost from end to end; `inertia` (J1, J3) per length.
+    force per length where the width is one, and follows the width; `curl` a natural
+    curvature; `taper` the part of the width lost from end to end; `inertia` (J1, J3) per length.
     """
 
     law: tuple[float, float] | float = (1.0, 2.0)

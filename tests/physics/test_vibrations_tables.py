@@ -102,6 +102,14 @@ def test_the_square_goes_through_the_fold() -> None:
         )
 
 
+def test_a_stage_ends_at_a_frequency() -> None:
+    """Exactly there, as it does at anything that varies along a branch."""
+    stage = "{parameter: parameters.a, to: 0.7, modes: 2, stop: ['frequency1 < 11.06317892']}"
+    last = [point.row for point in snapping(stage)][-1]
+    assert last["frequency1"] == pytest.approx(11.06317892, abs=1e-8)
+    assert np.degrees(last["parameters.a"]) == pytest.approx(32, abs=1e-7)
+
+
 @pytest.mark.parametrize(
     "height, expected", [(0.102120614, -25.40431756), (0.108120614, 26.59499821)]
 )
@@ -226,8 +234,10 @@ def test_negative_squares_are_the_negative_directions_of_every_branch(name: str)
         if point.row["kind"] != "point":
             continue
         counted, found = second_variation(point.solution), modes_of(point.solution, 2)
-        assert isinstance(counted, str) == isinstance(found, str), point.row
         if isinstance(counted, str) or isinstance(found, str):
+            # In a plane there may be an energy where there is none in space.
+            inside = not isinstance(found, str) and found.told.startswith("in its plane")
+            assert isinstance(counted, str) and (inside or isinstance(found, str)), point.row
             continue
         if scene.boundary.repeats:
             assert found.negative >= counted.negative, point.row

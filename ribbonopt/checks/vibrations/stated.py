@@ -4,8 +4,11 @@ from __future__ import annotations
 
 from dataclasses import replace
 
+import numpy as np
+
 from ribbonopt.arrays import Array
 from ribbonopt.classes import dataclass
+from ribbonopt.mechanics.ends.conditions import Component, Frame
 from ribbonopt.mechanics.laws.asymmetry import changed_by_sliding
 from ribbonopt.mechanics.planar import PlanarRod
 from ribbonopt.problem import Posed, Ribbon
@@ -13,12 +16,14 @@ from ribbonopt.scene import Loop
 from ribbonopt.solution.solution import Solution
 
 from ..energy_of import Stated, energy_in_plane, energy_of
+from ..flip import Flip, at_ends, flip_at
 from ..gauss_stages import packed, sampled
 from ..topology import ClosedBand, declared
 from ..variation import Variation
-from .closing import Closing
 from .images import whole
+from .whole_ends import Clamps, Closing
 
+CLAMP = 4  # conditions: three components of a position, and a frame
 IN_PLANE = "in its plane alone"
 SYMMETRIC = "with the symmetry of the piece that was solved"
 HELD = "with its start held as the scene says, since loads act"
@@ -28,8 +33,9 @@ HELD = "with its start held as the scene says, since loads act"
 class Vibrating:
     """What vibrates: a solution, its energy, and its conditions.
 
-    `told` says which motions are looked at, where not all; `band` is the closed band, held by
-    nothing, of which the solution is all or a piece; `slides` whether it may slide along itself.
+    `told` says which motions are looked at, where not all; `band` is a closed band that nothing
+    holds, or a strip between two clamps, of which the solution is all or a piece; `slides` says
+    whether it may slide along itself.
     """
 
     solution: Solution
@@ -89,25 +95,46 @@ def stated(solution: Solution, *, planar: bool) -> Vibrating | str:
         return energy
     told = [IN_PLANE] if energy.posed.scene.states == "planar" else []
     loop = solution.scene.boundary.loop
-    if loop is not None and not _held(solution, energy, loop):
+    if loop is not None and not _held(energy, loop):
         return _free(solution, energy, loop, "".join(told))
+    if loop is None and (flip := _other_half(solution, energy)) is not None:
+        clamps = Clamps(isinstance(energy.energy.ribbon.model, PlanarRod))
+        ends = replace(energy.energy, conditions=clamps.conditions, bent=clamps.bent)
+        strip = ClosedBand(solution, np.zeros(3), 0.0, flip)
+        return Vibrating(solution, energy._replace(energy=ends), "".join(told), strip)
     told += [SYMMETRIC] if solution.scene.boundary.repeats else []
     told += [HELD] if loop is not None and loop.piece == "whole" else []
     return Vibrating(solution, energy, ", ".join(told))
 
 
-def _held(solution: Solution, energy: Stated, loop: Loop) -> bool:
-    """Whether all of a loop, free, cannot be put together of what is known of it.
+def _other_half(solution: Solution, energy: Stated) -> Flip | None:
+    """Return the flip that gives the other half of a strip between clamps; None of any other."""
+    boundary, posed = solution.scene.boundary, energy.posed
+    if boundary.pieces != 2 or boundary.end.support != "flip" or posed.loaded or boundary.also:
+        return None
+    start = [c for c in posed.conditions if isinstance(c, Component | Frame) and c.end == "start"]
+    clamped = len(start) == CLAMP and any(isinstance(c, Frame) for c in start)
+    director = boundary.end.axis
+    if not clamped or director not in ("d1", "d2") or _alone(energy, odd=False):
+        return None
+    start_and_end = np.array(solution.scene.interval)
+    return flip_at(at_ends(solution), start_and_end, 1, director)
 
-    What acts on it, or varies along it, is known of the piece alone; so are sides of a kink.
-    """
-    posed, ribbon = energy.posed, energy.energy.ribbon
-    if posed.stations or any(load.dead for load in posed.loads) or posed.scene.boundary.also:
+
+def _alone(energy: Stated, odd: bool) -> bool:
+    """Whether what varies along a piece, or its sides of a kink, are known of it alone."""
+    law = energy.energy.ribbon.law
+    return changed_by_sliding(energy.posed.scene, odd=odd) or bool(law.states) or not law.smooth
+
+
+def _held(energy: Stated, loop: Loop) -> bool:
+    """Whether all of a loop, free, cannot be put together of what is known of it."""
+    posed = energy.posed
+    # A pressure goes with the band, whatever it does as a whole.
+    outside = any(load.name != "loads.pressure" for load in posed.loads)
+    if posed.stations or outside or posed.scene.boundary.also:
         return True
-    if loop.piece == "whole":
-        return False
-    varies = changed_by_sliding(posed.scene, odd=loop.half_twists % 2 == 1)
-    return varies or bool(posed.loads) or bool(ribbon.law.states) or bool(solution.sheets)
+    return loop.piece != "whole" and _alone(energy, odd=loop.half_twists % 2 == 1)
 
 
 def _free(solution: Solution, energy: Stated, loop: Loop, told: str) -> Vibrating:

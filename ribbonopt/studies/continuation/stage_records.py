@@ -11,6 +11,7 @@ from ribbonopt.plain import Row
 from ribbonopt.solution.solution import Solution
 
 from .curve import Curve
+from .frequencies import frequencies
 from .recorded import Recorder
 from .stops import Stops
 from .walk.points import Point
@@ -50,4 +51,6 @@ class StageRecords:
         if not self.stops.conditions:
             return {}
         varying = self.recorder.varying(point, self.curve)
+        if self.stops.words.intersection(self.recorder.frequencies):
+            varying |= frequencies(point.solution, self.curve.stage.modes)
         return self.stops.margins(self.recorder.named(varying, self.curve.stage))

@@ -34,6 +34,12 @@ class Stops:
         """Conditions on what is recorded."""
         return tuple(conditions_of(self.stage))
 
+    @cached_property
+    def words(self) -> frozenset[str]:
+        """Names that conditions speak of."""
+        sides = (side for _, left, _, right in self.conditions for side in (left, right))
+        return frozenset(word for side in sides for word in words_of(side))
+
     def met(self, row: Mapping[str, Any]) -> str:
         """Return the condition that a row meets, "" if none."""
         return next((text for text, margin in self.margins(row).items() if margin > 0), "")

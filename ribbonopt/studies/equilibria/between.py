@@ -46,6 +46,27 @@ def crossings(
         yield None if solution is None else (solution, way)
 
 
+def crossing_beside(
+    equations: RibbonEquations, a: Point[Solution], b: Point[Solution], own: float
+) -> Iterator[Crossing | None]:
+    """Yield the same between a point where branches cross and the first one on another of them.
+
+    There the position goes along the branch, or with its square: the nearer guess counts.
+    """
+    if not (a.position - own) * (b.position - own) < 0:
+        return
+    part, gap = (own - a.position) / (b.position - a.position), b.unknowns - a.unknowns
+    found = []
+    for share in (part, np.sqrt(part)):
+        guess = np.append((a.unknowns + share * gap)[:-1], own)
+        trial = equations.correct_at(b.solution, guess)
+        if trial.converged:
+            off = equations.reduced(b.solution, trial.unknowns - guess)
+            found.append((equations.metric.length(off), trial.solution))
+    way = 1 if b.position > a.position else -1
+    yield (min(found, key=lambda one: one[0])[1], way) if found else None
+
+
 def branch_point(
     equations: RibbonEquations, a: Point[Solution], b: Point[Solution]
 ) -> Point[Solution] | None:

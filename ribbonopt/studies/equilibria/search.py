@@ -21,7 +21,7 @@ from ribbonopt.studies.continuation.walk.points import POINT, Point
 from ribbonopt.studies.continuation.walk.switching import switched
 from ribbonopt.studies.continuation.walk.walk import Ending, Walk
 
-from .between import branch_point, crossings
+from .between import Crossing, branch_point, crossing_beside, crossings
 from .line import Line
 from .nodes import Junction, Node, Nodes, far_off
 
@@ -30,6 +30,8 @@ AGREES = 1e3  # times the tolerance: the same
 COARSE = 1e-4  # the same, where there is no tolerance
 MET = 1e-4  # arclength between two estimates of one point where branches cross
 
+AWAY = 1e-6  # arclength of a first step onto a branch that crosses, at least: loads count little
+MET_ANOTHER = "came to where another had been"
 NOT_LOCATED = "crossed by others that were not located"
 DOUBTS = 20  # crossings that are not located, after which none is looked for
 
@@ -104,12 +106,17 @@ class Search:
         sign = junction.ways.pop(0)
         equations = junction.line.equations(junction.point.solution)
         try:
-            first = switched(equations, junction.point, sign)
+            first = switched(equations, junction.point, sign, least=AWAY)
         except np.linalg.LinAlgError:
             self._ended("crossed by others that could not be begun")
             return
-        where = junction.line.curve.value(junction.point.position)
-        self._follow(junction.line, first, f"{junction.line.name}, crossing at {where:.6g}")
+        line, where = junction.line, junction.line.curve.value(junction.point.position)
+        found_by = f"{line.name}, crossing at {where:.6g}"
+        beside = partial(crossing_beside, equations, junction.point, first)
+        if self._comes_back(line, beside, found_by):
+            self._ended(MET_ANOTHER)
+            return
+        self._follow(line, first, found_by)
 
     def _follow(self, line: Line, first: Point[Solution], found_by: str) -> None:
         """Follow a branch from a point until it ends, or comes to where another has been."""
@@ -128,7 +135,7 @@ class Search:
             )
             equations = line.equations(before.solution)
             if self._passed(line, equations, before, point, found_by):
-                self._ended("came to where another had been")
+                self._ended(MET_ANOTHER)
                 return
             if self._above(point.solution):
                 self._ended(f"rose above the energy {self.below:.6g}")
@@ -162,9 +169,18 @@ class Search:
                 self._ended(NOT_LOCATED)
             elif self._meets(line, equations, crossing):
                 return True
+        return self._comes_back(line, partial(crossings, equations, a, b), found_by)
+
+    def _comes_back(
+        self,
+        line: Line,
+        crossings_at: Callable[[float], Iterator[Crossing | None]],
+        found_by: str,
+    ) -> bool:
+        """Note where a branch comes back to the own value, or to zero; whether that is explored."""
         levels = {line.own: ""} | ({0.0: line.name} if line.name in self.homes else {})
         for level, home in levels.items():
-            for found in crossings(equations, a, b, level):
+            for found in crossings_at(level):
                 node = None if found is None else self._node_at(found[0], home, found_by)
                 if found is None or node is None:
                     self.lost += not home

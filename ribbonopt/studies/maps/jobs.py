@@ -16,7 +16,7 @@ from ribbonopt.scene.lens import with_value
 from ribbonopt.scene.maps import MapPlan
 from ribbonopt.studies.batch.study import Source, StudyRibbon
 
-LINES, LOCI, POINTS = "branches", "loci", "points"
+LINES, LOCI, POINTS = "map-branches", "map-loci", "map-points"
 FOLDERS = (LINES, LOCI, POINTS)
 LINE, LOCUS, SHAPES = "line", "locus", "shapes"
 BEYOND = 3.0  # times the way from the point before to a special one: where a branch would go
@@ -30,7 +30,7 @@ class Job:
     Attributes
     ----------
     place : str
-        Its folder in that of the map, such as `loci/2`; no other piece has it.
+        Its folder in that of the map, such as `map-loci/2`; no other piece has it.
     task : str
         What is done: one of the names in `tasks`.
     scene : Scene

@@ -4,6 +4,7 @@
     energy H potential twist                               negative half_twists switches
     r(0.5).x d1(end).z u(0).2 m2(0.25) H(end)              any named output at an arclength
     record.NAME      what the scene records                switch.1 reaction.2.x
+    frequency.1      natural frequencies of small vibrations, those of zero left out
 
 A new one is one entry of NUMBERS: its pattern, and what makes it from what the pattern found.
 """
@@ -124,6 +125,22 @@ def _half_twists(solution: Solution) -> float:
     return float(count)
 
 
+def _frequency(found: Match[str], scene: Scene) -> Number:
+    """Return the k-th natural frequency, below zero where it is a rate of growth."""
+    k = int(found["number"])
+
+    def read(solution: Solution) -> tuple[float, float]:
+        from ribbonopt.checks.modes import modes_of  # builds second derivatives
+
+        modes = modes_of(solution, k)
+        if isinstance(modes, str):
+            raise NoAnswerError(modes)
+        value = float(_one(tuple(modes.frequencies), k, "natural frequencies"))
+        return value, float(modes.errors[k - 1]) * abs(value)
+
+    return Number(lambda solution: read(solution)[0], lambda solution: read(solution)[1])
+
+
 def _summed(name: str) -> Read:
     return lambda solution: estimate_error(solution)[name]
 
@@ -152,10 +169,11 @@ NUMBERS: tuple[tuple[str, Make], ...] = (
     (r"record\.(?P<name>\w+)", record),
     (r"reaction\.(?P<number>[0-9]{1,3})\.(?P<axis>[xyz])", _reaction),
     (r"switch\.(?P<number>[0-9]{1,3})", _switch),
+    (r"frequency\.(?P<number>[1-9][0-9]{0,2})", _frequency),
     (r"(?P<name>\w+)\((?P<place>.+)\)(?:\.(?P<axis>[xyz123]))?", along),
 )
 WORDS = (*("n0", "m0", "u0", "energy", "H", "potential", "twist"), *COUNTS, *OUTPUTS)
-WORDS += ("record", "reaction", "switch")
+WORDS += ("record", "reaction", "switch", "frequency")
 EXAMPLES = (
     "n0.x",
     "u0.2",

@@ -50,6 +50,8 @@ that stand, or `exact`), `source`, maybe `about`. Units are D w = L = 1, or SI w
 | `negative`, `switches`, `half_twists` | negative directions of the second variation; how many |
 | `fold.1.value`, `branch_point.2.value` | the parameter at a special point of the `continuation` |
 | `at(0.25).energy` | the branch where the parameter is 0.25 |
+| `locus(0.25)` | the first of two parameters on a locus, where the second is 0.25 |
+| `frequency.1` | natural frequency of small vibrations |
 | `buckling.1` | buckling load of a straight ribbon, in the range of the `continuation` |
 
 ## All rows

@@ -3,6 +3,8 @@
     fold.1.value branch_point.2.energy kink.1.value        the k-th special point of a kind
     folds branch_points kinks buckling_points              how many there are
     at(0.25).energy at(0.25, 1).negative                   the point of branch 0, or 1, at a value
+    locus(0.25)                                            the first of two parameters where the
+                                                           second of a locus has a value
     buckling.1                                             the k-th load of `buckling_loads`
 
 Anything else is a number of the scene's solution (`numbers`).
@@ -121,6 +123,28 @@ class _At:
 
 
 @dataclass(frozen=True, eq=False)
+class _OfLocus:
+    """The first of two parameters at the point of a locus where the second has a value."""
+
+    value: float
+
+    def __call__(self, answers: Answers) -> Measured:
+        stages = answers.branch.continuation.stages
+        found = [
+            (float(point.row[stages[point.stage].paths[0]]), point.row["error"])
+            for point in answers.branch.of_kind(POINT)
+            if stages[point.stage].is_locus and point.row[stages[point.stage].moved] == self.value
+        ]
+        if len(found) != 1:
+            raise NoAnswerError(f"the locus has {len(found)} points at {self.value:g}, not one")
+        ((value, error),) = found
+        if error is None:
+            tolerance = answers.scene.tolerance or USUAL
+            return Measured(value, tolerance * abs(value), TOLERANCE)
+        return Measured(value, error * abs(value))
+
+
+@dataclass(frozen=True, eq=False)
 class _Count:
     """How many special points of a kind there are."""
 
@@ -151,12 +175,22 @@ def _special(found: Match[str], scene: Scene) -> Quantity:
 
 
 def _at(found: Match[str], scene: Scene) -> Quantity:
+    return _At(_value(found["value"]), int(found["branch"] or 0), number(found["what"], scene))
+
+
+def _locus(found: Match[str], scene: Scene) -> Quantity:
+    if not any(stage.is_locus for stage in stages_of(scene)):
+        raise UnknownNumberError("the scene's `continuation` follows no locus: no two parameters")
+    return _OfLocus(_value(found["value"]))
+
+
+def _value(text: str) -> float:
     try:
-        value = float(found["value"])
+        return float(text)
     except ValueError:
-        shown = found["value"].strip()
-        raise UnknownNumberError(f"found {shown!r}, expected the parameter's value") from None
-    return _At(value, int(found["branch"] or 0), number(found["what"], scene))
+        raise UnknownNumberError(
+            f"found {text.strip()!r}, expected the parameter's value"
+        ) from None
 
 
 def _count(found: Match[str], scene: Scene) -> Quantity:
@@ -176,5 +210,6 @@ QUANTITIES: tuple[tuple[str, Callable[[Match[str], Scene], Quantity]], ...] = (
     (rf"{_KIND}\.{_K}\.(?P<what>.+)", _special),
     (rf"{_KIND}s", _count),
     (r"at\((?P<value>[^,()]+)(?:,\s*(?P<branch>[0-9]{1,3})\s*)?\)\.(?P<what>.+)", _at),
+    (r"locus\((?P<value>[^(),]+)\)", _locus),
     (rf"buckling\.{_K}", _buckling),
 )

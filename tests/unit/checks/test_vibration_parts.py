@@ -9,11 +9,15 @@ from dense_variation import matrices
 from test_elimination import form_of
 
 from ribbonopt.checks.chain_form import ChainForm
-from ribbonopt.checks.vibrations.closing import Closing
 from ribbonopt.checks.vibrations.lowest import Pencil, Spectrum
+from ribbonopt.checks.vibrations.whole_ends import Clamps, Closing
 from ribbonopt.mechanics.rotations import product
 
 Array = np.ndarray
+
+
+def quaternion(p: Array, q: Array) -> Array:
+    return np.array(product(p, q))
 
 
 def spectrum(form: ChainForm, rows: Array, count: int) -> Spectrum:
@@ -80,7 +84,7 @@ def test_eigenvalues_that_are_many_times_there_are_all_found() -> None:
 def test_the_closing_of_a_band_and_its_derivatives(turned: bool, planar: bool) -> None:
     """By differences of what is said of it in words."""
     rng = np.random.default_rng(4)
-    nx = 3 if planar else 7
+    nx = 4 if planar else 8  # one more, which is zero at the start
     ends = rng.normal(size=(2, nx))
     half = np.array([0.0, 0, 0, 1.0]) if turned else np.array([1.0, 0, 0, 0])
     conjugate = np.array([1.0, -1, -1, -1])
@@ -88,9 +92,10 @@ def test_the_closing_of_a_band_and_its_derivatives(turned: bool, planar: bool) -
     def said(z: Array) -> Array:
         first, last = z.reshape(2, nx)
         if planar:
-            return last - first
-        q = np.array(product(np.array(product(conjugate * first[3:], last[3:])), conjugate * half))
-        return np.concatenate([last[:3] - first[:3], q[1:], [first[3:] @ first[3:] - 1]])
+            return np.concatenate([last[:3] - first[:3], first[3:]])
+        q = quaternion(quaternion(conjugate * first[3:7], last[3:7]), conjugate * half)
+        length = first[3:7] @ first[3:7] - 1
+        return np.concatenate([last[:3] - first[:3], q[1:], [length], first[7:]])
 
     closing, z = Closing(turned, planar), ends.ravel()
     _, flat = closing.conditions(ends, np.empty(0), np.empty(0))
@@ -108,3 +113,19 @@ def test_the_closing_of_a_band_and_its_derivatives(turned: bool, planar: bool) -
         ]
         rows.append((slopes[0] - slopes[1]) / 2e-4)
     np.testing.assert_allclose(bent.reshape(2 * nx, 2 * nx), rows, atol=1e-7)
+
+
+@pytest.mark.parametrize("planar", [False, True])
+def test_clamps_leave_nothing_of_their_ends(planar: bool) -> None:
+    """What the conditions leave of the states of both ends: the length of q at the end alone."""
+    nx = 3 if planar else 7
+    ends = np.random.default_rng(1).normal(size=(2, nx))
+    _, flat = Clamps(planar).conditions(ends)
+    jacobian = flat.reshape(2 * nx, -1).T
+    rank = np.linalg.matrix_rank(jacobian)
+    assert rank == len(jacobian) == (6 if planar else 13)
+    if not planar:
+        left = np.linalg.svd(jacobian)[2][-1]
+        np.testing.assert_allclose(np.abs(left[10:] @ ends[1, 3:]), np.linalg.norm(ends[1, 3:]))
+        (bent,) = Clamps(planar).bent(ends, np.empty(0), np.empty(0), np.arange(13.0))
+        assert bent.sum() == 4 * 2 * 6

@@ -9,10 +9,10 @@ import pytest
 
 from ribbonopt.problem import Posed, Ribbon
 from ribbonopt.scene import loads_scene
-from ribbonopt.studies.buckling.straight import SETTLED, StraightStates
 from ribbonopt.studies.buckling.mode import Mode
 from ribbonopt.studies.buckling.rod import pure_compliances
 from ribbonopt.studies.buckling.square import Pieces
+from ribbonopt.studies.buckling.straight import SETTLED, StraightStates
 
 TEXT = """
 name: strip
