@@ -40,7 +40,7 @@ SADOWSKY = 6.729347254560
 COLUMN = """
 name: column
 law: {law}
-parameters: {{a: 1.9, b: -0.6}}
+parameters: {{a: 1.9, b: -0.1}}
 boundary:
   start: {{support: clamped, position: [0, 0, 0], directors: identity}}
   end: {{support: free, force: [0, 0, -(a + 3*b*b)]}}
@@ -49,8 +49,9 @@ tolerance: 1e-9
 """
 TURNING = """
 continuation:
-  {parameter: [parameters.b, parameters.a], of: buckling point, between: [-0.6, 0.6], to: 3,
-   first: 0.2}
+  - {parameter: parameters.b, from: -0.1, to: -0.6, stop: [buckling point]}
+  - {parameter: [parameters.b, parameters.a], of: buckling point, between: [-0.6, 0.5], to: 3,
+     first: 0.2}
 """
 
 
@@ -75,6 +76,7 @@ def test_a_strip_on_edge_from_a_rod_to_a_ribbon() -> None:
     assert limit.value == pytest.approx(SADOWSKY, abs=1e-10)
 
 
+@pytest.mark.slow
 def test_a_locus_that_turns_in_both_numbers() -> None:
     """a + 3 b^2 = pi^2 / 4: a turns at b = 0, where the locus goes on along b."""
     scene = loads_scene(COLUMN.format(law="{type: sadowsky}", more=TURNING))
@@ -89,7 +91,7 @@ def test_a_locus_that_turns_in_both_numbers() -> None:
     assert "turned back" in branch.endings[1, 0].reason
 
 
-@pytest.mark.parametrize("more", ["", "states: planar"])
+@pytest.mark.parametrize("more", [pytest.param("", marks=pytest.mark.slow), "states: planar"])
 def test_a_rod_in_the_plane_of_two_numbers(more: str) -> None:
     """A linear law has the same curve; its tangent is that of the parabola."""
     law = "{type: kirchhoff, B2: 1, B3: 2}"

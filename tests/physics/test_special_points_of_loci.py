@@ -60,6 +60,7 @@ def level(alpha: float, a: float, b: float) -> np.ndarray:
     return np.asarray(fsolve(off, [alpha, a, b], xtol=1e-13))[1:]
 
 
+@pytest.mark.slow
 def test_cusp_crossing_and_isola_centre_of_a_cantilever() -> None:
     """One locus of folds has all three; the cusp is at zero force across and pi^2 / 4 along."""
     branch = Branch.of(Continuation(loads_scene(CANTILEVER)))

@@ -32,6 +32,8 @@ from .alone import Alone
 from .laid import Laid
 from .surface import Surface
 
+AT = 1e-6  # of the spans: how far a load that is found anew may be from where it is known to be
+WIDTHS = (1.0, 0.3, 0.05)  # of the range of l1, within which it is looked for
 NOT_FOUND_AGAIN = "the buckling load was not found again from the one before"
 
 
@@ -185,10 +187,17 @@ class BucklingEquations(Alone):
         scene, surface = solution.scene, self.surface
         l2 = surface.position(value_at(scene, surface.name))
         place = np.array([value_at(scene, surface.other), l2])
-        found = self.plane.found(np.array([[l1, l2] for l1 in surface.between]))
-        if not found:
-            raise np.linalg.LinAlgError(NOT_FOUND_AGAIN)
-        return min(found, key=lambda one: self.metric.length(one.place - place))
+        low, high = surface.between
+        for share in WIDTHS:
+            ends = (
+                max(low, place[0] - share * (high - low)),
+                min(high, place[0] + share * (high - low)),
+            )
+            found = self.plane.found(np.array([[l1, l2] for l1 in ends]))
+            near = [one for one in found if self.metric.length(one.place - place) <= AT]
+            if near:
+                return min(near, key=lambda one: self.metric.length(one.place - place))
+        raise np.linalg.LinAlgError(NOT_FOUND_AGAIN)
 
     def _straight(self, origin: Solution, place: Array) -> Solution:
         """Return the straight state at a place, on the mesh of another."""
