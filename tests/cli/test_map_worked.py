@@ -47,15 +47,15 @@ def rows(folder: Path) -> int:
 def test_killed_and_gone_on_with(tmp_path: Path) -> None:
     (tmp_path / "tiny.yaml").write_text(TINY)
     for count, how in ((0, signal.SIGKILL), (1, signal.SIGKILL), (2, signal.SIGINT)):
-        process = begun(tmp_path, "--resume")
-        while rows(tmp_path) <= count and process.poll() is None:
-            time.sleep(0.05)
-        os.kill(process.pid, how)
-        process.wait()
-    last = begun(tmp_path, "--resume")
-    said = last.communicate()[1]
+        with begun(tmp_path, "--resume") as process:
+            while rows(tmp_path) <= count and process.poll() is None:
+                time.sleep(0.05)
+            os.kill(process.pid, how)
+    with begun(tmp_path, "--resume") as last:
+        said = last.communicate()[1]
     assert (last.returncode, said) == (0, "")
-    places = [json.loads(line)["place"] for line in open(tmp_path / "out" / "jobs.jsonl")]
+    lines = (tmp_path / "out" / "jobs.jsonl").read_text().splitlines()
+    places = [json.loads(line)["place"] for line in lines]
     assert sorted(places) == [
         "map-branches/1",
         "map-loci/1",
