@@ -54,7 +54,8 @@ def _line(inputs: Row, slopes: Sequence[float]) -> Row:
             **inputs,
             X: float(c * np.sqrt(y)),
             "kind": "fold",
-            "folder": "branches/1/1",
+            "branch": 0,
+            "folder": "map-branches/1/1",
             "near": {"point": i, "value": float(c * np.sqrt(y)) - 1},
             "point": i,
         }

@@ -98,7 +98,7 @@ def sampled(solution: Solution, *, again: bool = False) -> Sampled:
     if len(own) == len(widths) * degree and degree <= MAX_DEGREE:
         places = _places(widths, degree)
         if np.abs(own - places).max() < SAME:
-            error = _known_error(solution)
+            error = known_error(solution)
     if error is None:
         parts = -(-LEAST_ELEMENTS // len(widths))
         degree = min(degree, max(4, STAGES // (parts * len(widths))), HIGHEST_DEGREE)
@@ -210,7 +210,7 @@ def _fields(o: Mapping[str, Array]) -> tuple[Array, Array, Array, Array]:
     return o["r"], np.stack([o["d1"], o["d2"], o["d3"]], axis=2), o["n"], o["m"]
 
 
-def _known_error(solution: Solution) -> float | None:
+def known_error(solution: Solution) -> float | None:
     """Relative error of a solution; None where it cannot be told."""
     if solution.problem.recovered or lacks_linearisation(solution):
         return None

@@ -14,6 +14,7 @@ from .common import listing
 if TYPE_CHECKING:
     from ribbonopt.studies.maps.map import Map
 
+SEARCHED = "shapes are searched for along branches: what no such branch meets is not found"
 MOST = 12  # regions that are listed
 
 
@@ -26,12 +27,14 @@ def report(found: Map) -> str:
     branches = sum(line["branches"] for line in data["lines"])
     lines = [
         f"{found.name}: {x} from {left:g} to {right:g}, {y} from {low:g} to {high:g}",
-        f"  {len(data['lines'])} lines: {branches} branches, {special} special points",
+        f"  {_number(len(data['lines']), 'line')}: {_number(branches, 'branch')}, "
+        f"{_number(special, 'special point')}",
         *(_failed(line) for line in data["lines"] if not line["verified"]),
         *(_locus(locus, x, y) for locus in data["loci"]),
         *_regions(data["regions"], x, y),
         *(f"  in doubt: {doubt}" for doubt in data["doubts"]),
-        *_told(data["points"]),
+        *(f"  note: {note}" for note in data["notes"]),
+        *[f"  {SEARCHED}"] * any(point.get("told") for point in data["points"]),
         f"  written: {one_line(listing(found.folder))}",
     ]
     return "\n".join(lines)
@@ -67,11 +70,11 @@ def _region(region: Row) -> str:
         return f"{where}: too narrow, not counted"
     if region["count"] is None:
         return f"{where}: not counted"
-    shapes = f"{region['count']} shape{'s' * (region['count'] != 1)} found"
-    return f"{where}: {shapes}, {region['stable']} stable"
+    shapes = f"{_number(region['count'], 'shape')} found"
+    limit = "" if region["below"] is None else f" below the energy {region['below']:.6g}"
+    return f"{where}: {shapes}{limit}, {region['stable']} stable"
 
 
-def _told(points: list[Row]) -> list[str]:
-    """Return how shapes were looked for, once."""
-    said = dict.fromkeys(point["told"] for point in points if point.get("told"))
-    return [f"  {one_line(text)}" for text in list(said)[:1]]
+def _number(count: int, word: str) -> str:
+    """Return a number of things in words: 1 line, 2 branches."""
+    return f"{count} {word}{'' if count == 1 else 'es' if word.endswith('ch') else 's'}"

@@ -79,6 +79,10 @@ def follow(verb: argparse.ArgumentParser) -> None:
 
 def mapped(verb: argparse.ArgumentParser) -> None:
     """Options of `map`."""
+    verb.epilog = (
+        "The folder holds map.png, map.json, map.csv (points of all loci), and what was found on "
+        "the way as results of their own: map-branches/N/M, map-loci/N, map-points/N/M."
+    )
     scene(verb)
     verb.add_argument("--jobs", metavar="N", help="worker processes (default: one for each core)")
     verb.add_argument("--out", metavar="DIR", help="folder of the map (default: results/NAME-map)")

@@ -21,7 +21,7 @@ class Equilibria:
     along
         Dotted paths of the numbers that move on the way, each with the range that it may move in
         where that is known; by default those of `continuation`, or else all `parameters`, or else
-        those of the end. Example: `[parameters.angle]` or `{parameters.angle: [-60, 60]}`
+        those of the end's position. Example: `[parameters.angle]` or `{parameters.angle: [-60, 60]}`
     below
         Strain energy up to which equilibria are looked for; by default five times that of the
         strip as it buckles first. Example: `20`

@@ -63,7 +63,8 @@ def draw_shapes(
             inset.patch.set_alpha(0.0)
             place(inset, next(drawings), album.box(BELOW), THIN)
         _words(axes, point, corner, size)
-        if not regions[point["region"]]((corner + size / 2)[None])[0]:
+        away = bool((np.clip(mark, corner, corner + size) != mark).any())
+        if away or not regions[point["region"]]((corner + size / 2)[None])[0]:
             _card(axes, corner, size)
         _join(axes, mark, corner, size)
     if album.tint:
@@ -72,7 +73,7 @@ def draw_shapes(
 
 def _words(axes: Axes, point: Row, corner: Array, size: Array) -> None:
     stable, count = point["stable"], point["count"]
-    text = f"{stable} of {count} stable" if count > 1 else "1 stable" if stable else "1, unstable"
+    text = f"{stable} stable of {count}" if count > 1 else "1 stable" if stable else "1, unstable"
     axes.text(
         float(corner[0] + size[0] / 2),
         float(corner[1] + WORDS / 2),
@@ -87,7 +88,7 @@ def _words(axes: Axes, point: Row, corner: Array, size: Array) -> None:
 
 
 def _card(axes: Axes, corner: Array, size: Array) -> None:
-    """Put what stands in another region on a card, which belongs to none."""
+    """Put what stands away from its point on a card, to which a line leads."""
     from matplotlib.patches import Rectangle
 
     card = Rectangle(

@@ -51,7 +51,7 @@ def shot(alpha: float, Q: float, P: float) -> np.ndarray:
 
 
 def level(alpha: float, a: float, b: float) -> np.ndarray:
-    """Place (a, b) near a guess, with the tip angle, where folds meet: there b is stationary on the surface."""
+    """Place (a, b) near a guess, the tip at an angle, where b is stationary: there folds meet."""
 
     def off(v: np.ndarray) -> list[float]:
         at, by_alpha, by_q, by_p = shot(v[0], v[1] - 0.12, 2.6 + v[2] - 20 * v[1] ** 2)
@@ -105,8 +105,8 @@ def test_the_closed_curve_of_folds_has_four_cusps() -> None:
     assert "closed" in branch.endings[1, 0].reason
 
 
-#: both clamps of an arch turned by the same angle against the bow; soft in twist it gives way across
-#: its plane too, at an angle that depends on B3
+#: both clamps of an arch turned by the same angle against the bow; soft in twist it gives way
+#: across its plane too, at an angle that depends on B3
 MIRROR = """
 name: mirror
 law: {{type: kirchhoff, B2: 1, B3: 0.76}}
@@ -119,7 +119,7 @@ tolerance: 1e-9
 continuation:
   - {{parameter: parameters.angle, from: 20, to: 40, stop: [{kind}]}}
   - {{parameter: [parameters.angle, law.B3], of: {kind}, between: [20, 40], to: 0.58,
-      first: 0.02, stability: false}}
+      first: 0.05, largest: 0.05, stability: false}}
 """
 
 

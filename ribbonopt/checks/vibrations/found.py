@@ -15,6 +15,7 @@ from ribbonopt.mechanics.widths import widths
 from ribbonopt.problem import Posed, Ribbon
 from ribbonopt.solution.solution import Solution
 
+from ..gauss_stages import known_error
 from ..stability import MOST, too_coarse
 from ..variation import Variation
 from .interpolated import interpolated
@@ -83,7 +84,7 @@ def vibrations(
     neutral = Neutral.of(what, variation, energy)
     scale = 1 / (variation.largest * what.length**4)
     pencil = Pencil(variation.form, energy.rows, SOFT * variation.largest)
-    first = pencil.lowest(count + len(neutral.words), scale)
+    first = pencil.lowest(count + neutral.most, scale)
     if isinstance(first, str):
         return first
     kept = np.flatnonzero(~neutral.among(first, energy))[:count]
@@ -136,7 +137,15 @@ def _bounds(
     own, compliance = first.modes[:, nx:], np.diagonal(variation.form.Q, axis1=1, axis2=2)[:, nx:]
     strained = np.einsum("eyk,ey->k", own**2, np.abs(compliance))
     parts = np.abs(first.squared) + 2 * strained
-    least = SHAPE * variation.stages.error * parts + ROUNDING * (parts + first.shift)
+    least = SHAPE * _shape_error(what.solution, variation) * parts + ROUNDING * (
+        parts + first.shift
+    )
     least += SOFT * variation.largest * (own**2).sum(axis=(0, 1))
     bounds: Array = MARGIN * apart + least
     return bounds
+
+
+def _shape_error(solution: Solution, variation: Variation) -> float:
+    """Relative error of the shape: as estimated, or else as the gradient of the energy tells."""
+    error = variation.stages.error or known_error(solution)
+    return variation.residual if error is None else error

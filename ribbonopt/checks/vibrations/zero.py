@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 from ribbonopt.accuracy.spin import SPIN, spins
 from ribbonopt.arrays import Array
 from ribbonopt.classes import dataclass
+from ribbonopt.mechanics.laws.catalogue import capabilities
 
 from ..variation import Variation
 from .kinetic import Kinetic, sections_of
@@ -24,6 +25,7 @@ OTHER = 1e-3  # part of the displacements of a zero mode that is no such motion,
 SMALL = 0.1  # omega^2 of one over the shift: the mesh alone makes it differ from zero
 STILL = 1e-20  # square of a displacement that is none
 AXIS = 1e-9  # of a direction along an axis of the lab
+TURNING = "sections turning about the line"
 SLIDING = "sliding along itself"
 
 
@@ -32,17 +34,25 @@ class Neutral:
     """Motions that may cost nothing: their names, and what they move.
 
     `fields` (3 N K, j) are displacements of the stages times the roots of their masses, orthonormal
-    in the order of the names; one that others make up already has none, and no name.
+    in the order of the names; one that others make up already has none, and no name. `turns` says
+    whether sections that have inertia may turn about the line at no cost, which displaces nothing.
     """
 
     words: tuple[str, ...]
     fields: Array
+    turns: bool = False
+
+    @property
+    def most(self) -> int:
+        """How many zero modes there may be."""
+        return len(self.words) + self.turns
 
     @classmethod
     def of(cls, what: Vibrating, variation: Variation, energy: Kinetic) -> Neutral:
         """Return what the conditions of a ribbon allow at no cost."""
         motions = _allowed(what, variation)
-        spin = what.band is None and spins(what.solution)
+        isotropic = capabilities(what.posed.scene).spins
+        spin = isotropic and (what.pieces > 1 or spins(what.solution))
         if not (motions.size or what.slides or spin):
             return cls((), np.empty((3 * len(energy.weights), 0)))
         r, _, d3 = sections_of(what.ribbon.model, variation.stages.x)
@@ -59,7 +69,8 @@ class Neutral:
             if rest @ rest > OTHER:
                 words.append(name)
                 fields = np.column_stack([fields, rest / np.linalg.norm(rest)])
-        return cls(tuple(words), fields)
+        heavy = energy.rows.shape[1] > 3 * variation.stages.tableau.degree
+        return cls(tuple(words), fields, isotropic and heavy)
 
     def among(self, found: Spectrum, energy: Kinetic) -> NDArray[np.bool_]:
         """Return which of the modes (k,) that were found are zero modes."""
@@ -70,6 +81,8 @@ class Neutral:
         rest = size - ((self.fields.T @ moved) ** 2).sum(axis=0)
         small = np.abs(found.squared) <= SMALL * found.shift
         among: NDArray[np.bool_] = small & (size > STILL) & (rest <= OTHER * size)
+        if self.turns:
+            among |= small & (size <= OTHER)
         return among
 
     def names(self, found: Spectrum, energy: Kinetic) -> tuple[str, ...]:
@@ -77,7 +90,8 @@ class Neutral:
         zero = self.among(found, energy)
         q, _ = np.linalg.qr(self._displaced(found, energy)[:, zero])
         made = ((q.T @ self.fields) ** 2).sum(axis=0) if self.words else []
-        return tuple(word for word, part in zip(self.words, made, strict=True) if part > 0.5)
+        told = [word for word, part in zip(self.words, made, strict=True) if part > 0.5]
+        return (*told, *[TURNING] * (int(zero.sum()) - len(told)))
 
     def _displaced(self, found: Spectrum, energy: Kinetic) -> Array:
         """Displacements (3 N K, k) of modes, times the roots of masses."""

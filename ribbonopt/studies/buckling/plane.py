@@ -3,10 +3,10 @@
 Neither of them need be the load: along any straight line in the plane the straight states are all
 but affine in the way p along it, so that the problem of `infinitesimal` finds the p at which the
 curve crosses the line. With lines across the curve it is followed wherever it turns. A point of it
-leads to the next with the mode as the guess, and Newton's method on that one's mesh; its slope is
-that of p where the line is shifted, from the factors of the same problem:
+leads to the next with the mode as the guess, and Newton's method on that one's mesh; the curve
+goes where the straight state can move and p stays, from the factors of the same problem:
 
-    F(w, base(p)) = 0,    dw = -F_w^-1 (dF/dbase) d(base),    p is one of the unknowns w.
+    F(w, base) = 0,    dw = -F_w^-1 (dF/dbase) d(base),    p is one of the unknowns w.
 """
 
 from __future__ import annotations
@@ -121,6 +121,8 @@ class LoadsInPlane:
                 # A number that a scene cannot have, perhaps: not so next to the middle.
                 line = np.array([middle(line) - NEARER * span, middle(line) + NEARER * span])
                 continue
+            if float(np.abs(b - a).max()) <= AFFINE * float(np.abs(a).max()):
+                return None  # nothing moves along the line
             search = self._search(a, b)
             found = search.moved(mode, (a + b) / 2)
             if found is None or not found.admissible:
@@ -147,9 +149,23 @@ class LoadsInPlane:
 
         LinAlgError where the line that it is found on does not cross the curve there.
         """
-        along = one.span / self.sizes
-        aside = SHIFT * self.sizes * np.array([-along[1], along[0]]) / np.linalg.norm(along)
-        states = self._states(np.array([one.place - aside, one.place + aside]))
+        along = one.span / self.sizes / np.linalg.norm(one.span / self.sizes)
+        ways = along * self.sizes, np.array([-along[1], along[0]]) * self.sizes
+        output = one.mode.trajectory.dense
+        _, derivatives = output.blocks.linearize(output.w, output.p)
+        factors = factored(output.blocks, derivatives, output.p)
+        rates = []
+        for way in ways:
+            step = factors.solve(self._slope(one, SHIFT * way))
+            _, _, constants = output.blocks.layout.unpack(step)
+            rates.append(float(constants[self._deflected.sizes[1]]))
+        # Where the mode's own p need not move.
+        found = rates[0] * ways[1] - rates[1] * ways[0]
+        return np.asarray(found / np.linalg.norm(found / self.sizes))
+
+    def _slope(self, one: Crossing, step: Array) -> Residuals:
+        """Return the derivative of the mode's residuals as its straight state moves by a step."""
+        states = self._states(np.array([one.place - step, one.place + step]))
         before, after = states.at(0.0, beside=True), states.at(1.0, beside=True)
         if before is None or after is None:
             raise np.linalg.LinAlgError("no straight state beside a buckling load")
@@ -162,16 +178,11 @@ class LoadsInPlane:
             blocks.residuals(output.w, layout.parameters(output.theta + sign * change, widths))
             for sign in (1, -1)
         )
-        slope = Residuals(
+        return Residuals(
             (ahead.stages - behind.stages) / 2,
             (ahead.nodes - behind.nodes) / 2,
             (ahead.conditions - behind.conditions) / 2,
         )
-        _, derivatives = blocks.linearize(output.w, output.p)
-        step = factored(blocks, derivatives, output.p, slope).solve(slope)
-        _, _, constants = layout.unpack(step)
-        found = aside + float(constants[self._deflected.sizes[1]]) * one.span
-        return np.asarray(found / np.linalg.norm(found / self.sizes))
 
     def _states(self, line: Array) -> StraightStates:
         def place(p: float) -> Scene:

@@ -12,10 +12,13 @@ COLUMNS: Mapping[str, str] = {
     "parameter": "path of the number that the stage moves",
     "PATH": "one column for each number that a stage moves, under its own path (law.epsilon, "
     "parameters.angle): its value at the point, in stages that do not move it too",
-    "kind": "point, fold, branch point, buckling point or kink",
+    "kind": "point, fold, branch point, buckling point or kink; on loci point, cusp, isola centre, "
+    "crossing, double point or turn",
+    "of": "kind of the special points that a locus is of; empty on branches",
     "negative": "negative directions of the second variation, 0: stable; empty: not known",
     "error": "bound of the relative error of the answer; of the place of a special point, relative "
-    "to the parameter there; empty: not known",
+    "to the parameter there; on loci of the first parameter, at the second (where that turns, of "
+    "their distance from the curve); empty: not known",
     "softest": "smallest eigenvalue of the second variation, where `stability: eigenvalue` asks",
     "frequency1": "lowest natural frequency, where `modes` asks, and so on: in Hz, or "
     "sqrt(Dw/(rho L^4)); negative: a rate of growth",

@@ -29,12 +29,12 @@ from ribbonopt.scene import Scene, dump_scene
 from ribbonopt.solution.solution import Solution
 
 from .continuation import Continuation
-from .saved import read_branch
+from .saved import FILE, SCENE, read_branch
 from .stored import Stored, state_of
 from .walk.branches import Key
 from .walk.points import Point
 
-FILE, TABLE, SCENE = "branch.jsonl", "branch.csv", "scene.yaml"
+TABLE = "branch.csv"
 
 
 class BranchFolder:

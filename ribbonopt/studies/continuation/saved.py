@@ -35,6 +35,7 @@ BRANCH = Kind(
     remedy="remove this line and all after it: the points before are kept, and --resume finds the "
     "others again",
 )
+FILE, SCENE = "branch.jsonl", "scene.yaml"
 ARRAYS = ("w", "widths", "tangent")
 Count = Annotated[int, Bounds(ge=0)]
 

@@ -25,7 +25,7 @@ from .seeds import first_load_energy, seeds, waves
 from .symmetry import symmetry_of
 from .told import told
 
-PARAMETERS, END = "parameters.", "boundary.end."
+PARAMETERS, END = "parameters.", "boundary.end.position."
 LEAST, ONE_TURN = 1e-6, 2 * np.pi**2  # energies, Dw = L = 1: none, of a strip bent to a ring
 LOADS = 5.0  # times the energy of the strip as it buckles first: the limit, where none is given
 GAP, COARSE = 1e-5, 1e-3  # of two that are images: relative, without a tolerance
@@ -112,7 +112,8 @@ def _lines(
     """
     ranges = settings.ranges
     if not ranges:
-        stages = [stage.parameter for _, stage in located_stages(scene)]
+        moved = [stage.parameter for _, stage in located_stages(scene)]
+        stages = [path for one in moved for path in ((one,) if isinstance(one, str) else one)]
         named = [f"{PARAMETERS}{name}" for name in scene.parameters]
         ends = [path for path in paths_of(scene) if path.startswith(END)]
         ranges = dict.fromkeys(stages or named or ends)

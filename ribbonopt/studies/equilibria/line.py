@@ -88,8 +88,9 @@ class SearchCurve(Curve):
         """Change of the position that counts as one, and that steps are measured by."""
         return self.scale
 
-    def _theta(self, position: float) -> Array:
+    def _theta(self, *positions: float) -> Array:
         """Parameters theta at a position: posing a scene costs as much as a step of Newton's."""
+        (position,) = positions
         if self._direct is not None:
             return super()._theta(position)
         number = int(np.floor((position - self.begin) / (CELL * self.scale)))

@@ -30,6 +30,7 @@ AGREES = 1e3  # times the tolerance: the same
 COARSE = 1e-4  # the same, where there is no tolerance
 MET = 1e-4  # arclength between two estimates of one point where branches cross
 
+AWAY = 1e-6  # arclength of a first step onto a branch that crosses, at least: loads count little
 MET_ANOTHER = "came to where another had been"
 NOT_LOCATED = "crossed by others that were not located"
 DOUBTS = 20  # crossings that are not located, after which none is looked for
@@ -105,7 +106,7 @@ class Search:
         sign = junction.ways.pop(0)
         equations = junction.line.equations(junction.point.solution)
         try:
-            first = switched(equations, junction.point, sign)
+            first = switched(equations, junction.point, sign, least=AWAY)
         except np.linalg.LinAlgError:
             self._ended("crossed by others that could not be begun")
             return

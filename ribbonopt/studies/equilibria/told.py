@@ -11,9 +11,9 @@ from .search import Search
 def told(search: Search, lines: Sequence[Line], starts: int, above: int) -> str:
     """Return what was searched, in a few sentences; `above` were found beyond its limit."""
     ways = []
-    for line in lines:
-        low, high = search.reached.get(line.name, (line.own, line.own))
-        ways.append(f"{line.name} (which came from {low:.5g} to {high:.5g})")
+    for line in (line for line in lines if line.name in search.reached):
+        low, high = search.reached[line.name]
+        ways.append(f"{line.name} (which moved between {low:.5g} and {high:.5g})")
     along = f"along {' and '.join(ways)}" if ways else "along nothing, as no number moves"
     begun = "1 start" if starts == 1 else f"{starts} starts"
     said = [

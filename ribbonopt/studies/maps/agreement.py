@@ -13,6 +13,7 @@ from collections.abc import Mapping, Sequence
 from ribbonopt.plain import Row
 
 FOLD = "fold"
+CHANGE = 2  # equilibria that come or go at a fold
 SHORT = 2e-3  # of the square: a common border this short tells nothing
 
 
@@ -28,10 +29,9 @@ def disagreement(kind: str, negative: int | None, here: Row, there: Row) -> str:
     """
     if negative is None:
         return ""
-    counts = [_by_negative(row["shapes"]) for row in (here, there)]
-    if any(count is None for count in counts):
+    one, other = (_by_negative(row["shapes"]) for row in (here, there))
+    if one is None or other is None:
         return ""
-    one, other = (count or {} for count in counts)
     for below in range(negative):
         if one.get(below, 0) != other.get(below, 0):
             word = "stable shapes" if below == 0 else f"shapes with {below} negative directions"
@@ -42,6 +42,21 @@ def disagreement(kind: str, negative: int | None, here: Row, there: Row) -> str:
     if kind == FOLD and negative == 0 and change == 0:
         return f"{one.get(0, 0)} stable shapes on both sides of a fold of stable ones"
     return ""
+
+
+def partial(kind: str, here: Row, there: Row) -> str:
+    """Return why counts on both sides of a locus differ by another number than two; "" if not.
+
+    Shapes are looked for below an energy, which those that a fold does not touch may rise above.
+    """
+    counts, limits = (here["count"], there["count"]), (here.get("below"), there.get("below"))
+    if abs(counts[0] - counts[1]) == CHANGE or kind != FOLD or None in limits:
+        return ""
+    return (
+        f"{counts[0]} and {counts[1]} shapes on both sides of a fold, of which {CHANGE} come or go "
+        f"there: they are counted below the energies {limits[0]:.6g} and {limits[1]:.6g}, and "
+        "others are above"
+    )
 
 
 def pairs_of(

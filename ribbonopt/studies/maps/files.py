@@ -1,8 +1,8 @@
 """Maps on disk: the rows of what was done, appended as they come, and the map once it is whole.
 
-`jobs.jsonl` holds the row of each piece of work; `map-branches/N/M`, `map-loci/N`, `map-points/N/M`
-what it found, each a folder that can be drawn and looked at by itself; `map.json` the map;
-`map.csv` the points of all loci.
+`jobs.jsonl` holds the row of each piece of work; `map-branches/N/M`, `map-loci/N` and
+`map-points/N/M` what it found, each a folder that can be drawn and looked at by itself; `map.json`
+the map; `map.csv` the points of all loci.
 """
 
 from __future__ import annotations
@@ -65,12 +65,13 @@ class MapFolder:
 
     def keep(self, job: Job, row: Row) -> None:
         """Add the row of a job, which whatever ends this process spares."""
-        line = {"place": job.place, "digest": digest_of(job), "row": row}
+        digest = digest_of(job)
+        line = {"place": job.place, "digest": digest, "row": row}
         try:
             self._file.write(json.dumps(line) + "\n")
         except OSError as error:
             raise self._full(error) from error
-        self.known[line["digest"]] = row
+        self.known[digest] = row
 
     def write(self, data: Mapping[str, Any], rows: Rows) -> None:
         """Write the map, and the table of the points of its loci."""

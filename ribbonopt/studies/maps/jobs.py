@@ -30,7 +30,7 @@ class Job:
     Attributes
     ----------
     place : str
-        Its folder in that of the map, such as `loci/2`; no other piece has it.
+        Its folder in that of the map, such as `map-loci/2`; no other piece has it.
     task : str
         What is done: one of the names in `tasks`.
     scene : Scene

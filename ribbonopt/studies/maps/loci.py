@@ -18,6 +18,7 @@ from .lines import PARTS, smooth
 CUSP = "cusp"
 TWICE = 1e-9  # of the square: points nearer than this are one
 ON = 1e-5  # of the square: a special point so near to a locus is on it
+INSIDE = 1e-9  # of the square: what is on the border is inside
 CURVED = 0.5  # of what a curve leaves its chord by: it is known no better between points
 
 
@@ -105,3 +106,14 @@ def value_of(place: Array, plan: MapPlan) -> tuple[float, float]:
     (left, right), (low, high) = plan.ranges
     x, y = (float(share) for share in place)
     return left + x * (right - left), low + y * (high - low)
+
+
+def inside(place: Array) -> bool:
+    """Return whether a point (2,) is in the square."""
+    return bool(((place >= -INSIDE) & (place <= 1 + INSIDE)).all())
+
+
+def told_of(what: str, row: Row, plan: MapPlan, came: Row) -> str:
+    """Return what failed, where, and by what."""
+    where = f"{plan.x} = {row[plan.x]:.6g}, {plan.y} = {row[plan.y]:.6g}"
+    return f"{what} at {where}: {came['message'] or came['status']}"

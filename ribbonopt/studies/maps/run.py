@@ -6,6 +6,7 @@ with closing(MapFolder("results/NAME-map", scene, resume=False)) as folder:
 
 from __future__ import annotations
 
+import re
 from collections.abc import Callable, Sequence
 from contextlib import closing
 from dataclasses import replace
@@ -58,7 +59,7 @@ def plan_of(scene: Scene) -> MapPlan:
                 problem = problem or prepare(with_value(there, path, begin)).problem
                 refuse_idle(Curve(there, stage), problem)
             except ModelError as error:
-                told = str(error).removeprefix("continuation.parameter: ")
+                told = re.sub(r"^continuation\.[a-z]+: ", "", str(error))
                 raise ModelError(f"map.parameters: {told}", "map.parameters") from None
     return plan
 

@@ -109,6 +109,7 @@ class SavedRegion:
     rings: tuple[tuple[Pair, ...], ...]
     count: Count | None = None
     stable: Count | None = None
+    below: float | None = None
     narrow: bool = False
     area: float = 0.0
     clear: float = 0.0
@@ -144,6 +145,7 @@ class SavedMap:
     regions: tuple[SavedRegion, ...]
     points: tuple[SavedPoint, ...]
     doubts: tuple[str, ...] = ()
+    notes: tuple[str, ...] = ()
     si: bool = False
     labels: dict[str, str] = field(default_factory=dict)
 

@@ -17,15 +17,15 @@ from ribbonopt.scene import Scene
 from ribbonopt.scene.maps import MapPlan
 
 from . import jobs
-from .agreement import disagreement, pairs_of
+from .agreement import disagreement, pairs_of, partial
 from .inner import innermost
 from .jobs import Job
-from .loci import Locus, at, value_of
+from .loci import Locus, at, inside, told_of, value_of
 from .regions import Region, regions_of
 
 Do = Callable[[str, Sequence[Job]], list[Row]]
-INSIDE = 1e-9  # of the square: what is on the border is inside
 MOST = 200  # loci
+TRIES = 2  # of special points at one place
 AT_ONCE = 2  # of the loci of a line, however many workers there are
 IMAGE = 1e-6  # of the square: special points nearer than this are of mirror images
 
@@ -51,6 +51,7 @@ class Survey:
     regions: list[Region] = field(default_factory=list)
     points: list[Row] = field(default_factory=list)
     doubts: list[str] = field(default_factory=list)
+    notes: list[str] = field(default_factory=list)
 
     def explore(self) -> None:
         """Do all of it."""
@@ -60,6 +61,7 @@ class Survey:
         self.regions.extend(regions_of([locus.curve for locus in self._drawn]))
         self._count()
         self._agree()
+        self._note()
 
     @property
     def found(self) -> int:
@@ -83,52 +85,57 @@ class Survey:
     def _follow_loci(self, line: Row) -> None:
         """Follow the loci of the special points of a line that are on none of those known.
 
-        A few at once: one that was followed may lead through the others.
+        A few at once: one that was followed may lead through the others. Of mirror images, which
+        are at one place, another is tried where the first leads nowhere.
         """
-        left = self._begins(line)
-        while left and len(self.loci) < MOST:
-            self._follow(left[:AT_ONCE])
-            left = [
-                begin
-                for begin in left[AT_ONCE:]
-                if not self._is_known(begin["kind"], np.array(at(begin, self.plan)))
-            ]
+        groups, lost = self._begins(line), dict[int, str]()
+        for which in range(TRIES):
+            left = [i for i, group in enumerate(groups) if len(group) > which]
+            while left and len(self.loci) < MOST:
+                left = [i for i in left if not self._is_known(groups[i][0])]
+                some, left = left[:AT_ONCE], left[AT_ONCE:]
+                told = self._follow([groups[i][which] for i in some])
+                lost |= {i: words for i, words in zip(some, told, strict=True) if words}
+        self.doubts.extend(words for i, words in lost.items() if not self._is_known(groups[i][0]))
 
-    def _begins(self, line: Row) -> list[Row]:
-        """Return the special points of a line from which loci are to be followed."""
-        begins: list[Row] = []
+    def _begins(self, line: Row) -> list[list[Row]]:
+        """Return the special points of a line that loci may begin with, by their places."""
+        groups: list[list[Row]] = []
         for special in line.get("specials", ()):
             place = np.array(at(special, self.plan))
-            if special["kind"] not in self.plan.of or not _inside(place):
+            if special["kind"] not in self.plan.of or not inside(place):
                 continue
-            same = [b for b in begins if b["kind"] == special["kind"]]
-            if any(np.hypot(*(np.array(at(b, self.plan)) - place)) < IMAGE for b in same):
-                continue  # of a mirror image
-            if not self._is_known(special["kind"], place):
-                begins.append(special)
-        return begins
+            for group in groups:
+                gap = np.hypot(*(np.array(at(group[0], self.plan)) - place))
+                if group[0]["kind"] == special["kind"] and gap < IMAGE:
+                    group.append(special)
+                    break
+            else:
+                groups.append([special])
+        return groups
 
-    def _follow(self, begins: Sequence[Row]) -> None:
-        first = len(self.loci) + 1
+    def _follow(self, begins: Sequence[Row]) -> list[str]:
+        """Follow loci; return for each what it failed by, "" if it did not."""
+        first, lost = len(self.loci) + 1, []
         asked = [
             jobs.locus(self.scene, self.plan, number, begin)
             for number, begin in enumerate(begins, start=first)
         ]
-        rows = self.do("loci", asked)
+        rows = self.do("loci", asked) if asked else []
         for begin, number, row in zip(begins, range(first, first + len(rows)), rows, strict=True):
             found = row.get("points", ())
-            if not found:
-                self.doubts.append(_lost("locus", begin, self.plan, row))
-            place = np.array(at(begin, self.plan))
-            again = self._is_known(begin["kind"], place)
+            lost.append("" if found else told_of("locus", begin, self.plan, row))
+            again = self._is_known(begin)
             points = [begin] if again or not found else found
-            ending = "the same as one before" if again else row.get("ending", row["message"])
+            ended = str(row.get("ending", row["message"]))
+            ending = "the same as one before" if again else ended
             self.loci.append(Locus.of(number, begin["kind"], points, self.plan, ending))
+        return lost
 
-    def _is_known(self, kind: str, place: Array) -> bool:
+    def _is_known(self, special: Row) -> bool:
+        place = np.array(at(special, self.plan))
         return any(
-            locus.kind == kind and len(locus.points) > 1 and locus.goes_through(place)
-            for locus in self.loci
+            locus.kind == special["kind"] and locus.goes_through(place) for locus in self._drawn
         )
 
     def _count(self) -> None:
@@ -162,6 +169,13 @@ class Survey:
             f"regions {a + 1} and {b + 1}: {fault}: a locus or a shape was missed"
             for (a, b), fault in self._faults()
         )
+
+    def _note(self) -> None:
+        """Tell where counts of neighbours cannot be compared as they are."""
+        for a, b, number in pairs_of([region.beside for region in self.regions]):
+            here, there = self.best(a), self.best(b)
+            if here and there and (why := partial(self._drawn[number].kind, here, there)):
+                self.notes.append(f"regions {a + 1} and {b + 1}: {why}")
 
     def _faults(self) -> list[tuple[tuple[int, int], str]]:
         """Return pairs of regions whose counts do not fit what is between them."""
@@ -207,18 +221,9 @@ class Survey:
         for (region, _), job, row in zip(wanted, asked, rows, strict=True):
             self.points.append({**row, "region": region, "folder": job.place})
             if not row["verified"]:
-                self.doubts.append(_lost("count", job.inputs, self.plan, row))
+                self.doubts.append(told_of("count", job.inputs, self.plan, row))
 
     def _region_at(self, place: Array) -> int:
         """Return the region that a point of the square is in; the largest if it is on a border."""
         holds = (bool(region.face.contains(place[None])[0]) for region in self.regions)
         return next((i for i, inside in enumerate(holds) if inside), 0)
-
-
-def _inside(place: Array) -> bool:
-    return bool(((place >= -INSIDE) & (place <= 1 + INSIDE)).all())
-
-
-def _lost(what: str, row: Row, plan: MapPlan, came: Row) -> str:
-    where = f"{plan.x} = {row[plan.x]:.6g}, {plan.y} = {row[plan.y]:.6g}"
-    return f"{what} at {where}: {came['message'] or came['status']}"

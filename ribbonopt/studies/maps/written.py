@@ -38,6 +38,7 @@ def data_of(survey: Survey) -> dict[str, Any]:
         "regions": [_region(i, survey) for i in range(len(survey.regions))],
         "points": [_point(i, row, survey) for i, row in enumerate(survey.points, start=1)],
         "doubts": survey.doubts,
+        "notes": survey.notes,
         "machine": machine(),
         "versions": versions(),
     }
@@ -59,7 +60,7 @@ def _status(survey: Survey) -> tuple[str, str]:
         first = next((row["message"] for row in survey.lines), "")
         return FAILED, f"no branch could be followed on any line: {first}"
     if not survey.loci:
-        count, other = len(survey.lines), " and ".join(survey.plan.of)
+        count, other = len(survey.lines), " or ".join(survey.plan.of)
         said = f"{count} lines" if count > 1 else "the one line"
         others = f"; {survey.found} special points of other kinds" if survey.found else ""
         return NOTHING, (
@@ -114,6 +115,7 @@ def _region(i: int, survey: Survey) -> Row:
         "narrow": region.narrow,
         "count": best["count"] if best else None,
         "stable": best["stable"] if best else None,
+        "below": best.get("below") if best else None,
         "beside": [other + 1 for other in sorted(region.beside)],
         "rings": [_values(ring, survey) for ring in region.face.rings],
     }

@@ -90,12 +90,13 @@ def numbers_in(data: Any, path: str = "") -> Iterator[tuple[str, float]]:
         yield path, data
 
 
+@pytest.mark.parametrize("rounds", [3, pytest.param(30, marks=pytest.mark.sweep)])
 @pytest.mark.parametrize("path", SCENES)
-def test_other_numbers_alone_give_what_the_whole_text_would(path: Path) -> None:
+def test_other_numbers_alone_give_what_the_whole_text_would(path: Path, rounds: int) -> None:
     """In any of its places, sound or not: the same scene, or the same words."""
     text, rng = path.read_text(), random.Random(path.stem)
     numbers = dict(numbers_in(read(text).data))
-    for keys in [rng.sample(sorted(numbers), min(2, len(numbers))) for _ in range(8)]:
+    for keys in [rng.sample(sorted(numbers), min(2, len(numbers))) for _ in range(rounds)]:
         document = Document(text, str(path))
         rows = [[1.0 for _ in keys], [1.01 for _ in keys], [1.02 for _ in keys]]
         rows += [[rng.choice(FACTORS) for _ in keys] for _ in range(10)]

@@ -8,6 +8,7 @@ from made_maps import SCENE, SLOPES, done
 
 from ribbonopt.plain import Row
 from ribbonopt.scene import loads_scene
+from ribbonopt.studies.batch.study import StudyRibbon
 from ribbonopt.studies.maps.jobs import Job
 from ribbonopt.studies.maps.survey import Survey
 from ribbonopt.studies.maps.written import NOTHING, data_of, rows_of
@@ -29,7 +30,11 @@ def surveyed(do: Callable[..., Row] = done, text: str = SCENE) -> tuple[Survey, 
 
 def test_each_locus_is_followed_once_and_regions_are_counted() -> None:
     survey, asked = surveyed()
-    assert [place for place in asked if place.startswith("loci")] == ["loci/1", "loci/2", "loci/3"]
+    assert [place for place in asked if place.startswith("map-loci")] == [
+        "map-loci/1",
+        "map-loci/2",
+        "map-loci/3",
+    ]
     assert len(survey.lines) == 3
     data = data_of(survey)
     assert data["status"] == "converged"
@@ -54,14 +59,14 @@ def test_lines_without_special_points_say_so() -> None:
     survey, _ = surveyed(partial(done, slopes=()))
     data = data_of(survey)
     assert data["status"] == NOTHING
-    assert "no fold and branch point" in data["message"] or "no fold" in data["message"]
+    assert "no fold or branch point" in data["message"]
     assert len(data["regions"]) == 1
 
 
 def test_a_line_that_fails_is_told_and_the_others_go_on() -> None:
     def lose(ribbon: object) -> Row:
         row = done(ribbon)  # type: ignore[arg-type]
-        if ribbon.place == "branches/2":  # type: ignore[attr-defined]
+        if ribbon.place == "map-branches/2":  # type: ignore[attr-defined]
             row |= {"verified": False, "status": "crashed", "message": "gone", "specials": []}
         return row
 
@@ -77,3 +82,31 @@ def test_other_points_are_counted_in_their_region() -> None:
     (far, near) = survey.points[-2:]
     assert survey.regions[far["region"]].face.area < 0.5
     assert (far["count"], near["count"]) == (1, 7)
+
+
+def test_another_image_is_tried_where_a_locus_leads_nowhere() -> None:
+    def twice(ribbon: StudyRibbon) -> Row:
+        row = done(ribbon)
+        if ribbon.task == "line":
+            images = [{**s, "near": {**s["near"], "point": s["point"]}} for s in row["specials"]]
+            row["specials"] += [{**image, "folder": "map-branches/1/2"} for image in images]
+        if ribbon.task == "locus" and ribbon.inputs["folder"] == "map-branches/1/1":
+            row |= {"verified": False, "status": "not_followed", "message": "no", "points": []}
+        return row
+
+    survey, asked = surveyed(twice)
+    assert [place for place in asked if "loci" in place] == [f"map-loci/{i}" for i in range(1, 7)]
+    assert survey.doubts == []
+    assert len(survey.regions) == 4
+
+
+def test_a_locus_that_leads_nowhere_is_told() -> None:
+    def lose(ribbon: StudyRibbon) -> Row:
+        row = done(ribbon)
+        if ribbon.task == "locus":
+            row |= {"verified": False, "status": "not_followed", "message": "no", "points": []}
+        return row
+
+    survey, _ = surveyed(lose)
+    assert len([doubt for doubt in survey.doubts if doubt.startswith("locus at")]) == 8
+    assert len(survey.regions) == 1

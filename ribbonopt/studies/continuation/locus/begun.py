@@ -3,21 +3,29 @@
 from __future__ import annotations
 
 from dataclasses import fields, replace
+from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from ribbonopt.errors import OutputError, SceneError
+from ribbonopt.output.saved import read_scene
+from ribbonopt.pipeline.prepared import Prepared
 from ribbonopt.scene import Scene
 from ribbonopt.scene.lens import value_at, with_value
 from ribbonopt.solution.solution import Solution
+from ribbonopt.transcription import Mesh
 
+from ..saved import FILE, SCENE, read_branch, unpacked
 from ..walk.points import POINT, Point
 from .surface import Surface
 
 #: keys in which the scene of a saved branch may differ from that of a locus that begins there
-FREE = ("name", "continuation", "record", "labels", "tolerance", "guess")
+FREE = ("name", "continuation", "record", "labels", "tolerance", "guess", "map", "equilibria")
+Line = dict[str, Any]
 
 
-def begun(surface: Surface) -> tuple[Point[Solution], Point[Solution]]:
+def begun(surface: Surface, prepared: Prepared) -> tuple[Point[Solution], Point[Solution]]:
     """Return the last point before the special point that a stage names, and that itself.
 
     Raises
@@ -25,17 +33,10 @@ def begun(surface: Surface) -> tuple[Point[Solution], Point[Solution]]:
     SceneError
         If the folder holds no branch, one of another scene, or none with such a point.
     """
-    from ..continuation import Continuation  # which knows stages of loci
-    from ..files import FILE, load_branch
-    from ..stored import Stored
-
     stage, other = surface.stage, surface.other
     assert stage.branch is not None
-    try:
-        scene, lines = load_branch(stage.branch)
-    except OutputError as error:
-        raise SceneError(f"continuation.branch: {error}") from error
     where = f"continuation.branch: {stage.branch}"
+    scene, lines = _read(Path(stage.branch), where)
     if unlike := _unlike(surface, scene):
         raise SceneError(
             f"{where}: holds a branch of another scene: its {unlike} is not that of this one; "
@@ -48,20 +49,57 @@ def begun(surface: Surface) -> tuple[Point[Solution], Point[Solution]]:
         there = ", ".join(kinds) if kinds else "no special points"
         raise SceneError(
             f"{where}: expected {stage.number} of the kind {stage.of!r} in {other}, found "
-            f"{len(found)}; it has {there}; name another branch, or remove the key and say "
-            "`between`"
+            f"{len(found)}; it has {there}; name another branch, or remove the key"
         )
     special = found[stage.number - 1]
-    key = special["row"]["stage"], special["row"]["branch"]
     before = [
         line
         for line in points[: points.index(special)]
-        if (line["row"]["stage"], line["row"]["branch"]) == key and line["row"]["kind"] == POINT
+        if line["row"]["kind"] == POINT and _branch(line) == _branch(special)
     ]
     if not before:
         raise SceneError(f"{where}: its {stage.of} has no point before it on its branch")
-    history = Stored(Continuation(scene), lines, f"{stage.branch}/{FILE}")
-    return history.point(before[-1]), history.point(special)
+    return _point(surface, prepared, before[-1]), _point(surface, prepared, special)
+
+
+def _read(folder: Path, where: str) -> tuple[Scene, list[Line]]:
+    """Return the scene and the lines of a branch."""
+    if not ((folder / FILE).is_file() and (folder / SCENE).is_file()):
+        raise SceneError(f"{where}: no branch; expected a folder written by ribbonopt continue")
+    try:
+        scene = read_scene(folder / SCENE)
+        return scene, read_branch(folder / FILE, scene)
+    except OutputError as error:
+        raise SceneError(f"continuation.branch: {error}") from error
+
+
+def _branch(line: Line) -> tuple[int, int]:
+    return line["row"]["stage"], line["row"]["branch"]
+
+
+def _point(surface: Surface, prepared: Prepared, line: Line) -> Point[Solution]:
+    """Return the point of a line, on its own mesh."""
+    row, state = line["row"], line["state"]
+    w, widths, tangent = (unpacked(state[name]) for name in ("w", "widths", "tangent"))
+    mesh = Mesh(tuple(np.split(widths, np.cumsum(state["elements"])[:-1])))
+    search = prepared.search(surface.posed_at(float(row[surface.other]), surface.begin))
+    attempt = search.on_mesh(tuple(state["sheets"]), mesh)
+    if len(w) != attempt.nlp.unknowns:
+        raise SceneError(
+            f"continuation.branch: {surface.stage.branch}: point {row['number']} has {len(w)} "
+            f"unknowns, this scene {attempt.nlp.unknowns}; expected a branch of the same scene"
+        )
+    unknowns = np.append(w, state["position"])
+    return Point(
+        attempt.restored(w),
+        unknowns,
+        tangent,
+        state["sign"],
+        state["step"],
+        row["number"],
+        kind=row["kind"],
+        row=row,
+    )
 
 
 def _unlike(surface: Surface, scene: Scene) -> str:

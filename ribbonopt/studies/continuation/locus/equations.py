@@ -138,12 +138,12 @@ class LocusEquations(Alone):
 
     def chart(self, solution: Solution, origin: Array, along: Array, across: Array) -> Chart:
         """Return the chart of rows that are dual to directions (m,), in a solution's layout."""
-        rows = (
+        row, other = (
             row_of(solution, self.metric.dual(part), self.surface.count) for part in (along, across)
         )
         nlp = self._beside(solution, origin[-2:]).nlp
         line = self.surface.line(solution)
-        return Chart(nlp, line, self.kind, self.surface.spans, origin, *rows)
+        return Chart(nlp, line, self.kind, self.surface.spans, origin, row, other)
 
     def special(self, a: Point[Solution], b: Point[Solution]) -> Special[Solution]:
         """Return what is special between two points of one layout."""

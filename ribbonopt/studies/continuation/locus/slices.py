@@ -198,7 +198,8 @@ def _root(samples: list[Sample], near: float) -> tuple[float | None, float]:
     heights = np.array([one.test for one in samples])
     size = float(np.abs(heights).max()) or 1.0
     coefficients = np.linalg.solve(np.vander(places / scale, increasing=True), heights / size)
-    roots = np.polynomial.polynomial.polyroots(coefficients) if coefficients[1:].any() else []
+    found = np.polynomial.polynomial.polyroots(coefficients) if coefficients[1:].any() else None
+    roots = np.empty(0) if found is None else found
     real = np.array([z.real for z in roots if abs(z.imag) <= 1e-9])
     if not len(real):
         return None, 0.0

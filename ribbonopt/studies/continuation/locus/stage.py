@@ -97,7 +97,7 @@ class LocusStage:
         """
         special, before = self.special, self.before
         if self.surface.stage.branch is not None:
-            before, special = begun(self.surface)
+            before, special = begun(self.surface, self.prepared)
         assert special is not None and before is not None
         if self.kind == BUCKLING:
             return self._begun(self._buckling(special.solution), special)

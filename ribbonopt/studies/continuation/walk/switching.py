@@ -26,11 +26,13 @@ def switched(
     point: Point[S],
     sign: int,
     itself: Callable[[Point[S]], bool] = lambda point: False,
+    least: float = LEAST_AWAY,
 ) -> Point[S]:
     """Return the first point on the branch that crosses at a branch point; LinAlgError for none.
 
     `itself` tells whether a point is on the branch that is left. Such a one is returned only where
-    none nearer is on another: that branch may cross itself.
+    none nearer is on another: that branch may cross itself. `least` is the arclength below which
+    none is looked for.
     """
     equations = equations.measured(point.solution)
     point = renewed(equations, point)
@@ -43,7 +45,7 @@ def switched(
         direction = sign * _oriented(equations, known.along, known.direction)
         point = known.along if direction @ known.direction > 0 else known.against
     away, own = AWAY, None
-    while away > LEAST_AWAY:
+    while away > least:
         first = _at(equations, point, direction, away)
         if first is not None:
             if not itself(first[0]):
