@@ -75,7 +75,10 @@ def test_any_file_of_it_will_do(place: Path, file: str) -> None:
     ("name", "words"),
     [
         ("colum", ("no such folder", "did you mean {}/column?")),
-        ("column-branch/none", ("no such folder", "written by ribbonopt solve, continue, batch or map")),
+        (
+            "column-branch/none",
+            ("no such folder", "written by ribbonopt solve, continue, batch or map"),
+        ),
         ("none/there", ("no such folder",)),
         ("scene.yaml", ("is a file", "load_scene or load_study reads it")),
         ("", ("without a result", "it holds results: {0}/column, {0}/column-branch, {0}/study")),
