@@ -20,6 +20,8 @@ from .variation import Variation
 # Neutral directions (a loop that slides along itself) have eigenvalues of the order of the error.
 ROUNDING = 1e-9  # of the largest eigenvalue: error of the others, at least,
 MOST = 1e-2  # and at most
+LARGEST = 1e12  # compliance, units Dw = L = 1: a stage is where the law is singular
+SINGULAR = "the law is singular where the ribbon is all but straight"
 
 
 @dataclass(frozen=True, eq=False)
@@ -152,11 +154,16 @@ def variation_of(solution: Solution) -> Variation | str:
     if isinstance(stated, str):
         return stated
     found = stated.energy.variation(solution, stated.posed.values)
-    return found if found.error < MOST else too_coarse(found)
+    return useless(found) or found
 
 
-def too_coarse(found: Variation) -> str:
-    """Say why a second variation has errors that are too large."""
+def useless(found: Variation) -> str:
+    """Say why a second variation tells nothing; empty where it does."""
+    if not found.largest < LARGEST:
+        # A stage is all but where m2 and m3 vanish: what is counted there is rounding.
+        return SINGULAR
+    if found.error < MOST:
+        return ""
     if found.residual < found.stages.error:
         return f"the shape is known to {found.stages.error:.1e} only: the mesh is too coarse"
     return (

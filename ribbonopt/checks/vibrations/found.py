@@ -16,7 +16,7 @@ from ribbonopt.problem import Posed, Ribbon
 from ribbonopt.solution.solution import Solution
 
 from ..gauss_stages import known_error
-from ..stability import MOST, too_coarse
+from ..stability import useless
 from ..variation import Variation
 from .interpolated import interpolated
 from .kinetic import Gyration, Kinetic, kinetic
@@ -26,8 +26,6 @@ from .zero import Neutral
 
 MARGIN = 3.0  # bounds over what two opinions differ by
 SHAPE = 10.0  # bounds over the error of the shape
-LARGEST = 1e12  # compliance: a stage is where the law is singular
-SINGULAR = "the law is singular where the ribbon is all but straight"
 SOFT = 1e-13  # of the largest eigenvalue: what has no stiffness and no mass
 ROUNDING = 1e-12  # of omega^2 and the shift: least bound
 
@@ -76,10 +74,8 @@ def vibrations(
     if isinstance(what, str):
         return what
     variation = what.variation(again=False)
-    if not variation.error < MOST:
-        return too_coarse(variation)
-    if not variation.largest < LARGEST:
-        return SINGULAR
+    if why := useless(variation):
+        return why
     energy = _kinetic(what, variation, gyration)
     neutral = Neutral.of(what, variation, energy)
     scale = 1 / (variation.largest * what.length**4)
