@@ -119,7 +119,9 @@ def _parts(row: Row) -> list[str]:
 def _extent(rows: list[Row]) -> str:
     if not rows:
         return "no points"
-    errors = [row["error"] for row in rows if row["error"] is not None]
+    # Of a locus its special points are less exact, and say so in lines of their own.
+    told = [row for row in rows if row["kind"] == "point" or not row.get("of")]
+    errors = [row["error"] for row in told if row["error"] is not None]
     where = f"{rows[0]['parameter']} = {value_of(rows[0]):.6g} to {value_of(rows[-1]):.6g}"
     return f"{len(rows)} points, {where}, " + (
         f"relative error at most {max(errors):.0e}" if errors else "errors not known"
