@@ -84,10 +84,14 @@ def special_of(
         roots = {name: _root(beside, readings, name) for name in names}
     except np.linalg.LinAlgError:
         return Special([])
-    unresolved = tuple(name for name, arc in roots.items() if arc is None)
     found = sorted((arc, name) for name, arc in roots.items() if arc is not None)
-    points = [_point(Root(equations, beside, arc, name)) for arc, name in found]
-    return Special(points, unresolved, len(names))
+    points = {name: _point(Root(equations, beside, arc, name)) for arc, name in found}
+    # Read from afar alone, and not found again on a finer mesh, a meeting may be anywhere near.
+    doubted = {name for name in MEETS if name in points and points[name].error is None}
+    lost = [name for name in names if name not in points or name in doubted]
+    unresolved = tuple(f"where {MEETS[name]}" if name in MEETS else name for name in lost)
+    sure = [point for name, point in points.items() if name not in doubted]
+    return Special(sure, unresolved, len(names))
 
 
 def _root(beside: Apart, readings: Readings, name: str) -> float | None:
