@@ -78,6 +78,7 @@ class Originals:
         from ribbonopt.scene import loads_scene
         from ribbonopt.studies.batch.files import BatchFolder
         from ribbonopt.studies.batch.sweep import load_study
+        from ribbonopt.studies.batch.processes import message
         from ribbonopt.studies.batch.worker import Worker
         from ribbonopt.studies.continuation.continuation import Continuation
         from ribbonopt.studies.continuation.files import BranchFolder
@@ -97,18 +98,7 @@ class Originals:
             study = load_study([folder / name / "study.yaml"])
             batch = BatchFolder(folder / name.replace("study", "batch"), study, resume=False)
             worker = Worker()
-            ribbons = [
-                {
-                    "number": ribbon.number,
-                    "source": ribbon.source.name,
-                    "text": ribbon.source.text,
-                    "set": ribbon.overrides,
-                    "inputs": ribbon.inputs,
-                    "followed": ribbon.followed,
-                }
-                for ribbon in study.ribbons
-            ]
-            chunk = {"ribbons": ribbons, "skip": [], "known": [], "save": "none", "folder": ""}
+            chunk = message(study.ribbons, [], [], "none", "")
             for answer in worker.answers(chunk):
                 if "row" in answer:
                     batch.append(answer["row"])

@@ -34,6 +34,7 @@ from .rod import RodBuckling
 from .straight import AFFINE, BEYOND, NEARER, SETTLED, TURNS, StraightStates
 
 REACH = 0.02  # of the sizes that count as one: half a line across the curve
+SAME = 1e-6  # of the line: crossings this near are one, found twice
 SHIFT = 1e-5  # of the sizes: half the distance that derivatives along the curve are taken over
 
 
@@ -95,15 +96,16 @@ class LoadsInPlane:
         By increasing way from its first end; empty where there is no straight state.
         """
         states, way = self._states(line), line[1] - line[0]
-        # A rod may buckle beyond the line, as a ribbon is softer than the rod with its stiffnesses.
-        spans = ((-share, 1 + share) for share in BEYOND)
-        loads = next((some for span in spans if (some := states.between(*span)) is not None), [])
-        inside = sorted((one for one in loads if 0 <= one.value <= 1), key=lambda one: one.value)
-        result = []
-        for load in inside:
-            place = line[0] + load.value * way
-            found = self.crossed(load.mode, self.across(place, way))
-            result += [] if found is None else [found]
+        # A rod may buckle beyond the line, as a ribbon is softer than the rod with its stiffnesses;
+        # but the further the ends, the less what is between them is straight in the load.
+        loads = [load for share in BEYOND for load in states.between(-share, 1 + share) or ()]
+        result: list[Crossing] = []
+        last = -np.inf
+        for load in sorted(loads, key=lambda one: one.value):
+            if 0 <= load.value <= 1 and load.value - last > SAME:
+                last, place = load.value, line[0] + load.value * way
+                found = self.crossed(load.mode, self.across(place, way))
+                result += [] if found is None else [found]
         return result
 
     def crossed(self, known: Mode, line: Array) -> Crossing | None:
