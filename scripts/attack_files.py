@@ -77,8 +77,8 @@ class Originals:
         from ribbonopt.pipeline.prepared import solve
         from ribbonopt.scene import loads_scene
         from ribbonopt.studies.batch.files import BatchFolder
-        from ribbonopt.studies.batch.sweep import load_study
         from ribbonopt.studies.batch.processes import message
+        from ribbonopt.studies.batch.sweep import load_study
         from ribbonopt.studies.batch.worker import Worker
         from ribbonopt.studies.continuation.continuation import Continuation
         from ribbonopt.studies.continuation.files import BranchFolder
